@@ -6,17 +6,14 @@ use glam::DVec3;
 
 use crate::camera_views::march;
 use editor::checks::{self, Finding, Seen};
-use scene::raster::box_cells;
-use scene::{BoxId, Extent, Scene, SceneBox};
-use sensors::lidar;
+use formats::physical;
+use scene::{BoxId, LidarPoint, Pose, Returns, Scene};
+use sensors::rolling;
 use sensors::splat::PREVIEW_SIZE;
 
-/// LiDAR returns this far outside a box still come from it, m; below it two bins more, as labels are.
-const MARGIN_M: f64 = 0.3;
-const SMEAR_M: f64 = 0.8;
-
-/// What cameras and LiDAR return of every box of the current frame: exact rays to voxels and shapes, at the size of
-/// the camera strip's previews.
+/// What cameras and LiDAR return of every box of the current frame: pixels by exact rays to voxels and shapes, at the size of
+/// the camera strip's previews; returns of the exact sweep on the physical ground, as files have it, that lie in the box.
+/// Where the scene's sensors are does not matter.
 pub fn seen(scene: &Scene) -> Seen {
     let scene = &*scene.with_rig_in_world();
     let frame = scene.frame();
@@ -40,30 +37,16 @@ pub fn seen(scene: &Scene) -> Seen {
         }
         pixels
     });
-    let lidar_returns = lidar::rig_sweep(&frame.occupancy, &scene.rig).map(|sweep| {
-        let extent = frame.extent();
-        let mut near: Vec<Vec<&SceneBox>> = vec![Vec::new(); extent.columns()];
-        for b in sound.values() {
-            box_cells(extent, b, MARGIN_M + Extent::VOXEL_M, |x, y| {
-                near[extent.index(x, y)].push(b)
-            });
-        }
-        let mut returns: BTreeMap<BoxId, u32> = BTreeMap::new();
-        for point in &sweep.points {
-            let p = DVec3::from_array(point.position_in_ego.map(f64::from));
-            let Some([x, y]) = extent.column_at(p.x, p.y) else {
-                continue;
-            };
-            for b in near[extent.index(x, y)].iter().filter(|b| b.class == point.class) {
-                let (local, half) = (b.to_local(p), b.size_m / 2.0 + DVec3::splat(MARGIN_M));
-                if local.truncate().abs().cmple(half.truncate()).all()
-                    && (-half.z - SMEAR_M..=half.z).contains(&local.z)
-                {
-                    *returns.entry(b.id).or_default() += 1;
-                }
-            }
-        }
-        returns
+    let lidar_returns = (!scene.rig.lidars.is_empty()).then(|| {
+        let mut sweep = rolling::exact(scene);
+        sweep.place(&frame.world_from_ego.inverse());
+        let lidar = scene.rig.standing_at(&Pose::IDENTITY).lidars[0].ego_from_sensor();
+        physical::to_physical_ground(&mut sweep, lidar.translation_m, frame);
+        let in_world = |p: &LidarPoint| {
+            let p = DVec3::from_array(p.position_in_ego.map(f64::from));
+            frame.world_from_ego.apply(p)
+        };
+        Returns::new(sweep.points.iter().map(in_world)).by_box(sound.values())
     });
     Seen {
         camera_pixels,
@@ -83,7 +66,7 @@ mod tests {
     use super::*;
     use crate::open;
     use editor::{Apply, Edit};
-    use scene::{BoxLabel, Class};
+    use scene::{BoxLabel, Class, Extent, Key, Motion};
 
     #[test]
     fn sensors_see_near_boxes_and_not_those_inside_a_wall() {
@@ -142,5 +125,41 @@ mod tests {
         assert_eq!(super::seen(&blind), Seen::default());
         Arc::make_mut(&mut scene.rig).cameras[0].focal_px[0] = f64::NAN;
         assert_eq!(super::seen(&scene), Seen::default());
+    }
+
+    /// A drive of 8 m in 2 s.
+    fn driven() -> Scene {
+        let mut scene = open::from_template("straight", 3).expect("a template");
+        let key = |time_s: f64, x: f64| Key {
+            time_s,
+            at_m: glam::DVec2::new(x, 0.5),
+            yaw_deg: 4.0 * x,
+        };
+        scene.change_clip(|clip| {
+            clip.length_s = 2.0;
+            clip.ego = Some(Motion::Keys(vec![key(0.0, 0.0), key(2.0, 8.0)]));
+        });
+        scene
+    }
+
+    #[test]
+    fn a_rig_that_stands_in_the_world_is_not_put_there_again() {
+        let scene = driven().at(2.0);
+        let once = scene.with_rig_in_world();
+        assert_ne!(once.rig, scene.rig);
+        assert_eq!(once.with_rig_in_world().rig, once.rig);
+        let seen = super::seen(&scene);
+        assert_eq!(super::seen(&once), seen);
+        // The returns are those of the sweep that files get.
+        let returns = seen.lidar_returns.expect("a LiDAR");
+        assert!(returns.values().sum::<u32>() > 100, "{returns:?}");
+        let at = scene.frame().world_from_ego.translation_m;
+        let near = scene
+            .frame()
+            .boxes
+            .values()
+            .filter(|b| b.center_m.distance(at) < 12.0);
+        let near: Vec<_> = near.filter(|b| b.size_m.z > 1.2).collect();
+        assert!(near.iter().any(|b| returns.contains_key(&b.id)), "{near:?}");
     }
 }

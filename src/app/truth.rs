@@ -23,7 +23,7 @@ pub fn each_camera(
         bail!("the rig {:?} has no camera", scene.rig.name);
     }
     bounds::check(size, BYTES_PER_PIXEL, 0)?;
-    let appearance = Appearance::new(input.frame, input.rig, &input.conditions);
+    let appearance = Appearance::with_things(input.frame, input.background, input.rig, &input.conditions);
     let later = next_frame(scene);
     for (i, camera) in scene.rig.cameras.iter().enumerate() {
         let next = later.as_ref().map(|later| NextMoment {
@@ -46,8 +46,7 @@ fn next_frame(scene: &Scene) -> Option<Scene> {
         return None;
     }
     let mut later = scene.at(time_s);
-    let (now, then) = (scene.frame().world_from_ego, later.frame().world_from_ego);
-    later.rig = scene.rig.placed(&(then * now.inverse())).into();
+    later.rig = scene.rig.standing_at(&later.frame().world_from_ego).into();
     Some(later)
 }
 

@@ -21,7 +21,7 @@ impl Scene {
     pub fn in_ego(&self) -> Cow<'_, Scene> {
         let frame = self.frame();
         let pose = frame.world_from_ego;
-        if pose == Pose::IDENTITY {
+        if pose == Pose::IDENTITY && self.rig.vehicle == pose {
             return match self.clip().is_still() {
                 true => Cow::Borrowed(self),
                 false => Cow::Owned(self.still()),
@@ -32,6 +32,9 @@ impl Scene {
             false => Extent::new([-REACH; 2], [2 * REACH as usize; 2]).unwrap_or(Extent::WINDOW),
         };
         let mut scene = self.still();
+        if scene.rig.vehicle != Pose::IDENTITY {
+            scene.rig = Arc::new(scene.rig.standing_at(&Pose::IDENTITY));
+        }
         scene.background = Arc::new(self.background.in_frame(&pose.inverse()));
         scene.roads = Arc::new(self.roads.in_frame(&pose.inverse()));
         scene.change_canvas(|canvas| *canvas = in_ego(frame, extent));
@@ -51,16 +54,16 @@ impl Scene {
     }
 
     /// The scene with its sensors where the ego vehicle is, in the world frame: what cameras and LiDARs are computed from.
-    /// Itself if the vehicle is at the origin.
+    /// Itself if the vehicle is at the origin. Of a scene whose sensors are in the world already it is the same again.
     pub fn with_rig_in_world(&self) -> Cow<'_, Scene> {
         let pose = self.frame().world_from_ego;
         let moving = self.clip().ego_moving(self.time_s());
         let rolls = self.rig.ego_speed_mps != 0.0 && self.rig.cameras.iter().any(|c| c.shutter.is_some());
-        if pose == Pose::IDENTITY && moving.is_none() && !rolls {
+        if pose == self.rig.vehicle && moving.is_none() && !rolls {
             return Cow::Borrowed(self);
         }
         let mut scene = self.clone();
-        let mut rig = self.rig.placed(&pose);
+        let mut rig = self.rig.standing_at(&pose);
         if let Some(moving) = moving {
             rig.ego_speed_mps = moving.velocity_mps.length();
         }
@@ -272,6 +275,9 @@ impl Edit {
             Self::AddThings { forms } => Self::AddThings {
                 forms: forms.iter().map(|f| f.in_frame(pose)).collect(),
             },
+            Self::DrawScenery { forms } => Self::DrawScenery {
+                forms: forms.iter().map(|f| f.in_frame(pose)).collect(),
+            },
             Self::ChangeThing { id, form } => Self::ChangeThing {
                 id,
                 form: form.in_frame(pose),
@@ -437,5 +443,30 @@ mod tests {
         let outline = square.in_frame(&pose, here, map);
         assert_eq!(moved.cells(map), outline.cells(map));
         assert_eq!(moved.cells(map).expect("some").len(), cells.len());
+    }
+
+    #[test]
+    fn a_rig_is_put_where_the_vehicle_is_once() {
+        let scene = world();
+        let once = scene.with_rig_in_world().into_owned();
+        let twice = once.with_rig_in_world();
+        assert_ne!(once.rig, scene.rig);
+        assert_eq!(twice.rig, once.rig);
+        assert_eq!(once.rig.vehicle, scene.frame().world_from_ego);
+        // From there to another moment's place, and home again.
+        let there = Pose::planar(-3.0, 8.0, 0.4);
+        let [direct, over] = [&scene.rig, &once.rig].map(|rig| rig.standing_at(&there));
+        let home = over.standing_at(&Pose::IDENTITY);
+        for (a, b) in [(&direct, &over), (&*scene.rig, &home)] {
+            for (a, b) in a.cameras.iter().zip(&b.cameras) {
+                let [a, b] = [a, b].map(crate::Camera::ego_from_camera);
+                assert!(a.translation_m.distance(b.translation_m) < 1e-9);
+                assert!(a.rotation.angle_between(b.rotation) < 1e-6);
+            }
+        }
+        // In the ego frame the sensors are on the vehicle again.
+        assert_eq!(once.in_ego().rig.vehicle, Pose::IDENTITY);
+        let [a, b] = [&once, &scene].map(|s| s.in_ego().rig.lidars[0].ego_from_sensor());
+        assert!(a.translation_m.distance(b.translation_m) < 1e-9);
     }
 }

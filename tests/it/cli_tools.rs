@@ -14,7 +14,7 @@ use app::open;
 use editor::Edit;
 use formats::loom;
 use scene::{BoxId, Class, Form, Scene, Window};
-use sensors::lidar;
+use sensors::rolling;
 
 fn sceneloom(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_sceneloom"))
@@ -215,7 +215,7 @@ fn lidar_files_hold_the_sweep() {
     let dir = Folder::new();
     let scene = world();
     let path = dir.save("a.loom", &scene);
-    let sweep = lidar::rig_sweep(&scene.frame().occupancy, &scene.rig).expect("a LiDAR");
+    let sweep = rolling::exact(&scene);
     let written = export(&path, "ply", &dir.path("cloud.ply"), &[]);
     let found = ply(&std::fs::read(&written[0]).expect("there"));
     assert_eq!(found["x"].len(), sweep.points.len());

@@ -7,7 +7,10 @@ from importlib.metadata import version
 
 del sys.path[0]  # this file is called like the package
 
+import matplotlib
 import numpy as np
+
+matplotlib.use("Agg")
 from nuscenes.map_expansion.map_api import NuScenesMap
 from nuscenes.nuscenes import NuScenes
 from nuscenes.utils.data_classes import LidarPointCloud
@@ -74,6 +77,26 @@ def check_sample(nusc, sample, read):
     read["boxes"] += len(sample["anns"])
 
 
+def check_lanes(expansion, poses, read):
+    """Every lane has an area and a path, leads into lanes that begin where it ends, and one is under the vehicle."""
+    lanes = expansion.lane + expansion.lane_connector
+    gaps = [0.0]
+    for lane in lanes:
+        token = lane["token"]
+        expect(expansion.extract_polygon(lane["polygon_token"]).is_valid, f"lane {token}: its area is not valid")
+        path = expansion.discretize_lanes([token], 1.0)[token]
+        expect(len(path) > 0, f"lane {token} has no path")
+        end = expansion.get_arcline_path(token)[-1]["end_pose"]
+        for other in expansion.get_outgoing_lane_ids(token):
+            expect(token in expansion.get_incoming_lane_ids(other), f"lane {other} does not know {token}")
+            start = expansion.get_arcline_path(other)[0]["start_pose"]
+            gaps.append(float(np.hypot(end[0] - start[0], end[1] - start[1])))
+    expect(max(gaps) < 1.0, f"{max(gaps)} m between a lane and the next")
+    near = [bool(expansion.get_closest_lane(x, y, radius=3)) for x, y in poses[:, :2]]
+    read["lanes"], read["lane_connectors"] = len(expansion.lane), len(expansion.lane_connector)
+    read["lane_links"], read["poses_near_a_lane"] = len(gaps) - 1, round(float(np.mean(near)), 3)
+
+
 def check_map(nusc, read):
     log = nusc.get("log", nusc.scene[0]["log_token"])
     record = nusc.get("map", log["map_token"])
@@ -93,6 +116,9 @@ def check_map(nusc, read):
     layers = ["drivable_area", "walkway", "ped_crossing"]
     masks = expansion.get_map_mask((width / 2, height / 2, height, width), 0, layers, (int(height * 2), int(width * 2)))
     read["map_mask_share"] = {name: round(float(m.mean()), 3) for name, m in zip(layers, masks)}
+    check_lanes(expansion, poses, read)
+    # The picture of the map with the poses on it: it makes a number of the scene's name.
+    expansion.render_egoposes_on_fancy_map(nusc, scene_tokens=[nusc.scene[0]["token"]], verbose=False)
     x, y = poses[0, :2]
     read["layers_under_ego"] = sorted(name for name, token in expansion.layers_on_point(x, y).items() if token)
 
@@ -112,7 +138,7 @@ def main():
         count = len(nusc.field2token("sample_annotation", "instance_token", instance["token"]))
         expect(count == instance["nbr_annotations"], f"instance {instance['token']}: {count} boxes")
     check_map(nusc, read)
-    print(json.dumps({"reader": "nuscenes-devkit", "version": version("nuscenes-devkit"), "accepted": True, "read": read}))
+    print(json.dumps({"reader": "nuscenes-devkit", "version": version("nuscenes-devkit"), "accepted": True, "figure": f"{read['lanes']} lanes, {read['lane_links']} links, {read['poses_near_a_lane']:.0%} of the poses on one", "read": read}))
 
 
 main()

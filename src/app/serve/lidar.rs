@@ -10,6 +10,7 @@ use crate::wire::{LidarDeviceType, LidarRenderRequest, LidarRenderReturn};
 use scene::{LidarPattern, Pose, Scene, SensorRig};
 use sensors::learned::{self, Drops};
 use sensors::lidar;
+use sensors::shaped::onto_shapes;
 
 /// Parts of a spin. While one of them is swept, things stand still and the LiDAR moves on straight.
 const PARTS: u32 = 8;
@@ -102,11 +103,12 @@ impl Spin<'_> {
             let frame = moment::frame(self.scene, &self.span, share, &self.placed)?;
             let rig = self.rig(share, shares[1], [from, to - from]);
             let grid = &frame.occupancy;
-            let sweep = match &renderer.net {
+            let mut sweep = match &renderer.net {
                 Some(net) => learned::rig_sweep(net, grid, &rig, Drops::Likely)
                     .map_err(|e| Status::internal(format!("the LiDAR network: {e}")))?,
                 None => lidar::rig_sweep(grid, &rig).unwrap_or_default(),
             };
+            onto_shapes(&mut sweep, &frame, &rig, self.scene.seed);
             for point in &sweep.points {
                 let p = DVec3::from_array(point.position_in_ego.map(f64::from));
                 let p = end_from_world.apply(p).as_vec3();

@@ -106,6 +106,9 @@ pub struct SceneRow {
     /// What happens, in words.
     #[serde(default)]
     pub description: String,
+    /// Not in the schema: what the scene is called. Only in folders that Sceneloom wrote.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
 }
 
 /// A key frame.

@@ -70,7 +70,7 @@ pub fn picture_pair(
     let poses = poses(&frame, &mut draw);
     PicturePair {
         moments: poses.map(|pose| {
-            let rig = SensorRig::default().placed(&pose);
+            let rig = SensorRig::default().standing_at(&pose);
             seen(&frame, &teller, &conditions, &rig, look)
         }),
         dense: frame.occupancy,

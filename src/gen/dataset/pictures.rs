@@ -47,7 +47,7 @@ pub fn picture_frame(
         world.boxes.clone(),
         complete(&world, Vertical::Occ3d),
     );
-    let rig = SensorRig::default().placed(&ego_pose(&frame));
+    let rig = SensorRig::default().standing_at(&ego_pose(&frame));
     let mut draw = Draw::new(seed, "pictures");
     let time = TimeOfDay::ALL[draw.weighted(&[0.15, 0.5, 0.15, 0.2])];
     let weather = Weather::ALL[draw.weighted(&[0.4, 0.2, 0.2, 0.08, 0.08, 0.04])];

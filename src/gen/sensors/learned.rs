@@ -96,10 +96,10 @@ impl<'a> Centred<'a> {
             return Self { rig, from_map: by };
         }
         let moved = Pose {
-            translation_m: by.way_m().extend(0.0),
-            ..Pose::IDENTITY
+            translation_m: rig.vehicle.translation_m + by.way_m().extend(0.0),
+            ..rig.vehicle
         };
-        let rig = Cow::Owned(rig.placed(&moved));
+        let rig = Cow::Owned(rig.standing_at(&moved));
         Self { rig, from_map: by }
     }
 

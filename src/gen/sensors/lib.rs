@@ -32,6 +32,7 @@ pub mod raycast;
 pub mod rays;
 pub mod road_exits;
 pub mod rolling;
+pub mod shaped;
 pub mod splat;
 pub mod surroundings;
 mod texture;

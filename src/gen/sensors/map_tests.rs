@@ -285,7 +285,7 @@ fn a_learned_sweep_is_around_the_vehicle() {
     let here = learned::rig_sweep(&net, &grid, &rig, Drops::Keep).expect("finite");
     let by = scene::moved::Columns([300, -175]);
     let way_m = by.way_m().extend(0.0);
-    let there = rig.placed(&scene::Pose {
+    let there = rig.standing_at(&scene::Pose {
         translation_m: way_m,
         ..scene::Pose::IDENTITY
     });

@@ -115,14 +115,19 @@ impl Heard {
 
     fn seeing(scene: &Scene, pictures: Option<&[Arc<CameraImage>]>) -> Result<Self, PaintError> {
         let placed = scene.with_rig_in_world();
-        let sweep = rolling::exact(&placed);
+        let sweep = rolling::of_voxels(&placed);
         let to_vehicle = scene.frame().world_from_ego.inverse();
         let returns = sweep.points.iter().map(|point| {
             let at = to_vehicle.apply(glam::Vec3::from(point.position_in_ego).as_dvec3());
             let [x, y, z] = at.as_vec3().to_array();
             [x, y, z, point.intensity]
         });
-        let appearance = Appearance::new(placed.frame(), &placed.rig, &placed.conditions);
+        let appearance = Appearance::with_things(
+            placed.frame(),
+            &placed.background,
+            &placed.rig,
+            &placed.conditions,
+        );
         let look = |(i, camera): (usize, &Camera)| {
             let seen = Perceived::of(&appearance, placed.frame(), camera)?;
             match pictures.and_then(|pictures| pictures.get(i)) {

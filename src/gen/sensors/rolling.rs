@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::learned::{self, Drops};
 use super::lidar;
+use super::shaped::onto_shapes;
 use nets::ModelError;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene, SceneBox};
@@ -15,18 +16,31 @@ const PARTS: u32 = 8;
 /// What of a label sticks out of its box, m: a voxel.
 const AROUND_M: f64 = 0.4;
 
-/// The exact sweep of a scene's first LiDAR ([`lidar::rig_sweep`]), as [`sweep`] makes it; empty if the rig has none.
+/// The exact sweep of a scene's first LiDAR ([`lidar::rig_sweep`]) with returns on the shapes of boxes ([`onto_shapes`]), as
+/// [`sweep`] makes it; empty if the rig has none.
 pub fn exact(scene: &Scene) -> LidarSweep {
+    let made: Result<_, std::convert::Infallible> = sweep(scene, |s| {
+        let mut sweep = lidar::rig_sweep(&s.frame().occupancy, &s.rig).unwrap_or_default();
+        onto_shapes(&mut sweep, s.frame(), &s.rig, s.seed);
+        Ok(sweep)
+    });
+    made.unwrap_or_default()
+}
+
+/// The same of the voxels alone: what the networks of perception learned from.
+pub fn of_voxels(scene: &Scene) -> LidarSweep {
     let whole = |s: &Scene| lidar::rig_sweep(&s.frame().occupancy, &s.rig).unwrap_or_default();
     let made: Result<_, std::convert::Infallible> = sweep(scene, |s| Ok(whole(s)));
     made.unwrap_or_default()
 }
 
-/// The learned sweep ([`learned::rig_sweep`]), as [`sweep`] makes it; empty if the rig has no LiDAR. Errors if the network
-/// cannot compute.
+/// The learned sweep ([`learned::rig_sweep`]) with echoes on the shapes of boxes, as [`sweep`] makes it; empty if the rig has no
+/// LiDAR. Errors if the network cannot compute.
 pub fn learned(net: &LidarNet, scene: &Scene, drops: Drops) -> Result<LidarSweep, ModelError> {
     sweep(scene, |s| {
-        learned::rig_sweep(net, &s.frame().occupancy, &s.rig, drops)
+        let mut sweep = learned::rig_sweep(net, &s.frame().occupancy, &s.rig, drops)?;
+        onto_shapes(&mut sweep, s.frame(), &s.rig, s.seed);
+        Ok(sweep)
     })
 }
 
@@ -79,11 +93,7 @@ pub fn sweep<E>(
 /// The scene at another moment, its rig on the vehicle there.
 fn at(scene: &Scene, time_s: f64) -> Scene {
     let mut then = scene.at(time_s.max(0.0));
-    let (now, pose) = (scene.frame().world_from_ego, then.frame().world_from_ego);
-    let mut rig = match now == pose {
-        true => (*scene.rig).clone(),
-        false => scene.rig.placed(&(pose * now.inverse())),
-    };
+    let mut rig = scene.rig.standing_at(&then.frame().world_from_ego);
     if let Some(moving) = then.clip().ego_moving(then.time_s()) {
         rig.ego_speed_mps = moving.velocity_mps.length();
     }
@@ -263,7 +273,7 @@ mod tests {
         let mut scene = scene(0.0, 0.0).still();
         scene.rig = Arc::new(SensorRig::default());
         let plain = lidar::rig_sweep(&scene.frame().occupancy, &scene.rig).expect("a LiDAR");
-        let told = exact(&scene);
+        let told = of_voxels(&scene);
         let bare = |p: &scene::LidarPoint| (p.position_in_ego, p.range_m, p.ring, p.azimuth, p.class);
         assert!(plain.points.iter().map(bare).eq(told.points.iter().map(bare)));
         assert_eq!(plain.rays, told.rays);

@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use scene::{BoxId, Class, Scene, SceneBox, TimeOfDay, Weather};
 
 use super::Writing;
-use super::sensors::Visible;
-use crate::export::Seen;
+use super::sensors::{Sighted, Visible};
 use crate::nuscenes::tables::{Attribute, Instance, SampleAnnotation, Visibility};
 use crate::nuscenes::tokens::Tokens;
 use crate::nuscenes::{categories, wxyz};
@@ -67,7 +66,7 @@ impl Annotations {
         writing: &mut Writing<'_>,
         key_frame: usize,
         now: &Scene,
-        (seen, visible): (&Seen, &Visible),
+        seen: &Sighted,
     ) {
         let frame = now.frame();
         for b in frame.boxes.values() {
@@ -81,21 +80,20 @@ impl Annotations {
             let may_move = is_track || now.clip().stands();
             let attributes =
                 attribute(b, is_track, may_move).map(|i| writing.tokens.token("attribute", i as u64));
-            let returns = seen.lidar_returns.as_ref().and_then(|n| n.get(&b.id));
             let row = SampleAnnotation {
                 token: writing
                     .tokens
                     .token("sample_annotation", (key_frame as u64) << 32 | id),
                 sample_token: writing.sample_token(key_frame),
                 instance_token: writing.tokens.token("instance", id),
-                visibility_token: (1 + bin(visible, b.id)).to_string(),
+                visibility_token: (1 + bin(&seen.visible, b.id)).to_string(),
                 attribute_tokens: attributes.into_iter().collect(),
                 translation: writing.global(b.center_m),
                 size: [b.size_m.y, b.size_m.x, b.size_m.z],
                 rotation: wxyz(glam::DQuat::from_rotation_z(b.yaw_rad)),
                 prev: String::new(),
                 next: String::new(),
-                num_lidar_pts: returns.copied().unwrap_or(0),
+                num_lidar_pts: seen.returns.get(&b.id).copied().unwrap_or(0),
                 num_radar_pts: 0,
             };
             writing.tables.sample_annotation.push(row);

@@ -1,22 +1,22 @@
-//! The map expansion (`nuscenes.map_expansion`, version 1.3): areas from the layers of the map, dividers from its lines.
-//! Lanes, road blocks and traffic lights are empty: the scene has none.
+//! The map expansion (`nuscenes.map_expansion`, version 1.3): areas from the layers of the map, dividers from its lines, lanes,
+//! ways through junctions and what leads into what from its road graph. Road blocks and traffic lights are empty.
+
+use std::collections::BTreeMap;
 
 use glam::DVec2;
+use scene::raster::polygon_cells;
 use scene::{BevLayer, BevLayout, PolylineKind};
 use serde_json::{Map, Value, json};
 
 use super::outline::{Area, areas};
 use crate::FormatError;
 use crate::nuscenes::tokens::Tokens;
+use crate::opendrive::write::lane_graph::{GraphLane, lane_graph, outline};
 
 /// Layers that the devkit expects to be there.
-const EMPTY: [&str; 5] = [
-    "road_segment",
-    "road_block",
-    "lane",
-    "lane_connector",
-    "traffic_light",
-];
+const EMPTY: [&str; 2] = ["road_block", "traffic_light"];
+/// Radius that a straight piece of a path is given, m; none of it is an arc.
+const STRAIGHT_M: f64 = 1000.0;
 
 /// The file. `shift_m` leads from the world frame to the global frame.
 pub(super) fn to_bytes(layout: &BevLayout, shift_m: DVec2, tokens: &Tokens) -> Result<Vec<u8>, FormatError> {
@@ -35,10 +35,7 @@ pub(super) fn to_bytes(layout: &BevLayout, shift_m: DVec2, tokens: &Tokens) -> R
     for layer in EMPTY {
         file.insert(layer.into(), json!([]));
     }
-    // Paths and connections of lanes.
-    file.insert("arcline_path_3".into(), json!({}));
-    file.insert("connectivity".into(), json!({}));
-
+    out.lanes(layout, &mut file);
     let of = |layer: BevLayer| areas(extent, |x, y| layout.has(layer, x, y));
     let drivable: Vec<String> = of(BevLayer::DrivableArea)
         .iter()
@@ -123,19 +120,120 @@ impl Expansion<'_> {
         token
     }
 
-    fn divider(&mut self, layer: &str, index: usize, points_m: &[DVec2]) -> Value {
+    /// Lanes, ways through junctions, their paths and what leads into what; roads and junctions as segments.
+    fn lanes(&mut self, layout: &BevLayout, file: &mut Map<String, Value>) {
+        let lanes = lane_graph(layout);
+        let token = |(i, lane): (usize, &GraphLane)| self.tokens.token(layer_of(lane), i as u64);
+        let tokens: Vec<String> = lanes.iter().enumerate().map(token).collect();
+        let named = |places: &[usize]| -> Vec<&String> { places.iter().map(|i| &tokens[*i]).collect() };
+        let (mut paths, mut connectivity) = (Map::new(), Map::new());
+        let (mut rows, mut connectors) = (Vec::new(), Vec::new());
+        for (lane, token) in lanes.iter().zip(&tokens) {
+            paths.insert(token.clone(), path(&lane.middle_m, self.shift_m));
+            let leads = json!({"incoming": named(&lane.incoming), "outgoing": named(&lane.outgoing)});
+            connectivity.insert(token.clone(), leads);
+            let polygon = self.polygon(&Area {
+                outside: outline(&lane.sides_m),
+                holes: Vec::new(),
+            });
+            if lane.junction.is_some() {
+                connectors.push(json!({"token": token, "polygon_token": polygon}));
+                continue;
+            }
+            let [left, right] = &lane.sides_m;
+            let edges = [
+                (left[0], right[0]),
+                (left[left.len() - 1], right[right.len() - 1]),
+            ];
+            let [from, to] = edges.map(|(a, b)| self.line(&[a, b]).0);
+            let [left, right] = [left, right].map(|side| segments(&self.points(side)));
+            rows.push(json!({
+                "token": token, "polygon_token": polygon, "lane_type": "CAR", "from_edge_line_token": from,
+                "to_edge_line_token": to, "left_lane_divider_segments": left, "right_lane_divider_segments": right
+            }));
+        }
+        file.insert("lane".into(), rows.into());
+        file.insert("lane_connector".into(), connectors.into());
+        file.insert("arcline_path_3".into(), paths.into());
+        file.insert("connectivity".into(), connectivity.into());
+        let segments = self.road_segments(layout, &lanes);
+        file.insert("road_segment".into(), segments.into());
+    }
+
+    /// A segment for each road and each junction: the paved cells that its lanes cover.
+    fn road_segments(&mut self, layout: &BevLayout, lanes: &[GraphLane]) -> Vec<Value> {
+        let extent = layout.extent();
+        let mut covered: BTreeMap<(bool, u32), Vec<usize>> = BTreeMap::new();
+        for lane in lanes {
+            let of = lane
+                .junction
+                .map_or((false, lane.road), |junction| (true, junction));
+            let cells = covered.entry(of).or_default();
+            polygon_cells(extent, &outline(&lane.sides_m), |x, y| {
+                if layout.has(BevLayer::DrivableArea, x, y) {
+                    cells.push(extent.index(x, y));
+                }
+            });
+        }
+        let drivable = self.tokens.token("drivable_area", 0);
+        let mut rows = Vec::new();
+        for ((is_intersection, _), cells) in covered {
+            let mut covers = vec![false; extent.columns()];
+            cells.into_iter().for_each(|at| covers[at] = true);
+            for area in areas(extent, |x, y| covers[extent.index(x, y)]) {
+                rows.push(json!({
+                    "token": self.tokens.token("road_segment", rows.len() as u64),
+                    "polygon_token": self.polygon(&area), "is_intersection": is_intersection,
+                    "drivable_area_token": drivable
+                }));
+            }
+        }
+        rows
+    }
+
+    /// A line, and its nodes.
+    fn line(&mut self, points_m: &[DVec2]) -> (String, Vec<String>) {
         let nodes = self.points(points_m);
         let line = self.tokens.token("line", self.lines.len() as u64);
-        let segment = |node: &String| json!({"node_token": node, "segment_type": "NIL"});
-        let segments: Vec<Value> = nodes.iter().map(segment).collect();
         self.lines.push(json!({"token": line, "node_tokens": nodes}));
+        (line, nodes)
+    }
+
+    fn divider(&mut self, layer: &str, index: usize, points_m: &[DVec2]) -> Value {
+        let (line, nodes) = self.line(points_m);
         let mut row = json!({"token": self.tokens.token(layer, index as u64), "line_token": line});
         match layer {
             "road_divider" => row["road_segment_token"] = "".into(),
-            _ => row["lane_divider_segments"] = segments.into(),
+            _ => row["lane_divider_segments"] = segments(&nodes),
         }
         row
     }
+}
+
+fn layer_of(lane: &GraphLane) -> &'static str {
+    match lane.junction {
+        Some(_) => "lane_connector",
+        None => "lane",
+    }
+}
+
+/// Points of a divider whose paint nobody knows.
+fn segments(nodes: &[String]) -> Value {
+    let segment = |node: &String| json!({"node_token": node, "segment_type": "NIL"});
+    nodes.iter().map(segment).collect()
+}
+
+/// A line as pieces of the devkit's paths, each of three arcs of which the middle one alone has a length, and is straight.
+fn path(points_m: &[DVec2], shift_m: DVec2) -> Value {
+    let piece = |pair: &[DVec2]| {
+        let [from, to] = [pair[0] + shift_m, pair[1] + shift_m];
+        let yaw_rad = (to - from).to_angle();
+        json!({
+            "start_pose": [from.x, from.y, yaw_rad], "end_pose": [to.x, to.y, yaw_rad], "shape": "LSL",
+            "radius": STRAIGHT_M, "segment_length": [0.0, from.distance(to), 0.0]
+        })
+    };
+    points_m.windows(2).map(piece).collect()
 }
 
 #[cfg(test)]
@@ -155,8 +253,11 @@ mod tests {
             let node = nodes.iter().find(|n| n["token"] == *token).expect("there");
             [&node["x"], &node["y"]].map(|v| v.as_f64().expect("a number"))
         };
-        let line = &file["line"][1];
-        assert_eq!(file["lane_divider"][0]["line_token"], line["token"]);
+        let lines = file["line"].as_array().expect("lines").iter();
+        let line = lines
+            .clone()
+            .find(|l| l["token"] == file["lane_divider"][0]["line_token"]);
+        let line = line.expect("there");
         assert_eq!(node(&line["node_tokens"][0]), [10.0, 41.5]);
         assert_eq!(node(&line["node_tokens"][1]), [70.0, 41.5]);
         let drivable = file["drivable_area"][0]["polygon_tokens"]
@@ -171,5 +272,44 @@ mod tests {
         for layer in EMPTY {
             assert_eq!(file[layer], json!([]));
         }
+    }
+
+    #[test]
+    fn lanes_of_the_road_graph_are_lanes_with_paths_that_go_on_in_each_other() {
+        let layout = crate::opendrive::write::lane_graph::star(&[[-45.0, 0.0], [45.0, 3.0], [4.0, 45.0]]);
+        let tokens = Tokens::of(&clip_scene(1));
+        let bytes = to_bytes(&layout, DVec2::new(40.0, 40.0), &tokens).expect("finite");
+        let file: Value = serde_json::from_slice(&bytes).expect("JSON");
+        let list = |layer: &str| file[layer].as_array().expect("rows").clone();
+        assert_eq!(list("lane").len(), 6);
+        assert!(list("lane_connector").len() >= 4);
+        let polygons: Vec<Value> = list("polygon").iter().map(|p| p["token"].clone()).collect();
+        let point = |pose: &Value| [0, 1].map(|i| pose[i].as_f64().expect("a number"));
+        let mut led = 0;
+        for row in list("lane").iter().chain(&list("lane_connector")) {
+            let token = row["token"].as_str().expect("a token");
+            assert!(polygons.contains(&row["polygon_token"]));
+            let path = file["arcline_path_3"][token].as_array().expect("a path");
+            for pair in path.windows(2) {
+                assert_eq!(point(&pair[0]["end_pose"]), point(&pair[1]["start_pose"]));
+            }
+            let end = point(&path[path.len() - 1]["end_pose"]);
+            for next in file["connectivity"][token]["outgoing"]
+                .as_array()
+                .expect("tokens")
+            {
+                let next = next.as_str().expect("a token");
+                let start = point(&file["arcline_path_3"][next][0]["start_pose"]);
+                assert!(
+                    (end[0] - start[0]).hypot(end[1] - start[1]) < 1.0,
+                    "{end:?} {start:?}"
+                );
+                led += 1;
+            }
+        }
+        assert!(led >= 8, "{led}");
+        let segments = list("road_segment");
+        let crossing = segments.iter().filter(|s| s["is_intersection"] == true).count();
+        assert!(crossing == 1 && segments.len() >= 4, "{segments:?}");
     }
 }

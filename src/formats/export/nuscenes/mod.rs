@@ -35,7 +35,7 @@ pub const EXPORTER: Exporter = Exporter {
            stands still, slopes of the ground, beams of the LiDAR and further LiDARs, distortion and shutters of cameras, size of the own vehicle; voxels, map \
            and scenery are inferred anew from the LiDAR",
     span: Span::Clip,
-    needs: &[Product::Seen, Product::Sweep, Product::Truth],
+    needs: &[Product::Sweep, Product::Truth],
     write,
 };
 
@@ -48,6 +48,9 @@ const DATE: &str = "2020-09-13";
 const VEHICLE: &str = "sceneloom";
 /// The one of the devkit's four places with traffic on the right. Its map API refuses other names.
 const LOCATION: &str = "boston-seaport";
+
+/// Name of the split of `splits.json` that the scene is in.
+const SPLIT: &str = "all";
 
 /// All rows.
 #[derive(Default)]
@@ -97,8 +100,8 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
         if let Some(problem) = now.frame().boxes.values().find_map(SceneBox::problem) {
             return Err(FormatError::new(problem));
         }
-        let visible = sensors.key_frame(&mut writing, products, &sample, &now)?;
-        boxes.key_frame(&mut writing, i, &now, (&products.seen()?, &visible));
+        let seen = sensors.key_frame(&mut writing, products, &sample, &now)?;
+        boxes.key_frame(&mut writing, i, &now, &seen);
         let neighbour = |other: Option<usize>| {
             other
                 .filter(|i| *i < times_s.len())
@@ -173,10 +176,17 @@ impl Writing<'_> {
             nbr_samples: tables.sample.len() as u64,
             first_sample_token: first,
             last_sample_token: last,
-            name: self.scene.name.to_string(),
+            name: scene_name(&self.tokens),
             description: annotations::description(self.scene),
+            title: Some(self.scene.name.to_string()).filter(|title| !title.is_empty()),
         };
+        let splits = serde_json::json!({ SPLIT: [&scene.name] });
         self.table("scene", &[scene])?;
+        self.file(
+            VERSION,
+            "splits.json",
+            serde_json::to_vec(&splits).map_err(FormatError::new)?,
+        );
         let row = Log {
             token: log.clone(),
             logfile: log_name(self.scene),
@@ -219,6 +229,13 @@ impl Writing<'_> {
         }
         Ok(self.files)
     }
+}
+
+/// Scenes are called `scene-` and four digits; the devkit makes a number of them. Those of the data set end at 1110.
+fn scene_name(tokens: &Tokens) -> String {
+    let token = tokens.token("scene", 0);
+    let number = u64::from_str_radix(&token[..12], 16).unwrap_or(0);
+    format!("scene-{}", 2000 + number % 8000)
 }
 
 /// What the recording is called: in the names of files, too.

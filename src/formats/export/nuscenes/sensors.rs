@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use scene::{BoxId, LidarSweep, Scene};
+use glam::DVec3;
+use scene::{BoxId, LidarPoint, LidarSweep, Returns, Scene, SceneBox};
 
 use super::{Writing, log_name, timestamp_us};
 use crate::export::{Picture, Products, nuscenes_lidar};
@@ -16,6 +17,8 @@ use crate::{FormatError, jpeg, physical};
 const SWEEP_S: f64 = 0.1;
 /// Longest clip with sweeps between its key frames, s: those of a minute are 400 MB.
 const LONGEST_S: f64 = 60.0;
+/// How far off the faces of boxes returns are kept, m.
+const OFF_FACE_M: f64 = 1e-3;
 /// Bits of a token's number that count what a sensor measured.
 const COUNT_BITS: u64 = 32;
 
@@ -32,6 +35,14 @@ pub(super) struct Sensors {
 
 /// Share of each box that cameras see of what they would see if nothing stood in front, 0 to 1, all cameras together.
 pub(super) type Visible = BTreeMap<BoxId, f64>;
+
+/// What a key frame shows of its boxes.
+#[derive(Default)]
+pub(super) struct Sighted {
+    /// Returns of the sweep as it is written that lie in each box, those with any.
+    pub(super) returns: BTreeMap<BoxId, u32>,
+    pub(super) visible: Visible,
+}
 
 /// A file of a sensor.
 struct Measured<'a> {
@@ -77,16 +88,21 @@ impl Sensors {
         }
     }
 
-    /// Sweep and pictures of a key frame. Returns how much of each box the cameras see.
+    /// Sweep and pictures of a key frame. Returns what they show of each box.
     pub(super) fn key_frame(
         &mut self,
         writing: &mut Writing<'_>,
         products: &mut dyn Products,
         sample: &str,
         now: &Scene,
-    ) -> Result<Visible, FormatError> {
+    ) -> Result<Sighted, FormatError> {
+        let mut seen = Sighted::default();
         if self.has_lidar {
             let sweep = sweep(now, products)?;
+            let pose = now.frame().world_from_ego;
+            let in_world = |p: &LidarPoint| pose.apply(DVec3::from_array(p.position_in_ego.map(f64::from)));
+            let returns = Returns::new(sweep.points.iter().map(in_world));
+            seen.returns = returns.by_box(now.frame().boxes.values());
             let token = self.add_sweep(writing, &sweep, sample, now, true);
             let labels = sweep
                 .points
@@ -101,9 +117,8 @@ impl Sensors {
                 filename,
             });
         }
-        let mut visible = Visible::new();
         if now.rig.cameras.is_empty() {
-            return Ok(visible);
+            return Ok(seen);
         }
         // Pixels that show a box, and those that would if nothing stood in front.
         let mut pixels: BTreeMap<BoxId, [f64; 2]> = BTreeMap::new();
@@ -115,16 +130,16 @@ impl Sensors {
                 return Ok(());
             };
             next = camera + 1;
-            for seen in &truth.boxes {
-                let [shown, whole] = pixels.entry(seen.of.id).or_default();
-                *shown += seen.visibility * f64::from(seen.whole_px);
-                *whole += f64::from(seen.whole_px);
+            for one in &truth.boxes {
+                let [shown, whole] = pixels.entry(one.of.id).or_default();
+                *shown += one.visibility * f64::from(one.whole_px);
+                *whole += f64::from(one.whole_px);
             }
             self.add_picture(writing, &picture, camera, sample, now)
         })?;
-        let seen = pixels.into_iter().filter(|(_, [_, whole])| *whole > 0.0);
-        visible.extend(seen.map(|(id, [shown, whole])| (id, shown / whole)));
-        Ok(visible)
+        let shown = pixels.into_iter().filter(|(_, [_, whole])| *whole > 0.0);
+        seen.visible = shown.map(|(id, [shown, whole])| (id, shown / whole)).collect();
+        Ok(seen)
     }
 
     /// Sweeps between two key frames, without these.
@@ -253,12 +268,43 @@ impl Sensors {
     }
 }
 
-/// The sweep of the moment that is shown, on the physical ground.
+/// The sweep of the moment that is shown, on the physical ground. No return is on a face of a box: who counts those within
+/// it need not ask how others round.
 fn sweep(now: &Scene, products: &mut dyn Products) -> Result<LidarSweep, FormatError> {
     let mut sweep = products.sweep()?;
     let origin_in_ego = now.rig.lidars[0].ego_from_sensor().translation_m;
     physical::to_physical_ground(&mut sweep, origin_in_ego, now.frame());
+    off_faces(&mut sweep, now);
     Ok(sweep)
+}
+
+/// Moves returns that are on a face of a box a hair out of it: the road under a box that stands on it.
+fn off_faces(sweep: &mut LidarSweep, now: &Scene) {
+    let pose = now.frame().world_from_ego;
+    let boxes: Vec<&SceneBox> = now.frame().boxes.values().collect();
+    let reach_m = |b: &SceneBox| b.size_m.length() / 2.0 + OFF_FACE_M;
+    let reach: Vec<f64> = boxes.iter().map(|b| reach_m(b)).collect();
+    for point in &mut sweep.points {
+        let before = pose.apply(DVec3::from_array(point.position_in_ego.map(f64::from)));
+        let mut at = before;
+        for (b, reach_m) in boxes.iter().zip(&reach) {
+            if at.distance_squared(b.center_m) > reach_m * reach_m {
+                continue;
+            }
+            let (mut local, half) = (b.to_local(at), b.size_m / 2.0);
+            let over = local.abs() - half;
+            let face = (0..3).find(|axis| over[*axis].abs() < OFF_FACE_M / 2.0);
+            if let Some(axis) = face
+                && over.max_element() < OFF_FACE_M / 2.0
+            {
+                local[axis] = (half[axis] + OFF_FACE_M).copysign(local[axis]);
+                at = b.to_ego(local);
+            }
+        }
+        if at != before {
+            point.position_in_ego = pose.inverse().apply(at).as_vec3().to_array();
+        }
+    }
 }
 
 fn intrinsics(camera: &scene::Camera) -> Vec<[f64; 3]> {

@@ -51,7 +51,7 @@ impl Picture {
             ..SensorRig::default()
         };
         let world_from_ego = *world_from_global * self.global_from_ego;
-        let camera = alone.placed(&world_from_ego).cameras.pop()?;
+        let camera = alone.standing_at(&world_from_ego).cameras.pop()?;
         Some((clockwise(cameras, &self.channel)?, camera, self.file.clone()))
     }
 }
@@ -88,6 +88,7 @@ impl PictureFolder {
             bytes: &bytes,
             name: "",
             path: Some(&tables),
+            lift_m: None,
         };
         let (drives, incomplete) = drives(&source).map_err(|e| e.at(&folder.display()))?;
         let found: usize = drives.iter().map(Vec::len).sum();
@@ -116,6 +117,7 @@ impl PictureFolder {
             bytes: &self.bytes,
             name: &scene_name(&self.tables),
             path: Some(&self.tables),
+            lift_m: None,
         };
         let (loaded, recording) = read_drive(&source, which).map_err(|e| e.at(&self.tables.display()))?;
         let scene = loaded.scene;
@@ -127,7 +129,7 @@ impl PictureFolder {
             let (cameras, files) = seen.into_iter().map(|(_, camera, file)| (camera, file)).unzip();
             let rig = SensorRig {
                 cameras,
-                ..scene.rig.placed(&frame.world_from_ego)
+                ..scene.rig.standing_at(&frame.world_from_ego)
             };
             Some(Photographed {
                 time_s: frame.time_s,
@@ -250,7 +252,7 @@ mod tests {
         for (i, moment) in drive.moments.iter().enumerate() {
             assert_eq!(moment.time_s, 0.5 * i as f64);
             let now = scene.at(moment.time_s);
-            let truth = scene.rig.placed(&now.frame().world_from_ego);
+            let truth = scene.rig.standing_at(&now.frame().world_from_ego);
             assert_eq!(moment.rig.cameras.len(), VIEWS);
             for ((camera, file), same) in moment.rig.cameras.iter().zip(&moment.files).zip(&truth.cameras) {
                 assert_eq!(camera.name, same.name, "clockwise, as those of the known vehicle");

@@ -52,7 +52,6 @@ fn scene_of(i: usize) -> anyhow::Result<(String, Scene)> {
 /// way itself, midway between two of the places there.
 fn unseen(scene: &Scene, stands: &[Pose], seed: u64) -> Vec<Camera> {
     let mut draw = Draw::new(seed, "unseen poses");
-    let home = scene.rig.vehicle.inverse();
     let is_free = |pose: &Pose| stands::is_free(scene.frame(), &scene.rig, pose);
     let on_way: Vec<Pose> = bake::between(scene).into_iter().filter(is_free).collect();
     let mut out = Vec::new();
@@ -75,7 +74,7 @@ fn unseen(scene: &Scene, stands: &[Pose], seed: u64) -> Vec<Camera> {
             on_way[draw.below(on_way.len())]
         };
         if !is_beside || stands::fits(scene.frame(), &scene.rig, &pose) {
-            let mut camera = scene.rig.placed(&(pose * home)).cameras[which].clone();
+            let mut camera = scene.rig.standing_at(&pose).cameras[which].clone();
             camera.shutter = None;
             out.push(camera);
         }
@@ -104,7 +103,7 @@ fn judged(i: usize) -> anyhow::Result<Value> {
     // Cameras are in the world.
     baked.place(&scene.frame().world_from_ego);
     let places = bake::places(&scene, &options);
-    let appearance = Appearance::new(scene.frame(), &scene.rig, &scene.conditions);
+    let appearance = Appearance::with_things(scene.frame(), &scene.background, &scene.rig, &scene.conditions);
     let of = |camera: &Camera| {
         let there = appearance.render_plain(camera, SIZE, Quality::Full);
         psnr_db(&there, &draw::render(&baked.gaussians, camera, SIZE))

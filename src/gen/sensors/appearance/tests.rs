@@ -169,7 +169,7 @@ fn places_look_the_same_from_everywhere() {
     }
     let frame = Frame::new(scene::BevLayout::default(), Default::default(), grid);
     let rig = SensorRig::default();
-    let ahead = rig.placed(&Pose::planar(4.0, 0.0, 0.0));
+    let ahead = rig.standing_at(&Pose::planar(4.0, 0.0, 0.0));
     let conditions = of(TimeOfDay::Day, Weather::Clear);
     let (now, then) = (
         Appearance::new(&frame, &rig, &conditions),
@@ -304,7 +304,7 @@ fn bears_anything() {
             Pose::planar(1e9, -1e9, 7.0),
             Pose::planar(f64::NAN, 0.0, 0.0),
         ] {
-            let rig = rig.placed(&pose);
+            let rig = rig.standing_at(&pose);
             for (i, weather) in Weather::ALL.into_iter().enumerate() {
                 let time = TimeOfDay::ALL[i % 4];
                 for image in pictures(&frame, &rig, [23, 17], of(time, weather)) {

@@ -157,10 +157,9 @@ fn is_clear(frame: &Frame, p: DVec2) -> bool {
 /// The rig's cameras on the vehicle at each of these poses, and above every third of them cameras that look down.
 /// `rig` is placed where it is (its `vehicle`).
 pub fn views(rig: &SensorRig, stands: &[Pose]) -> Vec<Camera> {
-    let home = rig.vehicle.inverse();
     let mut out = Vec::new();
     for (i, pose) in stands.iter().enumerate() {
-        out.extend(rig.placed(&(*pose * home)).cameras);
+        out.extend(rig.standing_at(pose).cameras);
         if i % 3 == 0 {
             for k in 0..3 {
                 let mut camera = Camera::new("above", 80.0);

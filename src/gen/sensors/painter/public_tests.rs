@@ -291,7 +291,7 @@ fn surfaces_are_found_again_in_the_frame_before_and_in_the_camera_beside() {
         .filter(|(i, from)| **from == Some(*i as u32));
     assert!(still.count() * 1000 >= same.len() * 999, "nothing moved");
 
-    let ahead_rig = rig.placed(&Pose::planar(1.0, 0.0, 0.02));
+    let ahead_rig = rig.standing_at(&Pose::planar(1.0, 0.0, 0.02));
     let now = Seen::of(&input(&frame, &ahead_rig), &ring);
     let from = pixels_before(&now, &then, 6);
     let known = from.iter().flatten().count();
@@ -327,7 +327,7 @@ fn surfaces_are_found_again_in_the_frame_before_and_in_the_camera_beside() {
 fn a_drive_goes_on_from_what_was_painted() {
     let (frame, ..) = with_and_without_a_car();
     let rig = SensorRig::default();
-    let ahead = rig.placed(&Pose::planar(0.5, 0.0, 0.0));
+    let ahead = rig.standing_at(&Pose::planar(0.5, 0.0, 0.0));
     let paint = |painter: &mut dyn Paint, rig: &SensorRig| {
         let images = painter.paint(&input(&frame, rig), &mut go_on);
         images.expect("pictures")

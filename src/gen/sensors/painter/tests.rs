@@ -1,5 +1,7 @@
 //! Edits change only what they touch; what was painted is found again; odd rigs are painted or refused in one line.
 
+use std::sync::LazyLock;
+
 use super::*;
 use mask::RIM_PX;
 use scene::{BoxId, Camera, Conditions, Frame, Lens, Pose, SensorRig, TimeOfDay, Weather};
@@ -24,9 +26,11 @@ fn painter() -> Painter {
 }
 
 pub(super) fn input<'a>(frame: &'a Frame, rig: &'a SensorRig) -> PaintInput<'a> {
+    static NOTHING: LazyLock<Background> = LazyLock::new(Background::default);
     PaintInput {
         frame,
         rig,
+        background: &NOTHING,
         conditions: Conditions::usual(TimeOfDay::Day, Weather::Clear, 3),
     }
 }
@@ -143,7 +147,7 @@ fn a_drive_goes_on_from_the_frame_before() {
     let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
     let seen = |input: &PaintInput<'_>| Seen::of(input, &ring);
     let then = seen(&here);
-    let moved = |ahead_m: f64, turn_rad: f64| rig.placed(&Pose::planar(ahead_m, 0.0, turn_rad));
+    let moved = |ahead_m: f64, turn_rad: f64| rig.standing_at(&Pose::planar(ahead_m, 0.0, turn_rad));
     let known = |ahead_m: f64, turn_rad: f64| {
         let rig = moved(ahead_m, turn_rad);
         seen(&input(&frame, &rig))
@@ -211,7 +215,7 @@ fn odd_rigs_are_painted_or_refused() {
 fn the_ring_runs_clockwise_and_begins_in_front() {
     // Wherever the vehicle heads: a camera keeps its place while it turns.
     for yaw_rad in [0.0, 0.003, 1.5, 3.0, -3.0, -0.003] {
-        let rig = SensorRig::default().placed(&Pose::planar(20.0, -5.0, yaw_rad));
+        let rig = SensorRig::default().standing_at(&Pose::planar(20.0, -5.0, yaw_rad));
         let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
         assert_eq!(ring.size.pixels(), [144, 256]);
         let names = ring
@@ -278,7 +282,7 @@ fn seconds_of_a_painting() {
 fn noise_goes_along_with_surfaces() {
     let world = World::random(3);
     let frame = frame(&world);
-    let [here, ahead] = [0.0, 1.0].map(|x| SensorRig::default().placed(&Pose::planar(x, 0.0, 0.0)));
+    let [here, ahead] = [0.0, 1.0].map(|x| SensorRig::default().standing_at(&Pose::planar(x, 0.0, 0.0)));
     let run = |noise, hears_before| {
         let options = PaintOptions {
             noise,

@@ -46,11 +46,12 @@ impl Likeness {
         let (world, seed) = world_of(TEST_SEED, index, |_| None);
         let frame = super::frame_of(&world);
         let [pose, _] = poses(&frame, &mut Draw::new(seed, "learned pictures"));
-        let rig = SensorRig::default().placed(&pose);
+        let rig = SensorRig::default().standing_at(&pose);
         let (time, weather) = light_of(light);
         let rendered = Rendered::of(&PaintInput {
             frame: &frame,
             rig: &rig,
+            background: &world.background,
             conditions: Conditions::usual(time, weather, seed),
         });
         self.others.push(windows(net, &refs_of(&rendered.images))?);

@@ -81,7 +81,7 @@ struct Rendered {
 
 impl Rendered {
     fn of(input: &PaintInput<'_>) -> Self {
-        let appearance = Appearance::new(input.frame, input.rig, &input.conditions);
+        let appearance = Appearance::with_things(input.frame, input.background, input.rig, &input.conditions);
         let mut out = Self {
             cameras: Vec::new(),
             images: Vec::new(),
@@ -221,13 +221,14 @@ impl Figures {
         segmenter: &PictureSegmenter,
     ) -> anyhow::Result<()> {
         let (mut world, seed) = world_of(TEST_SEED, index, |_| None);
-        let frame = frame_of(&world);
+        let (frame, background) = (frame_of(&world), world.background.clone());
         let places = poses(&frame, &mut Draw::new(seed, "learned pictures"));
-        let [rig, rig_ahead] = places.map(|pose| SensorRig::default().placed(&pose));
+        let [rig, rig_ahead] = places.map(|pose| SensorRig::default().standing_at(&pose));
         let (time, weather) = light_of(index);
         let input = PaintInput {
             frame: &frame,
             rig: &rig,
+            background: &background,
             conditions: Conditions::usual(time, weather, seed),
         };
         let painter = || Painter::new(nets.clone(), PaintOptions::default());
