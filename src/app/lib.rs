@@ -48,11 +48,12 @@ pub mod view3d;
 pub mod views_shown;
 pub mod windows;
 
-pub use authoring::again::{again, scene_of};
+pub use authoring::again::{again, file, scene_of};
 pub use authoring::{memory, open, prompting, scenery, text, wildcards};
 
 pub use command::Command;
 pub use panes::compare;
 pub use shell::app::{AppConfig, BuildPipeline, NewScene, OpenScene, SaveScene, SceneloomApp};
+pub use shell::priority::start_workers;
 pub use shell::run::{run_window, run_window_with};
 pub use shell::{dock, keymap, live, recovery, settings};

@@ -98,9 +98,19 @@ pub fn to_bytes(
     Ok(bytes)
 }
 
+/// True if the bytes say that they are such a file.
+fn is_named(bytes: &[u8]) -> bool {
+    bytes.windows(FORMAT.len()).any(|w| w == FORMAT.as_bytes())
+}
+
 /// The boxes in the bytes of such a file, and its recipe (null if it has none). Errors in one line.
 pub fn read(bytes: &[u8]) -> Result<(Vec<SceneBox>, Value), String> {
-    let list: List = serde_json::from_slice(bytes).map_err(|e| one_line(&e))?;
+    let list: List = serde_json::from_slice(bytes).map_err(|e| match is_named(bytes) {
+        true => one_line(&e),
+        false => one_line(&format_args!(
+            "no list of boxes ({e}), expected \"format\": {FORMAT:?} and \"boxes\" in JSON"
+        )),
+    })?;
     if (list.format.as_str(), list.version) != (FORMAT, VERSION) {
         return Err(format!(
             "format is {:?} version {}, expected {FORMAT:?} version {VERSION}",

@@ -31,6 +31,9 @@ pub struct Import {
     /// Fixes the traffic.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Of a point cloud: lift it by so many metres, 0 for not at all; without it a sweep whose ground lies beside the map is lifted onto it, which is told.
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    lift: Option<f64>,
     /// Without vehicles and people.
     #[arg(long)]
     empty: bool,
@@ -88,7 +91,7 @@ impl Import {
         {
             return Err(anyhow!("--heading is {heading}, expected a finite angle in degrees").into());
         }
-        let (importer, content) = import::read(&self.file)?;
+        let (importer, content) = import::read_lifted(&self.file, self.lift)?;
         match content {
             Content::Scene(loaded) => self.whole(importer, &loaded),
             Content::Recipe(recipe) => {
@@ -96,6 +99,7 @@ impl Import {
                     scene: app::again(&recipe)?,
                     inferred: &[],
                     skipped: Default::default(),
+                    notes: Vec::new(),
                 };
                 self.whole(importer, &loaded)
             }
@@ -142,6 +146,7 @@ impl Import {
             "bridges": imported.bridges,
             "things": imported.scene.background.len(),
             "things_of_file": imported.things_of_file,
+            "scenery_left_out": imported.scenery_left_out,
             "relief_m": [lowest_m, highest_m],
             "skipped": imported.skipped,
             "drivable_beside_traffic": imported.drivable_beside_traffic,
@@ -159,6 +164,13 @@ impl Import {
                 true => String::new(),
                 false => format!("; counted as drivable: {}", beside.join(", ")),
             };
+            if imported.scenery_left_out > 0 {
+                note.push_str(&format!(
+                    "; {} things of scenery left out, evenly over the map: a scene holds {}",
+                    imported.scenery_left_out,
+                    scene::Background::MAX_THINGS
+                ));
+            }
             if imported.is_own {
                 note.push_str("; the layout is the one that sceneloom wrote, to the last cell");
             }
@@ -195,6 +207,7 @@ impl Import {
             "lanes": 0,
             "skipped": loaded.skipped,
             "inferred": loaded.inferred,
+            "notes": loaded.notes,
             "things": things(scene),
             "occupied_voxels": frame.occupancy.count_set(),
             "file": self.output,
@@ -208,8 +221,9 @@ impl Import {
                 true => String::new(),
                 false => format!("; left out: {}", listed(&loaded.skipped)),
             };
+            let notes: String = loaded.notes.iter().map(|note| format!("; {note}")).collect();
             format!(
-                "{}: {} occupied voxels; {inferred}{} boxes, {} road and {} sidewalk columns, {} things beside the road{skipped}",
+                "{}: {} occupied voxels; {inferred}{} boxes, {} road and {} sidewalk columns, {} things beside the road{notes}{skipped}",
                 self.output.display(),
                 frame.occupancy.count_set(),
                 frame.boxes.len(),

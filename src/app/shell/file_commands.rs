@@ -139,7 +139,7 @@ impl SceneloomApp {
                 let own_file = path.extension().is_some_and(|e| e == "loom").then_some(path);
                 let is_picture = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
                 let is_import = own_file.is_none() && !is_picture;
-                let opened = move || open(&file).map(|scene| Opened::of(scene).told_by(&file));
+                let opened = move || open(&file).map(|found| Opened::from(found).told_by(&file));
                 self.load(what, own_file, is_import, ctx, opened);
             }
         }

@@ -15,7 +15,7 @@ use super::versions::Opened;
 use crate::windows::place_picker::PlacePicker;
 
 /// Reads a scene from a file of any kind that can be opened.
-pub type OpenScene = Arc<dyn Fn(&Path) -> anyhow::Result<Scene> + Send + Sync>;
+pub type OpenScene = Arc<dyn Fn(&Path) -> anyhow::Result<authoring::open::Opened> + Send + Sync>;
 /// Writes a scene to a `.loom` file.
 pub type SaveScene = Arc<dyn Fn(&Scene, &Path) -> anyhow::Result<()> + Send + Sync>;
 /// Makes a new scene.

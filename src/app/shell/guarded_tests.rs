@@ -28,7 +28,7 @@ fn app() -> SceneloomApp {
         params: GenParams::default(),
         full_params: GenParams::default(),
         warm_up: false,
-        open: Arc::new(open::scene),
+        open: Arc::new(open::file),
         save: Arc::new(|_, _| Ok(())),
         new_scene: Arc::new(|| anyhow::bail!("no new scene here")),
         native_dialogs: false,

@@ -95,9 +95,9 @@ impl SceneloomApp {
             versions,
             damaged,
             made,
+            notes,
         } = opened;
-        self.generation.forget_scene();
-        self.state.opened += 1;
+        self.forget_shown(ctx);
         self.views.prompt.opened(&scene);
         if opening.is_import {
             let text = tf!(
@@ -107,6 +107,9 @@ impl SceneloomApp {
             self.toasts.push(Level::Info, text, now_s);
         } else {
             self.toasts.log(tf!("Opened {name}", name = scene.name), now_s);
+        }
+        for note in notes {
+            self.toasts.push(Level::Info, note, now_s);
         }
         let version = match opening.step {
             Some(label) => {
@@ -124,7 +127,6 @@ impl SceneloomApp {
         self.generation
             .versions
             .push_made(version.into(), String::new(), opened, made.clone());
-        self.views.compare.chosen = None;
         if let Some(path) = &opening.path {
             self.preferences.settings.remember(path);
         }
@@ -136,6 +138,10 @@ impl SceneloomApp {
         self.state.choose(&[], crate::tools::Choose::Only);
         self.state.correcting = false;
         self.state.tools.region = InpaintMask::default();
+        self.state.tools.voxels.clear();
+        // What was begun on the other map is not gone on with on this one.
+        self.state.tools.toolbox = Default::default();
+        self.state.tools.hand.road = Default::default();
         self.state.named = Named::default();
         self.state.seed.value = None;
         if let Some(made) = made {
@@ -143,6 +149,20 @@ impl SceneloomApp {
         }
         self.note_opened(opening.recovers, true);
         ctx.request_repaint();
+    }
+
+    /// Forgets what was made of the scene that was shown: nothing of it is of the one that comes.
+    fn forget_shown(&mut self, ctx: &Context) {
+        self.generation.forget_scene();
+        self.threads.sensing.forget();
+        self.threads.checking.forget();
+        self.threads.planning.close();
+        self.views.compare.forget();
+        self.state.shown.finding_marks = None;
+        self.state.shown.detection_marks = None;
+        crate::panes::checks::forget(ctx);
+        // Panes that keep something count along.
+        self.state.opened += 1;
     }
 
     /// Tells how many versions of a file could not be read.

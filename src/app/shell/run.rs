@@ -21,7 +21,9 @@ pub fn run_window(
     door: Option<Box<dyn Door>>,
 ) -> anyhow::Result<()> {
     super::logging::start();
-    priority::workers_give_way();
+    if let Some(line) = priority::start_workers(true) {
+        tracing::warn!("{line}");
+    }
     let config = AppConfig {
         scene,
         picture: path
@@ -32,7 +34,7 @@ pub fn run_window(
         params: GenParams::default(),
         full_params: job::GenParams::whole_scene(),
         warm_up: true,
-        open: Arc::new(crate::scene_of),
+        open: Arc::new(crate::file),
         save: Arc::new(|scene, path| {
             loom::save(path, scene)?;
             Ok(())

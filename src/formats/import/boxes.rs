@@ -36,6 +36,7 @@ pub const IMPORTER: Importer = Importer {
             scene,
             inferred: &[],
             skipped: BTreeMap::new(),
+            notes: Vec::new(),
         })))
     },
     #[cfg(test)]

@@ -41,6 +41,8 @@ pub struct Source<'a> {
     pub name: &'a str,
     /// Where the file is, for formats of several files; `None` for bytes alone.
     pub path: Option<&'a Path>,
+    /// How far a point cloud is lifted, m; `None`: as its ground asks.
+    pub lift_m: Option<f64>,
 }
 
 impl Source<'_> {
@@ -85,6 +87,8 @@ pub struct Loaded {
     pub inferred: &'static [&'static str],
     /// What the file holds and the scene does not, counted by kind.
     pub skipped: BTreeMap<String, usize>,
+    /// What was done that nobody asked for, a line each, for a person.
+    pub notes: Vec<String>,
 }
 
 /// A scene from labels: their voxels as they are; layout, boxes and background are inferred, of a larger map in the networks'
@@ -99,6 +103,7 @@ pub(crate) fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobser
         boxes: boxes.keys().copied().collect(),
         background: !background.is_empty(),
         unobserved,
+        ..Inferred::default()
     };
     let frame = Frame {
         inferred,

@@ -62,7 +62,7 @@ fn read(source: &Source<'_>) -> Result<Content, FormatError> {
             pose
         }
     };
-    let (mut cloud, mut noise) = (Cloud::default(), 0);
+    let (mut cloud, mut noise) = (Cloud::of(source), 0);
     let words = labels.as_deref().map(|bytes| bytes.as_chunks::<4>().0);
     for (i, at) in points.enumerate() {
         // The upper half is the instance.
@@ -75,7 +75,7 @@ fn read(source: &Source<'_>) -> Result<Content, FormatError> {
             Some(number) => semantic_kitti::class_of_point(number).map_or(Label::Unknown, Label::Class),
             None => Label::None,
         };
-        cloud.add_point(ego_from_velo.apply(at), label);
+        cloud.add_return(at, &ego_from_velo, label);
     }
     if noise > 0 {
         left_out.insert("points of noise".into(), noise);

@@ -124,6 +124,7 @@ fn other_numbers_are_no_scan() {
             bytes,
             name: "scan",
             path: None,
+            lift_m: None,
         };
         (IMPORTER.read)(&source)
             .map(drop)
@@ -145,12 +146,16 @@ fn other_numbers_are_no_scan() {
         refused(&text)
     );
     let wild = scan(&[
-        [f32::NAN, 0.0, 0.0],
-        [1e-30, 1e-9, 0.0],
+        [1.0, 1e-40, 0.0],
+        [1e-40, 1e-9, 0.0],
         [1e9, 0.0, 0.0],
         [1.0, 1.0, 1.0],
     ]);
     assert!(refused(&wild).starts_with("3 of 4 points"));
+    for nothing in [[f32::NAN; 3], [0.0; 3], [3e-5, -4e-5, 1e-6]] {
+        let line = refused(&scan(&[nothing; 5]));
+        assert!(line.starts_with("no return among 5 points"), "{line}");
+    }
     assert!(refused(&scan(&[[70.0, 0.0, 0.0]])).starts_with("none of 1 points lies on the map"));
     // A few numbers that are not finite are counted.
     let mut points = vec![[1.0, 4.0, 1.0]; 30];
@@ -159,11 +164,43 @@ fn other_numbers_are_no_scan() {
         bytes: &scan(&points),
         name: "scan",
         path: None,
+        lift_m: None,
     };
     let Ok(Content::Scene(found)) = (IMPORTER.read)(&source) else {
         panic!("a scene");
     };
     assert_eq!(found.skipped.get("points that are not finite"), Some(&1));
+}
+
+/// Sensors write slots without a return as zeros, as NaN, or as zeros that a calibration turned: how many does not matter.
+#[test]
+fn slots_without_a_return_are_left_out_and_counted() {
+    let nothing = [[0.0; 3], [5e-5, -2e-5, 1e-5], [f32::NAN; 3], [0.02, 0.0, -0.03]];
+    let mut points = vec![[1.0, 4.0, 1.0]; 30];
+    points.extend(nothing.repeat(20));
+    let source = Source {
+        bytes: &scan(&points),
+        name: "scan",
+        path: None,
+        lift_m: None,
+    };
+    let Ok(Content::Scene(found)) = (IMPORTER.read)(&source) else {
+        panic!("a scene");
+    };
+    assert_eq!(
+        found.skipped.get("empty returns, at the sensor itself"),
+        Some(&60)
+    );
+    assert_eq!(found.skipped.get("points that are not finite"), Some(&20));
+    assert_eq!(found.scene.frame().occupancy.count_set(), 1);
+    // Told by content too.
+    let turned = [5e-5, -2e-5, 1e-5, 0.0].repeat(9);
+    let head: Vec<u8> = [turned, vec![3.0, 4.0, -1.0, 0.5]]
+        .concat()
+        .iter()
+        .flat_map(|v: &f32| v.to_le_bytes())
+        .collect();
+    assert!(Columns::Kitti.are_in(&head));
 }
 
 #[test]

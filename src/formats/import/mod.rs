@@ -7,6 +7,9 @@ pub mod commonroad;
 mod commonroad_obstacles;
 #[cfg(test)]
 mod commonroad_tests;
+mod foreign;
+#[cfg(test)]
+mod far_tests;
 pub mod glb;
 mod importer;
 pub mod kitti;
@@ -29,11 +32,13 @@ pub mod vox;
 
 use std::path::{Path, PathBuf};
 
+use scene::message::quoted;
+
 use super::{FormatError, input};
 pub use importer::{Content, Importer, Loaded, Source};
 use importer::{GUESSED, first_entry_ends, labelled};
 
-/// Every format that can be read. A file that no other format recognises is read as the last one.
+/// Every format that can be read.
 const TABLE: &[&Importer] = &[
     &loom::IMPORTER,
     &occ3d::IMPORTER,
@@ -76,33 +81,75 @@ pub fn in_words() -> String {
     all().iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// The format of a file: by its first bytes, and by its extension where those say nothing. A file that nobody claims is
-/// taken for a road network, whose reader says what is wrong with it.
+/// The format of a file: by its first bytes, and by its extension where those say nothing. Errors say what a file is that is not
+/// read.
 pub fn format_of(path: &Path) -> Result<&'static Importer, FormatError> {
     let head = input::head(path, HEAD).map_err(FormatError::new)?;
-    Ok(recognised(path, &head))
+    recognised(path, &head).map_err(|e| e.at(&path.display()))
 }
 
-fn recognised(path: &Path, head: &[u8]) -> &'static Importer {
+fn recognised(path: &Path, head: &[u8]) -> Result<&'static Importer, FormatError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let named = |i: &&&Importer| extension.as_deref().is_some_and(|e| i.extensions.contains(&e));
     let mut by_content = all().iter().filter(|i| (i.recognises)(head));
     let by_both = by_content.clone().find(named);
-    by_both
-        .or_else(|| by_content.next())
-        .or_else(|| all().iter().find(named))
-        .unwrap_or(&TABLE[TABLE.len() - 1])
+    if let Some(claims) = by_both.or_else(|| by_content.next()) {
+        return Ok(claims);
+    }
+    if let Some(told) = foreign::told(path, head) {
+        return Err(told);
+    }
+    // A file without a name of its own that is text is taken for a road network, whose reader says where it is wrong.
+    let is_markup = String::from_utf8_lossy(head).trim_start().starts_with('<');
+    let named = all().iter().find(named).copied();
+    named
+        .or_else(|| is_markup.then_some(&opendrive::IMPORTER))
+        .ok_or_else(|| {
+            let found = match head.is_empty() {
+                true => "an empty file",
+                false => "a file of a kind that is not known",
+            };
+            let extensions: Vec<&str> = extensions();
+            FormatError::new(format!("{found}, expected one of .{}", extensions.join(", .")))
+        })
 }
 
 /// Reads a file of any format.
 pub fn read(path: &Path) -> Result<(&'static Importer, Content), FormatError> {
-    if path.is_dir() {
-        let (importer, path) = of_folder(path)?;
-        return Ok((importer, read_as(importer, &path)?));
-    }
-    let importer = format_of(path)?;
-    Ok((importer, read_as(importer, path)?))
+    read_lifted(path, None)
 }
+
+/// Farthest that a cloud is lifted, m.
+pub const FARTHEST_LIFT_M: f64 = 10_000.0;
+
+/// The same; a point cloud is lifted by so many metres instead of as its ground asks. Errors also if the file is no point cloud,
+/// and for more than [`FARTHEST_LIFT_M`].
+pub fn read_lifted(path: &Path, lift_m: Option<f64>) -> Result<(&'static Importer, Content), FormatError> {
+    let (importer, path) = match path.is_dir() {
+        true => of_folder(path)?,
+        false => (format_of(path)?, path.to_owned()),
+    };
+    if let Some(m) = lift_m {
+        if !(-FARTHEST_LIFT_M..=FARTHEST_LIFT_M).contains(&m) {
+            let line = format!("a lift of {m} m, expected at most {FARTHEST_LIFT_M} m up or down");
+            return Err(FormatError::new(line));
+        }
+        if !CLOUDS.contains(&importer.id) {
+            let line = format!("{}, expected a point cloud where a lift is given", importer.title);
+            return Err(FormatError::new(line).at(&path.display()));
+        }
+    }
+    Ok((importer, read_file(importer, &path, lift_m)?))
+}
+
+/// Formats of point clouds.
+const CLOUDS: [&str; 5] = [
+    pcd::IMPORTER.id,
+    ply::IMPORTER.id,
+    las::IMPORTER.id,
+    nuscenes_lidar::IMPORTER.id,
+    kitti::IMPORTER.id,
+];
 
 /// The format of a folder of files, and the file that is read first.
 fn of_folder(folder: &Path) -> Result<(&'static Importer, PathBuf), FormatError> {
@@ -110,20 +157,45 @@ fn of_folder(folder: &Path) -> Result<(&'static Importer, PathBuf), FormatError>
     let known = || all().iter().filter(|i| i.in_folder.is_some()).map(|i| i.title);
     all().iter().find_map(first).ok_or_else(|| {
         let known = known().collect::<Vec<_>>().join(", ");
+        let holds = match first_readable(folder) {
+            Some(name) => format!(
+                "; it holds files that are read one by one, such as {}",
+                quoted(&name, 60)
+            ),
+            None => String::new(),
+        };
         FormatError::new(format!(
-            "{}: a folder, expected a regular file or a folder of {known}",
+            "{}: a folder, expected a regular file or a folder of {known}{holds}",
             folder.display()
         ))
     })
 }
 
+/// The name of the first file in a folder that could be read by itself.
+fn first_readable(folder: &Path) -> Option<String> {
+    const MOST: usize = 10_000;
+    let extensions = extensions();
+    let files = std::fs::read_dir(folder).ok()?.take(MOST).filter_map(|file| {
+        let path = file.ok()?.path();
+        let extension = path.extension()?.to_string_lossy().to_lowercase();
+        let is_readable = extensions.contains(&extension.as_str()) && path.is_file();
+        is_readable.then(|| path.file_name().map(|n| n.to_string_lossy().into_owned()))?
+    });
+    files.min()
+}
+
 /// Reads a file of a format.
 pub fn read_as(importer: &Importer, path: &Path) -> Result<Content, FormatError> {
+    read_file(importer, path, None)
+}
+
+fn read_file(importer: &Importer, path: &Path, lift_m: Option<f64>) -> Result<Content, FormatError> {
     let bytes = input::read(path, importer.largest).map_err(FormatError::new)?;
     let source = Source {
         bytes: &bytes,
         name: &scene_name(path),
         path: Some(path),
+        lift_m,
     };
     (importer.read)(&source).map_err(|e| e.at(&path.display()))
 }
@@ -149,17 +221,32 @@ mod tests {
 
     #[test]
     fn content_goes_before_the_extension() {
-        let of = |name: &str, head: &[u8]| recognised(Path::new(name), head).id;
+        let of = |name: &str, head: &[u8]| recognised(Path::new(name), head).expect(name).id;
         let [loom, npz] = [(loom::IMPORTER.sample)(), (occ3d::IMPORTER.sample)()];
         assert_eq!(of("a.npz", &loom), "loom");
         assert_eq!(of("a", &npz), "occ3d");
         assert_eq!(of("a.loom", &npz), "occ3d");
-        // What does not tell goes by its name, and what has no name is a road.
+        // What does not tell goes by its name.
         assert_eq!(of("a.loom", b"cut"), "loom");
         assert_eq!(of("a.NPZ", b"PK"), "occ3d");
         assert_eq!(of("a.PCD", b""), "pcd");
         assert_eq!(of("a.txt", b"<OpenDRIVE>"), "opendrive");
-        assert_eq!(of("", b""), "opendrive");
+        assert_eq!(of("a.xodr", b"no XML"), "opendrive");
+        assert_eq!(of("a", b"<"), "opendrive");
+        // What is nobody's is told by what it is, whatever its name says.
+        let line = |name: &str, head: &[u8]| {
+            recognised(Path::new(name), head)
+                .map(|i| i.id)
+                .expect_err(name)
+                .to_string()
+        };
+        assert!(line("a.xodr", b"PK\x03\x04").starts_with("a zip archive, which is not read"));
+        assert!(line("a.json", b"{\"type\": \"FeatureCollection\"}").starts_with("GeoJSON"));
+        assert!(line("", b"").starts_with("an empty file, expected one of .loom, "));
+        assert!(
+            line("a.dat", b"words")
+                .starts_with("a file of a kind that is not known, expected one of .loom, ")
+        );
     }
 
     #[test]

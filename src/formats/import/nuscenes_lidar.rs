@@ -79,7 +79,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Content, FormatError> {
     let rig = SensorRig::default();
     let ego_from_sensor = rig.lidars.first().map(scene::LidarPattern::ego_from_sensor);
     let ego_from_sensor = ego_from_sensor.unwrap_or_default();
-    let (mut cloud, mut left_away) = (Cloud::default(), 0);
+    let (mut cloud, mut left_away) = (Cloud::of(source), 0);
     for (i, at) in points.enumerate() {
         let label = match labels.as_ref().map(|l| l[i]) {
             None => Label::None,
@@ -93,7 +93,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Content, FormatError> {
                 }
             },
         };
-        cloud.add_point(ego_from_sensor.apply(at), label);
+        cloud.add_return(at, &ego_from_sensor, label);
     }
     let [x, y, z] = ego_from_sensor.translation_m.to_array();
     let mut left_out = BTreeMap::from([

@@ -46,6 +46,7 @@ fn read(source: &Source<'_>) -> Result<Content, occ3d::Occ3dError> {
         scene,
         inferred: &GUESSED,
         skipped,
+        notes: Vec::new(),
     })))
 }
 
@@ -70,6 +71,7 @@ mod tests {
             bytes,
             name: "labels",
             path: None,
+            lift_m: None,
         };
         match read(&source).expect("read") {
             Content::Scene(loaded) => *loaded,

@@ -33,6 +33,7 @@ fn loaded(bytes: &[u8]) -> Result<Loaded, PcdError> {
         bytes,
         name: "cloud",
         path: None,
+        lift_m: None,
     })? {
         Content::Scene(loaded) => Ok(*loaded),
         other => panic!("a cloud is a scene, not {other:?}"),

@@ -21,6 +21,7 @@ pub const IMPORTER: Importer = Importer {
                 scene,
                 inferred: &[],
                 skipped: Default::default(),
+                notes: Vec::new(),
             })));
         }
         let text = inside.text.iter().find(|(keyword, _)| keyword == NAME);
@@ -58,6 +59,7 @@ mod tests {
             bytes,
             name: "p",
             path: None,
+            lift_m: None,
         })
     }
 

@@ -61,6 +61,7 @@ fn loaded(bytes: &[u8]) -> Result<Loaded, PlyError> {
         bytes,
         name: "cloud",
         path: None,
+        lift_m: None,
     })? {
         Content::Scene(loaded) => Ok(*loaded),
         other => panic!("{other:?}: expected a scene"),

@@ -16,12 +16,12 @@ pub(super) enum Columns {
     NuScenes,
 }
 
-/// Farthest that a LiDAR sees, m, and nearest: an echo has a coordinate beyond that.
+/// Farthest that a LiDAR sees, m, and nearest: what is nearer is no return.
 const FAR_M: f32 = 10_000.0;
-const NEAR_M: f32 = 0.01;
+const NEAR_M: f32 = 0.1;
 /// Points in a head are nearer than this, m.
 const HEAD_FAR_M: f32 = 500.0;
-/// Share of numbers that must be coordinates, or the file is something else.
+/// Share of the places that must be sound, or the file is something else. Slots where nothing came back say nothing.
 const LEAST_SOUND: f64 = 0.9;
 /// Strongest echo, and most rings.
 const STRONGEST: f32 = 255.0;
@@ -44,7 +44,8 @@ impl Columns {
         }
         let sound = |point: &[u8]| {
             let v = self.values(point);
-            is_echo(&v, HEAD_FAR_M)
+            slot(&v, HEAD_FAR_M) != Slot::Wild
+                && v.iter().all(|v| v.is_finite())
                 && match self {
                     Self::Kitti => (0.0..=1.0).contains(&v[3]),
                     Self::NuScenes => {
@@ -54,8 +55,8 @@ impl Columns {
                     }
                 }
         };
-        let is_somewhere = |point: &[u8]| self.values(point)[..3] != [0.0; 3];
-        head.chunks_exact(stride).all(sound) && head.chunks_exact(stride).any(is_somewhere)
+        let is_return = |point: &[u8]| slot(&self.values(point), HEAD_FAR_M) == Slot::Return;
+        head.chunks_exact(stride).all(sound) && head.chunks_exact(stride).any(is_return)
     }
 
     fn values(self, point: &[u8]) -> [f32; 5] {
@@ -87,22 +88,53 @@ impl Columns {
             )
         };
         let points = bytes.chunks_exact(stride);
-        let wild = points.clone().filter(|p| !is_echo(&self.values(p), FAR_M));
-        let (wild, all) = (wild.count(), points.len());
-        if (wild as f64) > (1.0 - LEAST_SOUND) * all as f64 {
+        let (mut wild, mut returns) = (0, 0);
+        for point in points.clone() {
+            match slot(&self.values(point), FAR_M) {
+                Slot::Return => returns += 1,
+                Slot::Wild => wild += 1,
+                Slot::Empty => {}
+            }
+        }
+        let all = points.len();
+        if f64::from(wild) > (1.0 - LEAST_SOUND) * f64::from(wild + returns) {
             return Err(FormatError::new(format!(
                 "{wild} of {all} points have no coordinates in m, expected f32 {columns}"
+            )));
+        }
+        if returns == 0 {
+            return Err(FormatError::new(format!(
+                "no return among {all} points, expected f32 {columns} with places in m"
             )));
         }
         Ok(points.map(at))
     }
 }
 
-/// True for the place of an echo that is no farther than this along any axis, or of none, which is all zeros.
-fn is_echo(values: &[f32; 5], far_m: f32) -> bool {
+/// What a place of three numbers says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Slot {
+    /// Something is there.
+    Return,
+    /// Nothing came back: the place is not finite, or the sensor's own but for rounding.
+    Empty,
+    /// No place of a LiDAR's return: too far, or so small that it is no number of a sensor.
+    Wild,
+}
+
+fn slot(values: &[f32; 5], far_m: f32) -> Slot {
     let place = &values[..3];
-    let within = place.iter().all(|c| c.abs() < far_m);
-    within && (place.iter().any(|c| c.abs() > NEAR_M) || *place == [0.0; 3])
+    if place.iter().any(|c| !c.is_finite()) {
+        return Slot::Empty;
+    }
+    let far = place.iter().fold(0.0f32, |most, c| most.max(c.abs()));
+    // Whole numbers of other files, read as f32, are subnormal.
+    let is_number = |c: &f32| *c == 0.0 || c.is_normal();
+    match far < far_m && place.iter().all(is_number) {
+        true if far < NEAR_M => Slot::Empty,
+        true => Slot::Return,
+        false => Slot::Wild,
+    }
 }
 
 /// A file beside the scan that is read if it is there: `count` values of `size` bytes. Errors if it holds another number.

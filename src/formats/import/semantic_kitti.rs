@@ -37,6 +37,7 @@ fn read(source: &Source<'_>) -> Result<Content, String> {
         scene: labelled(source.name, labels, unobserved),
         inferred: &GUESSED,
         skipped,
+        notes: Vec::new(),
     })))
 }
 
@@ -155,6 +156,7 @@ mod tests {
             bytes,
             name: "000000",
             path,
+            lift_m: None,
         };
         match read(&source)? {
             Content::Scene(loaded) => Ok(*loaded),

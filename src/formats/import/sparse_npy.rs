@@ -35,6 +35,7 @@ fn read(source: &Source<'_>) -> Result<Content, String> {
         scene: labelled(source.name, labels, None),
         inferred: &GUESSED,
         skipped,
+        notes: Vec::new(),
     })))
 }
 

@@ -32,6 +32,7 @@ fn loaded(bytes: &[u8]) -> Loaded {
         bytes,
         name: "list",
         path: None,
+        lift_m: None,
     };
     match read(&source).expect("read") {
         Content::Scene(loaded) => *loaded,
@@ -44,6 +45,7 @@ fn refusal(bytes: &[u8]) -> String {
         bytes,
         name: "list",
         path: None,
+        lift_m: None,
     };
     read(&source).expect_err("refused")
 }

@@ -24,6 +24,7 @@ fn read(source: &Source<'_>) -> Result<Content, String> {
         scene: labelled(source.name, grid, None),
         inferred: &GUESSED,
         skipped,
+        notes: Vec::new(),
     })))
 }
 

@@ -20,6 +20,7 @@ fn refusal(bytes: &[u8]) -> String {
         bytes,
         name: "model",
         path: None,
+        lift_m: None,
     };
     read(&source).expect_err("refused")
 }

@@ -5,12 +5,14 @@ use std::sync::Arc;
 
 use anyhow::{Context, bail};
 
+use super::new_ground::with_scenery;
 use super::prompting::How;
 use super::{open, text};
 use editor::{Edit, apply_all};
 use formats::import::{self, Content};
 use formats::recipe::Recipe;
 use scene::Scene;
+use scene::message::quoted;
 
 /// The scene that the words of a recipe make, in the same order and from the same seed, under its light and air. What was
 /// changed by hand is not in a recipe. Errors if there are no words, or they cannot be carried out.
@@ -24,23 +26,31 @@ pub fn again(recipe: &Recipe) -> anyhow::Result<Scene> {
     for words in rest {
         let mut edits = text::read_edit(words, &scene, recipe.seed)?.edits();
         edits.push(Edit::KeepWords { words: words.clone() });
+        let edits = with_scenery(&scene, edits);
         apply_all(&edits, &mut scene).with_context(|| format!("{words:?}"))?;
     }
     scene.conditions = recipe.conditions;
-    scene.name = recipe.scene.as_str().into();
+    scene.name = quoted(&recipe.scene, Scene::LONGEST_NAME).into();
     scene.touch();
     Ok(scene)
 }
 
 /// A scene from a file of any format that is read; of a picture that carries words alone, the scene that they make again.
 pub fn scene_of(path: &Path) -> anyhow::Result<Scene> {
+    Ok(file(path)?.scene)
+}
+
+/// The same with what is to be said of it.
+pub fn file(path: &Path) -> anyhow::Result<open::Opened> {
     match import::format_of(path).map(|importer| importer.id) {
         Ok("picture") => match import::read(path)?.1 {
-            Content::Recipe(recipe) => again(&recipe).with_context(|| path.display().to_string()),
-            Content::Scene(loaded) => Ok(loaded.scene),
+            Content::Recipe(recipe) => again(&recipe)
+                .map(Into::into)
+                .with_context(|| path.display().to_string()),
+            Content::Scene(loaded) => Ok(loaded.scene.into()),
             Content::Roads(_) => bail!("{}: roads in a picture", path.display()),
         },
-        _ => open::scene(path),
+        _ => open::file(path),
     }
 }
 

@@ -43,13 +43,40 @@ pub fn save_rig(rig: &SensorRig, path: &Path) -> anyhow::Result<()> {
     atomic::write(path, text.as_bytes()).with_context(|| format!("write {}", path.display()))
 }
 
+/// A scene from a file, and what a person should know of how it was read.
+pub struct Opened {
+    /// The scene.
+    pub scene: Scene,
+    /// What was done that nobody asked for, a line each.
+    pub notes: Vec<String>,
+}
+
+impl From<Scene> for Opened {
+    fn from(scene: Scene) -> Self {
+        Self {
+            scene,
+            notes: Vec::new(),
+        }
+    }
+}
+
 /// A scene from a file of any format that is read, see [`formats::import`].
 pub fn scene(path: &Path) -> anyhow::Result<Scene> {
+    Ok(file(path)?.scene)
+}
+
+/// The same with what is to be said of it.
+pub fn file(path: &Path) -> anyhow::Result<Opened> {
     match import::read(path)?.1 {
-        Content::Scene(loaded) => Ok(loaded.scene),
-        Content::Roads(network) => {
-            Ok(on_roads(*network, &import::scene_name(path), &Placement::default()).scene)
-        }
+        Content::Scene(loaded) => Ok(Opened {
+            scene: loaded.scene,
+            notes: loaded.notes,
+        }),
+        Content::Roads(network) => Ok(
+            on_roads(*network, &import::scene_name(path), &Placement::default())
+                .scene
+                .into(),
+        ),
         Content::Recipe(_) => bail!(
             "{}: words to make a scene of, expected a scene: import it first",
             path.display()
@@ -173,6 +200,8 @@ pub struct Imported {
     pub bridges: usize,
     /// Things that the file puts beside the road, bridges not counted.
     pub things_of_file: usize,
+    /// Things of procedural scenery that were left out because a scene does not hold so many.
+    pub scenery_left_out: usize,
     /// What was not understood, counted by kind.
     pub skipped: BTreeMap<String, usize>,
     /// Where the ego stands in the file's frame: x, y in m and heading in rad.
@@ -220,6 +249,7 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         false => import.boxes.clone(), // the file's own
     };
     let things_of_file = import.background.len() - import.bridge_count;
+    let mut scenery_left_out = 0;
     let mut scene = if placement.bare {
         let occupancy = draft::draft(&import.layout, boxes.values());
         let frame = Frame::new(import.layout, boxes, occupancy);
@@ -242,7 +272,12 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
             )
         } else {
             let background = match is_bare {
-                true => large::scenery_over(&import.layout, &boxes, import.background, seed),
+                true => {
+                    let (background, left_out) =
+                        large::scenery_over(&import.layout, &boxes, import.background, seed);
+                    scenery_left_out = left_out;
+                    background
+                }
                 false => import.background,
             };
             let occupancy = large::occupancy_over(&import.layout, &boxes, &background, seed);
@@ -261,6 +296,7 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         is_own: import.is_own,
         bridges: import.bridge_count,
         things_of_file,
+        scenery_left_out,
         skipped: import.skipped,
         pose: (at, heading),
     }

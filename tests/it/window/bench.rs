@@ -151,7 +151,7 @@ impl Bench {
                 ..GenParams::default()
             },
             warm_up: false,
-            open: Arc::new(app::open::scene),
+            open: Arc::new(app::open::file),
             save: Arc::new(|scene, path| Ok(loom::save(path, scene).map(|_| ())?)),
             new_scene: Arc::new(|| Ok(scene())),
             native_dialogs: false,

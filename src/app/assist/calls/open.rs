@@ -28,6 +28,10 @@ pub struct Open {
     /// Of a road file: length and width of the map, m; 80 x 80 if left out.
     #[serde(default)]
     size_m: Option<[f64; 2]>,
+    /// Of a point cloud: how far it is lifted, m, 0 for not at all; if left out, a sweep whose ground lies beside the map is lifted onto
+    /// it, and `notes` says by how much.
+    #[serde(default)]
+    lift_m: Option<f64>,
 }
 
 /// Receipt of `open`.
@@ -46,6 +50,9 @@ pub struct Opened {
     things: usize,
     /// How long it lasts, s; 0 for one moment.
     length_s: f64,
+    /// What was done with the file that nobody asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<String>,
 }
 
 impl Operation for Open {
@@ -68,16 +75,21 @@ impl Operation for Open {
             self.heading_deg.is_some(),
             self.size_m.is_some(),
         ];
+        let mut notes = Vec::new();
         let (scene, format) = match &self.file {
+            None if self.lift_m.is_some() => bail!("lift_m is for point clouds, expected a file"),
             None => (open::bundled()?, "loom"),
             Some(file) => {
                 let path = desk.folder.existing(file)?;
-                let (importer, content) = import::read(&path)?;
+                let (importer, content) = import::read_lifted(&path, self.lift_m)?;
                 let scene = match content {
                     Content::Scene(_) | Content::Recipe(_) if said.contains(&true) => {
                         bail!("{file}: a scene; at_m, heading_deg and size_m are for road files")
                     }
-                    Content::Scene(loaded) => loaded.scene,
+                    Content::Scene(loaded) => {
+                        notes = loaded.notes;
+                        loaded.scene
+                    }
                     Content::Recipe(recipe) => again(&recipe).with_context(|| file.clone())?,
                     Content::Roads(network) => {
                         if let Some(problem) = placement.problem_on(&network) {
@@ -104,6 +116,7 @@ impl Operation for Open {
             boxes,
             things,
             length_s,
+            notes,
         })
     }
 }

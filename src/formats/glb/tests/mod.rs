@@ -4,6 +4,7 @@ mod files;
 mod foreign;
 mod model;
 mod own;
+mod work;
 
 use std::path::PathBuf;
 
@@ -21,6 +22,7 @@ fn read_at(bytes: &[u8], name: &str, path: Option<PathBuf>) -> Result<Loaded, Fo
         bytes,
         name,
         path: path.as_deref(),
+        lift_m: None,
     };
     match (IMPORTER.read)(&source)? {
         Content::Scene(loaded) => Ok(*loaded),

@@ -4,16 +4,21 @@
 //! without a label the class is told by shape ([`geometry`]). Labels of this program, as those of Occ3D, have the road under the
 //! vehicle in the lowest bin, two below its height; in clouds it lies where it is. The ground of a cloud is therefore moved so
 //! that its level around the vehicle comes to the middle of the lowest bin. Everything else stays.
+//!
+//! A cloud whose ground lies beside the map, as a sweep in its sensor's frame, is lifted as a whole before that ([`level`]), or
+//! by as much as the user says.
 
 mod geometry;
+mod level;
 
 use std::collections::BTreeMap;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use glam::DVec3;
-use scene::{Class, SensorRig, VoxelGrid, Window};
+use scene::{Class, Pose, Recorded, SensorRig, VoxelGrid, Window};
 
-use super::{GUESSED, Loaded, labelled};
+use super::{GUESSED, Loaded, Source, labelled};
+pub(super) use level::Ground;
 
 /// Fields of points whose numbers are classes of Occ3D, in small letters.
 pub(super) const LABELS: [&str; 6] = [
@@ -33,6 +38,10 @@ const LAYERS: usize = Window::NZ * FINE;
 const CLASSES: u32 = 32;
 /// Points that wait until they are counted.
 const PENDING: usize = 1 << 20;
+/// Points that wait until the height of the ground is known; of a larger cloud these tell it.
+const WAITING: usize = 1 << 22;
+/// What is nearer to the sensor than this, m, is no return: sensors write such places where nothing came back.
+const EMPTY_M: f64 = 0.1;
 /// Unlabelled points of one voxel of which the shape is looked at.
 const MOST_PER_VOXEL: u8 = 32;
 /// The layer in which the level of the ground is put: above it is the middle of the lowest bin.
@@ -60,17 +69,37 @@ pub(super) enum Label {
 
 /// None of the points would be left.
 #[derive(Debug, PartialEq, thiserror::Error)]
-#[error(
-    "none of {points} points lies on the map, expected x and y within 40 m of the ego and z from -1 to 5.4 m (ego frame)"
-)]
+#[error("{}", self.line())]
 pub struct NothingOnTheMap {
     /// Points in the file.
     pub points: usize,
+    /// Those without a place, or at the sensor itself: nothing came back.
+    pub empty: usize,
+}
+
+impl NothingOnTheMap {
+    fn line(&self) -> String {
+        let Self { points, empty } = self;
+        match *empty > 0 && empty == points {
+            true => format!("no return among {points} points: none has a place away from the sensor"),
+            false => format!(
+                "none of {points} points lies on the map, expected x and y within 40 m of the ego and z from -1 to 5.4 m (ego frame)"
+            ),
+        }
+    }
 }
 
 /// Points on the map, and what is known of them.
 #[derive(Default)]
 pub(super) struct Cloud {
+    /// Points within the map seen from above, until it is known how far they are lifted.
+    waiting: Vec<(DVec3, Label)>,
+    /// How far points are lifted, m: by the user or by the ground, once it is known.
+    lift_m: Option<f64>,
+    /// The user said how far.
+    is_asked: bool,
+    /// What was done with the height, for a person.
+    notes: Vec<String>,
     /// Column, layer and class of a point in one number.
     pending: Vec<u32>,
     /// The same numbers, sorted, and how many points have them.
@@ -84,6 +113,7 @@ pub(super) struct Cloud {
     elsewhere: usize,
     unknown: usize,
     own: usize,
+    empty: usize,
 }
 
 /// A point of which the shape of its surroundings is looked at: without label, or labelled as ground.
@@ -112,7 +142,16 @@ impl Loose {
 }
 
 impl Cloud {
-    /// One point, in m in the ego frame, and the number of its class in Occ3D if it has one.
+    /// An empty cloud of a file: lifted as the user says, else as its ground asks.
+    pub(super) fn of(source: &Source<'_>) -> Self {
+        Self {
+            lift_m: source.lift_m,
+            is_asked: source.lift_m.is_some(),
+            ..Self::default()
+        }
+    }
+
+    /// One point, in m in the frame of the sensor or of the ego, and the number of its class in Occ3D if it has one.
     pub(super) fn add(&mut self, at: DVec3, label: Option<f64>) {
         let label = match label {
             Some(id) if (0.0..f64::from(Class::FREE)).contains(&id) && id.fract() == 0.0 => {
@@ -121,16 +160,61 @@ impl Cloud {
             Some(_) => Label::Unknown,
             None => Label::None,
         };
-        self.add_point(at, label);
+        self.add_return(at, &Pose::default(), label);
     }
 
-    /// One point, in m in the ego frame.
+    /// One slot of a sensor, in m in its frame: a point, unless nothing came back.
+    pub(super) fn add_return(&mut self, at: DVec3, ego_from_sensor: &Pose, label: Label) {
+        if label == Label::None && is_empty_return(at) {
+            self.added += 1;
+            self.empty += 1;
+            return;
+        }
+        self.add_point(ego_from_sensor.apply(at), label);
+    }
+
+    /// One point, in m; its height is that of the ego frame unless the ground says otherwise.
     pub(super) fn add_point(&mut self, at: DVec3, label: Label) {
         self.added += 1;
         if !at.is_finite() {
             self.not_finite += 1;
-            return;
+        } else if Window::column_at(at.x, at.y).is_none() {
+            self.elsewhere += 1;
+        } else if let Some(lift_m) = self.lift_m {
+            self.place(at + DVec3::Z * lift_m, label);
+        } else {
+            self.waiting.push((at, label));
+            if self.waiting.len() >= WAITING {
+                self.level();
+            }
         }
+    }
+
+    /// Finds how far the cloud is lifted, and places the points that wait for it.
+    fn level(&mut self) {
+        let waiting = std::mem::take(&mut self.waiting);
+        let is_labelled = waiting.iter().any(|(_, label)| *label != Label::None);
+        let shows_ground = |label: Label| match label {
+            Label::Class(class) => class.is_ground(),
+            Label::Unknown => false,
+            Label::None => !is_labelled,
+        };
+        let points = waiting.iter().filter(|(_, label)| shows_ground(*label));
+        let ground = Ground::of(points.map(|(at, _)| *at));
+        let lift_m = ground.map_or(0.0, Ground::lift_m);
+        self.lift_m = Some(lift_m);
+        self.notes = match ground {
+            Some(ground) => ground.told(),
+            None if is_labelled => Vec::new(),
+            None => vec!["no ground found around the sensor: heights stay as they are in the file".into()],
+        };
+        for (at, label) in waiting {
+            self.place(at + DVec3::Z * lift_m, label);
+        }
+    }
+
+    /// One point, in m in the ego frame.
+    fn place(&mut self, at: DVec3, label: Label) {
         let Some([x, y, z]) = Window::voxel_at(at) else {
             self.elsewhere += 1;
             return;
@@ -162,6 +246,7 @@ impl Cloud {
     /// Points that are not in the scene, or not with their label, counted by kind.
     fn skipped(&self) -> BTreeMap<String, usize> {
         let counts = [
+            ("empty returns, at the sensor itself", self.empty),
             ("points that are not finite", self.not_finite),
             ("points beside the map", self.elsewhere),
             ("points on the own vehicle", self.own),
@@ -177,8 +262,17 @@ impl Cloud {
         name: &str,
         left_out: BTreeMap<String, usize>,
     ) -> Result<Loaded, NothingOnTheMap> {
+        match self.lift_m {
+            None => self.level(),
+            Some(m) if self.is_asked => self.notes = vec![format!("lifted by {m:.2} m, as asked for")],
+            Some(_) => {}
+        }
+        let notes = std::mem::take(&mut self.notes);
         if self.is_empty() {
-            return Err(NothingOnTheMap { points: self.added });
+            return Err(NothingOnTheMap {
+                points: self.added,
+                empty: self.empty + self.not_finite,
+            });
         }
         let mut skipped = left_out;
         skipped.extend(self.skipped());
@@ -193,13 +287,18 @@ impl Cloud {
                 }
             }
         }
+        let mut scene = labelled(name, self.grid(), None);
+        if by_shape {
+            scene.change_canvas(|canvas| canvas.inferred.recorded = Arc::new(Recorded::of_voxels()));
+        }
         Ok(Loaded {
-            scene: labelled(name, self.grid(), None),
+            scene,
             inferred: match by_shape {
                 true => &GUESSED_BY_SHAPE,
                 false => &GUESSED,
             },
             skipped,
+            notes,
         })
     }
 
@@ -315,6 +414,11 @@ fn ground_level(counted: &[(u32, u32)]) -> Option<usize> {
     (LOWEST_LEVEL..=HIGHEST_LEVEL).contains(&found).then_some(found)
 }
 
+/// True for a place of a sensor's frame where nothing came back.
+fn is_empty_return(at: DVec3) -> bool {
+    at.length_squared() < EMPTY_M * EMPTY_M
+}
+
 /// True for a place on the vehicle that carries the sensors, that of the default rig.
 fn is_own(at: DVec3) -> bool {
     static OWN: LazyLock<(DVec3, DVec3)> = LazyLock::new(|| {
@@ -326,5 +430,7 @@ fn is_own(at: DVec3) -> bool {
     at.z > OWN_FROM_M && (at - center).abs().cmple(half).all()
 }
 
+#[cfg(test)]
+mod sweep_tests;
 #[cfg(test)]
 mod tests;

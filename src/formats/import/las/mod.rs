@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use scene::{Class, Window};
 
-use super::cloud::{Cloud, Label, NothingOnTheMap};
+use super::cloud::{Cloud, Ground, Label, NothingOnTheMap};
 use super::{Content, Importer, Source};
 use crate::las::{Asprs, of_asprs};
 use crate::{FormatError, Holds};
@@ -82,9 +82,9 @@ pub fn read_around(source: &Source<'_>, origin_m: Option<DVec3>) -> Result<Conte
     let header = Header::read(source.bytes)?;
     let origin_m = match origin_m {
         Some(origin_m) => origin_m,
-        None => origin(&header, source.bytes)?,
+        None => origin(&header, source.bytes, source.lift_m.is_some())?,
     };
-    let (mut cloud, mut noise, mut withheld) = (Cloud::default(), 0, 0);
+    let (mut cloud, mut noise, mut withheld) = (Cloud::of(source), 0, 0);
     let mut of_users = false;
     points::each(&header, source.bytes, |record| {
         let label = match record.class {
@@ -135,13 +135,13 @@ pub fn read_around(source: &Source<'_>, origin_m: Option<DVec3>) -> Result<Conte
 const SAMPLED: u64 = 1 << 16;
 /// Share of them that may be stray on either side.
 const STRAY: f64 = 0.01;
-/// Ground at the origin: this share of the points within so many m lies lower.
+/// Ground at the origin, where no plane shows it: this share of the points within so many m lies lower.
 const GROUND_SHARE: f64 = 0.1;
 const GROUND_REACH_M: f64 = 40.0;
 
 /// What is subtracted from each point: nothing of a cloud of this program, or one around the origin whose ground is on the
-/// map; of others the middle, to the metre, and the height of the ground there.
-fn origin(header: &Header, bytes: &[u8]) -> Result<DVec3, LasError> {
+/// map; of others the middle, to the metre, and the height of the ground there, unless the user says how far to lift.
+fn origin(header: &Header, bytes: &[u8], keeps_height: bool) -> Result<DVec3, LasError> {
     if header.is_own {
         return Ok(DVec3::ZERO);
     }
@@ -164,6 +164,16 @@ fn origin(header: &Header, bytes: &[u8]) -> Result<DVec3, LasError> {
         true => DVec3::new(x_m, y_m, 0.0),
         false => DVec3::ZERO,
     };
+    if keeps_height {
+        return Ok(middle_m);
+    }
+    if let Some(ground) = Ground::of(sample.iter().map(|p| *p - middle_m)) {
+        let height_m = match moves {
+            true => (ground.height_m * 100.0).round() / 100.0,
+            false => -ground.lift_m(),
+        };
+        return Ok(middle_m.with_z(height_m));
+    }
     let near = |p: &&DVec3| (**p - middle_m).truncate().length() <= GROUND_REACH_M;
     let near: Vec<DVec3> = sample.iter().filter(near).copied().collect();
     let ground = if near.is_empty() { &sample } else { &near };

@@ -1,0 +1,297 @@
+//! The height of the ground in a cloud, and how far the cloud must be lifted so that it lies on the map.
+//!
+//! - The **lowest return** of each cell of 1 m within 25 m is taken, if two others lie just above it: a single one below the road is
+//!   an echo by way of a mirror.
+//! - A **plane** is put through them: of planes through three of them (tilted by 12 degrees at most) the one that most lie on and
+//!   fewest lie below, then least squares through those that lie on it.
+//! - The plane is the ground if enough cells lie on it and they do not all lie in one direction: a table or a ceiling is none.
+//!
+//! The same points give the same plane: what is drawn at random is drawn from a fixed seed.
+
+use glam::{DVec2, DVec3};
+use numeric::linear::solve;
+use numeric::splitmix::SplitMix64;
+
+/// Ground is looked for within this distance of the origin along the ground, m, and beyond that: nearer is the vehicle.
+const REACH_M: f64 = 25.0;
+const NEAREST_M: f64 = 1.0;
+/// Cells along one side of the square around the reach; each is 1 m wide.
+const SIDE: usize = 2 * REACH_M as usize;
+/// A lowest return has two others above it within this height, m.
+const SUPPORT_M: f32 = 0.2;
+/// Planes that are tried.
+const TRIALS: usize = 400;
+/// Slope of the steepest plane: 12 degrees.
+const STEEPEST: f64 = 0.2126;
+/// Twice the area of the smallest triangle that tells a plane, m².
+const LEAST_SPREAD_M2: f64 = 8.0;
+/// A lowest return lies on a plane within this height, m, and below it from here on.
+const ON_M: f64 = 0.15;
+const BELOW_M: f64 = 0.4;
+/// Ground has at least so many cells, this share of all, and lies in so many of the eight directions.
+const LEAST_CELLS: usize = 50;
+const LEAST_SHARE: f64 = 0.25;
+const DIRECTIONS: usize = 8;
+const LEAST_DIRECTIONS: u32 = 3;
+/// Heights at which the ground of a cloud in the ego frame lies: with labels it is at -0.8 m, and a hill may be higher.
+const LOWEST_M: f64 = -0.9;
+const HIGHEST_M: f64 = 1.5;
+/// No sensor of a vehicle is mounted higher, m.
+const HIGHEST_MOUNT_M: f64 = 5.0;
+/// Tilt from here on is told, degrees: the ground is 0.7 m off at 20 m.
+const TOLD_TILT_DEG: f64 = 2.0;
+
+/// The ground around the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::import) struct Ground {
+    /// Its height at the origin, m.
+    pub(in crate::import) height_m: f64,
+    /// Slope along x and y.
+    slope: DVec2,
+}
+
+impl Ground {
+    /// The ground that these points show; `None` if they show none.
+    pub(in crate::import) fn of(points: impl Iterator<Item = DVec3>) -> Option<Self> {
+        let lowest = lowest(points);
+        let plane = plane(&lowest)?;
+        let on: Vec<DVec3> = lowest
+            .iter()
+            .filter(|p| plane.above_m(**p).abs() < ON_M)
+            .copied()
+            .collect();
+        let directions = on.iter().fold(0u8, |seen, p| seen | 1 << direction(p.truncate()));
+        let is_ground = on.len() >= LEAST_CELLS
+            && on.len() as f64 >= LEAST_SHARE * lowest.len() as f64
+            && directions.count_ones() >= LEAST_DIRECTIONS;
+        is_ground.then_some(plane)
+    }
+
+    /// How far a cloud with this ground must be lifted to lie on the map, m, to the centimetre; 0 where it does.
+    pub(in crate::import) fn lift_m(self) -> f64 {
+        match (LOWEST_M..=HIGHEST_M).contains(&self.height_m) {
+            true => 0.0,
+            false => -(self.height_m * 100.0).round() / 100.0,
+        }
+    }
+
+    /// What was done with a cloud, for a person.
+    pub(super) fn told(self) -> Vec<String> {
+        let lift_m = self.lift_m();
+        let mut out = match lift_m {
+            0.0 => Vec::new(),
+            m if (0.0..=HIGHEST_MOUNT_M).contains(&m) => {
+                vec![format!(
+                    "the sweep lies in its sensor's frame: lifted by {m:.2} m"
+                )]
+            }
+            m if m > 0.0 => vec![format!(
+                "the ground lies at {:.2} m: lifted by {m:.2} m",
+                self.height_m
+            )],
+            m => vec![format!(
+                "the ground lies at {:.2} m: lowered by {:.2} m",
+                self.height_m, -m
+            )],
+        };
+        let tilt_deg = self.slope.length().atan().to_degrees();
+        if tilt_deg >= TOLD_TILT_DEG {
+            out.push(format!("the ground is tilted by {tilt_deg:.1} degrees: left so"));
+        }
+        out
+    }
+
+    fn above_m(self, p: DVec3) -> f64 {
+        p.z - self.height_m - self.slope.dot(p.truncate())
+    }
+}
+
+/// Which eighth of the horizon a place lies in.
+fn direction(at: DVec2) -> usize {
+    let turn = at.to_angle() / std::f64::consts::TAU + 0.5;
+    ((turn * DIRECTIONS as f64) as usize).min(DIRECTIONS - 1)
+}
+
+/// The lowest return of each cell, where it is not alone.
+fn lowest(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
+    let mut cells: Vec<Vec<[f32; 3]>> = vec![Vec::new(); SIDE * SIDE];
+    for p in points {
+        let distance_m = p.truncate().length();
+        if (NEAREST_M..REACH_M).contains(&distance_m) {
+            let [x, y] = [p.x, p.y].map(|v| ((v + REACH_M) as usize).min(SIDE - 1));
+            cells[x * SIDE + y].push(p.as_vec3().to_array());
+        }
+    }
+    let one = |cell: &mut Vec<[f32; 3]>| {
+        cell.sort_unstable_by(|a, b| a[2].total_cmp(&b[2]));
+        let found = match cell.len() {
+            0..=2 => cell.first(),
+            _ => cell
+                .windows(3)
+                .find(|w| w[2][2] - w[0][2] < SUPPORT_M)
+                .map(|w| &w[0]),
+        };
+        found.map(|p| DVec3::from_array(p.map(f64::from)))
+    };
+    cells.iter_mut().filter_map(one).collect()
+}
+
+/// The plane that most of these points lie on and few below; `None` if no three of them tell one.
+fn plane(points: &[DVec3]) -> Option<Ground> {
+    let mut random = SplitMix64::new(0);
+    let mut best: Option<(i64, Ground)> = None;
+    for _ in 0..TRIALS {
+        if points.len() < 3 {
+            return None;
+        }
+        let three = [(); 3].map(|()| points[random.below(points.len())]);
+        let Some(plane) = through(three) else { continue };
+        let score = points.iter().map(|p| match plane.above_m(*p) {
+            above if above.abs() < ON_M => 1,
+            above => -i64::from(above < -BELOW_M),
+        });
+        let score = score.sum();
+        if best.is_none_or(|(most, _)| score > most) {
+            best = Some((score, plane));
+        }
+    }
+    let (_, mut plane) = best?;
+    for _ in 0..5 {
+        let on = points.iter().filter(|p| plane.above_m(**p).abs() < ON_M);
+        plane = fitted(on).unwrap_or(plane);
+    }
+    Some(plane)
+}
+
+/// The plane through three points, if they tell one that is not too steep.
+fn through([a, b, c]: [DVec3; 3]) -> Option<Ground> {
+    let (ab, ac) = (b - a, c - a);
+    let area = ab.truncate().perp_dot(ac.truncate());
+    let slope = DVec2::new(ab.z * ac.y - ac.z * ab.y, ac.z * ab.x - ab.z * ac.x) / area;
+    (area.abs() >= LEAST_SPREAD_M2 && slope.length() <= STEEPEST).then(|| Ground {
+        height_m: a.z - slope.dot(a.truncate()),
+        slope,
+    })
+}
+
+/// The plane of least squares, if it is not too steep.
+fn fitted<'a>(points: impl Iterator<Item = &'a DVec3>) -> Option<Ground> {
+    let mut rows = vec![vec![0.0; 4]; 3];
+    for p in points {
+        let row = [p.x, p.y, 1.0, p.z];
+        for (i, sums) in rows.iter_mut().enumerate() {
+            for (sum, v) in sums.iter_mut().zip(row) {
+                *sum += row[i] * v;
+            }
+        }
+    }
+    let found = solve(rows)?;
+    let slope = DVec2::new(found[0], found[1]);
+    (slope.length() <= STEEPEST).then_some(Ground {
+        height_m: found[2],
+        slope,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns of a plane with this height and slope, on a lattice of 0.5 m within 20 m, a wall along x at y = 8 m and a car.
+    fn street(height_m: f64, slope: DVec2) -> Vec<DVec3> {
+        let mut out = Vec::new();
+        let mut random = SplitMix64::new(7);
+        let mut put = |x: f64, y: f64, up_m: f64| {
+            let z = height_m + slope.dot(DVec2::new(x, y)) + up_m + 0.06 * (random.unit() - 0.5);
+            out.push(DVec3::new(x, y, z));
+        };
+        for i in -40..40 {
+            let x = f64::from(i) * 0.5;
+            (-40..16).for_each(|j| put(x, f64::from(j) * 0.5, 0.0));
+            (0..30).for_each(|k| put(x, 8.1, f64::from(k) * 0.2));
+        }
+        for i in 0..20 {
+            (0..8).for_each(|k| put(4.0 + f64::from(i) * 0.2, -3.0, 0.3 + f64::from(k) * 0.2));
+        }
+        out
+    }
+
+    #[test]
+    fn ground_is_found_at_its_height_whatever_its_tilt() {
+        for height_m in [-2.2, -1.84, -0.8, 0.0, 35.0] {
+            for slope in [DVec2::ZERO, DVec2::new(0.05, 0.0), DVec2::new(-0.08, 0.07)] {
+                let found = Ground::of(street(height_m, slope).into_iter()).expect("ground");
+                assert!(
+                    (found.height_m - height_m).abs() < 0.03,
+                    "{found:?}, expected {height_m}"
+                );
+                assert!(found.slope.distance(slope) < 0.01, "{found:?}, expected {slope}");
+            }
+        }
+    }
+
+    /// Echoes by way of a mirror lie below the road, one in twenty of the cells has some.
+    #[test]
+    fn echoes_below_the_road_do_not_draw_it_down() {
+        let mut points = street(-1.9, DVec2::ZERO);
+        for i in 0..80 {
+            let turn = f64::from(i) * 0.7;
+            points
+                .push((DVec2::from_angle(turn) * (4.0 + f64::from(i % 15))).extend(-4.0 - f64::from(i % 3)));
+        }
+        let found = Ground::of(points.into_iter()).expect("ground");
+        assert!((found.height_m + 1.9).abs() < 0.03, "{found:?}");
+    }
+
+    #[test]
+    fn what_is_no_ground_is_not_taken_for_it() {
+        let of = |points: Vec<DVec3>| Ground::of(points.into_iter());
+        assert_eq!(of(Vec::new()), None);
+        assert_eq!(of(vec![DVec3::NAN; 100]), None);
+        assert_eq!(
+            of((0..3)
+                .map(|i| DVec3::new(5.0 + f64::from(i), 0.0, -2.0))
+                .collect()),
+            None
+        );
+        // The walls of a hall without its floor, and a table in front of the sensor.
+        let mut hall = Vec::new();
+        for i in 0..200 {
+            let along = f64::from(i) * 0.1 - 10.0;
+            for k in 0..20 {
+                let z = f64::from(k) * 0.2 - 1.0;
+                hall.extend([DVec3::new(along, 10.0, z), DVec3::new(10.0, along, z)]);
+            }
+        }
+        assert_eq!(of(hall.clone()), None);
+        hall.extend(
+            (0..400).map(|i| DVec3::new(2.0 + f64::from(i % 20) * 0.1, f64::from(i / 20) * 0.1, -0.5)),
+        );
+        assert_eq!(of(hall), None);
+    }
+
+    #[test]
+    fn only_ground_off_the_map_is_lifted_and_that_is_told() {
+        let ground = |height_m| Ground {
+            height_m,
+            slope: DVec2::ZERO,
+        };
+        for height_m in [-0.83, -0.37, 0.0, 1.0] {
+            assert_eq!(ground(height_m).lift_m(), 0.0, "{height_m}");
+            assert_eq!(ground(height_m).told(), Vec::<String>::new());
+        }
+        assert_eq!(ground(-1.838).lift_m(), 1.84);
+        let told = |height_m| ground(height_m).told().concat();
+        assert_eq!(
+            told(-1.838),
+            "the sweep lies in its sensor's frame: lifted by 1.84 m"
+        );
+        assert_eq!(told(35.2), "the ground lies at 35.20 m: lowered by 35.20 m");
+        assert_eq!(told(-35.2), "the ground lies at -35.20 m: lifted by 35.20 m");
+        let tilted = Ground {
+            slope: DVec2::new(0.1, 0.0),
+            ..ground(0.0)
+        };
+        assert_eq!(tilted.told(), ["the ground is tilted by 5.7 degrees: left so"]);
+    }
+}
