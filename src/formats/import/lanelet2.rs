@@ -1,6 +1,6 @@
 //! Lanelet2 maps (Poggenhans and others 2018; also as Autoware writes them): OpenStreetMap's XML with lanelets as relations.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use glam::{DVec2, DVec3};
 use roxmltree::Node;
@@ -11,11 +11,12 @@ use crate::lanelets::{self, Between, Lanelet, LaneletMap, MOST_POINTS, Use};
 use crate::opendrive::lanes::Ground;
 use crate::opendrive::xml::{
     OpenDriveError, Result, bad, count, decode, elements, named, number_or_none, parse_document, shown,
+    within_reach,
 };
 use crate::opendrive::{self, RoadNetwork, Skipped};
 use crate::{FormatError, Holds};
 
-/// Roads in metres: `local_x` and `local_y` where all nodes have them, else UTM of the zone of the map's middle.
+/// Roads in metres: `local_x` and `local_y` where all nodes of ways have them, else UTM of the zone of the map's middle.
 pub const IMPORTER: Importer = Importer {
     id: "lanelet2",
     title: "Lanelet2 maps",
@@ -169,13 +170,19 @@ fn nodes_and_ways<'a>(root: Node<'a, 'a>) -> Result<NodesAndWays<'a>> {
                     match tag(node, key) {
                         "" => Ok(None),
                         text => match text.trim().parse::<f64>() {
-                            Ok(value) if value.is_finite() => Ok(Some(value)),
+                            Ok(value) if value.is_finite() => within_reach(node, key, value).map(Some),
                             _ => Err(bad(node, key, "a finite number", &format!("{text:?}"))),
                         },
                     }
                 };
+                // Empty where a map has tags alone, as Autoware writes it.
+                let degrees = |key: &str| match node.attribute(key).is_some_and(|text| text.trim().is_empty())
+                {
+                    true => Ok(None),
+                    false => number_or_none(node, key),
+                };
                 let place = Place {
-                    degrees: pair(number_or_none(node, "lat")?, number_or_none(node, "lon")?),
+                    degrees: pair(degrees("lat")?, degrees("lon")?),
                     local_m: pair(tagged("local_x")?, tagged("local_y")?),
                     height_m: tagged("ele")?.unwrap_or(0.0),
                 };
@@ -195,10 +202,16 @@ fn nodes_and_ways<'a>(root: Node<'a, 'a>) -> Result<NodesAndWays<'a>> {
             _ => {}
         }
     }
+    // Points that no line goes through need no place.
+    let used: HashSet<i64> = ways
+        .values()
+        .flat_map(|way: &Way<'_>| way.nodes.iter().copied())
+        .collect();
+    places.retain(|id, _| used.contains(id));
     Ok((places, ways))
 }
 
-/// All nodes in metres.
+/// All nodes of ways in metres.
 fn metres(root: Node<'_, '_>, places: &HashMap<i64, Place>) -> Result<HashMap<i64, DVec3>> {
     let local = |p: &Place| p.local_m.map(|[x, y]| DVec3::new(x, y, p.height_m));
     if places.values().all(|p| p.local_m.is_some()) {
@@ -215,11 +228,17 @@ fn metres(root: Node<'_, '_>, places: &HashMap<i64, Place>) -> Result<HashMap<i6
     };
     let zone = Zone::of(bounds(0), bounds(1)).filter(|_| degrees.len() == places.len());
     let zone = zone.ok_or_else(|| {
+        let without = |has: &dyn Fn(&Place) -> bool| places.values().filter(|p| !has(p)).count();
         bad(
             root,
             "node",
-            "lat and lon, or tags local_x and local_y, in every node",
-            "others",
+            "lat and lon, or tags local_x and local_y, in every node of a way",
+            &format!(
+                "{} of {} without lat and lon, {} without the tags",
+                without(&|p| p.degrees.is_some()),
+                places.len(),
+                without(&|p| p.local_m.is_some())
+            ),
         )
     })?;
     let of = |(id, place): (&i64, &Place)| {

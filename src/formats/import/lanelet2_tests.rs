@@ -85,7 +85,6 @@ pub(super) fn street() -> String {
             y + CORNER[1],
             10.0 + 0.02 * x,
         )
-        .replace(" lat=\"\" lon=\"\"", "")
     })
 }
 
@@ -154,6 +153,22 @@ fn a_street_in_metres_lies_where_it_is() {
     assert_eq!(skipped.get("regulatory_element speed_limit"), Some(&1));
 }
 
+/// Tags of metres count beside empty degrees, without them and beside those of another place; of nodes that no way uses nothing is
+/// asked.
+#[test]
+fn tags_of_metres_are_read_whatever_the_degrees_say() {
+    for degrees in ["", " lat=\" \" lon=\"\"", " lat=\"35.1\" lon=\"139.7\""] {
+        let text = street().replace(" lat=\"\" lon=\"\"", degrees);
+        let with_another = text.replace(
+            "<way id=\"901\"",
+            "<node id=\"5000\" lat=\"\" lon=\"\"/><way id=\"901\"",
+        );
+        for text in [text, with_another] {
+            checked(&read(text.as_bytes(), "street").expect("roads"), CORNER.into());
+        }
+    }
+}
+
 /// 500 km east of a zone's edge a degree of longitude is turned by little: near the central meridian east is x.
 #[test]
 fn a_street_in_degrees_is_projected() {
@@ -182,7 +197,11 @@ fn bad_maps_are_one_line() {
     assert!(line(&whole.replace("id=\"3\"", "id=\"x\"")).contains("expected a whole number"));
     assert!(line(&whole.replace("v=\"3000\"", "v=\"NaN\"")).contains("local_x: expected a finite number"));
     let nowhere = whole.replace("local_x", "x");
-    assert!(line(&nowhere).contains("lat and lon"), "{}", line(&nowhere));
+    let told = line(&nowhere);
+    assert!(
+        told.contains("lat and lon") && told.contains("27 of 27 without"),
+        "{told}"
+    );
     // Cut anywhere, it is refused.
     for at in (0..whole.len() - 8)
         .step_by(37)
