@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::{BoxId, Extent};
+use super::{BoxId, Extent, Recorded};
 
 /// Set beside a bit per observed bin of a column: it is known which were. A column of 0 says nothing.
 pub const KNOWN: u32 = 1 << Extent::NZ;
@@ -87,6 +87,8 @@ pub struct Inferred {
     pub background: bool,
     /// What the data set's masks say, if it has any.
     pub unobserved: Option<Unobserved>,
+    /// What is as a recording has it: no guess, and nobody's mistake.
+    pub recorded: Arc<Recorded>,
 }
 
 impl Inferred {

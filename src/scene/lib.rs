@@ -26,11 +26,15 @@ pub mod lens;
 pub mod message;
 pub mod model;
 pub mod moved;
+pub mod plain_name;
 pub mod pose;
 pub mod raster;
+pub mod recorded;
 pub mod relations;
 pub mod relief;
+pub mod returns;
 pub mod rig;
+mod rig_names;
 pub mod rig_presets;
 pub mod road_map;
 pub mod roads;
@@ -39,6 +43,7 @@ mod settle;
 pub mod shape;
 pub mod solid;
 pub mod splats;
+pub mod speed_limits;
 pub mod support;
 pub mod truth;
 pub mod variants;
@@ -68,7 +73,9 @@ pub use lens::{Lens, Optics, ReadOut, Shutter};
 pub use model::Model;
 pub use numeric::splitmix as draw;
 pub use pose::Pose;
+pub use recorded::Recorded;
 pub use relief::Relief;
+pub use returns::Returns;
 pub use rig::{Camera, LidarPattern, SensorRig};
 pub use roads::{Road, RoadChange, RoadId, RoadLane, RoadNetwork, RoadNode, RoadWish};
 pub use sensor_data::{CameraMaps, LidarPoint, LidarSweep, MultiPlaneImage, PerspectiveMap};
@@ -124,13 +131,16 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A scene that stands still, on a clear day.
+    /// Characters of the longest name that a scene gets.
+    pub const LONGEST_NAME: usize = 200;
+
+    /// A scene that stands still, on a clear day. Of its name a line of at most [`Self::LONGEST_NAME`] characters is kept.
     pub fn single(name: &str, frame: Frame, rig: Arc<SensorRig>, seed: u64) -> Self {
         let (rev, canvas) = (SceneRev::fresh(), Arc::new(frame));
         Self {
             rev,
             content: rev,
-            name: name.into(),
+            name: message::quoted(name, Self::LONGEST_NAME).into(),
             prompt: "".into(),
             conditions: Conditions {
                 seed,

@@ -1,4 +1,4 @@
-//! `scene.json`: all of a scene but its grids, as versions 5 to 8 keep it. A change here is a new version, see `migrate`.
+//! `scene.json`: all of a scene but its grids, as versions 5 to 9 keep it. A change here is a new version, see `migrate`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use scene::{
-    Arranged, BoxId, Clip, Conditions, Extent, Frame, Motion, Polyline, Pose, RoadNetwork, Scene, SceneBox,
-    SensorRig, Thing, Track, Waiver,
+    Arranged, BoxId, Clip, Conditions, Extent, Frame, Motion, Polyline, Pose, Recorded, RoadNetwork, Scene,
+    SceneBox, SensorRig, Thing, Track, Waiver,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -144,11 +144,14 @@ pub(super) struct InferredHeader {
     pub(super) background: bool,
     /// Whether `unobserved.u16` is there.
     pub(super) unobserved: bool,
+    #[serde(skip_serializing_if = "Recorded::is_empty")]
+    pub(super) recorded: Recorded,
 }
 
 impl InferredHeader {
     fn is_empty(&self) -> bool {
-        !self.layout && self.boxes.is_empty() && !self.background && !self.unobserved
+        let none_inferred = !self.layout && self.boxes.is_empty() && !self.background && !self.unobserved;
+        none_inferred && self.recorded.is_empty()
     }
 }
 
@@ -235,6 +238,7 @@ fn frame_header(frame: &Frame) -> FrameHeader {
             boxes: frame.inferred.boxes.clone(),
             background: frame.inferred.background,
             unobserved: frame.inferred.unobserved.is_some(),
+            recorded: (*frame.inferred.recorded).clone(),
         },
         waivers: frame.waivers.to_vec(),
         source: SourceHeader {

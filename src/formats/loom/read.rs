@@ -182,6 +182,7 @@ fn read_canvas<R: Read + Seek>(file: &mut Reader<R>, header: FrameHeader) -> Res
             boxes: header.inferred.boxes,
             background: header.inferred.background,
             unobserved,
+            recorded: Arc::new(header.inferred.recorded),
         },
         waivers: Arc::new(header.waivers),
         source: Arc::new(source),

@@ -1,8 +1,9 @@
 //! nuScenes tables: a scene of a folder becomes a scene with a clip. See [`crate::nuscenes`].
 //!
 //! Read is the first scene by name; [`pictures`] reads all, for training. The vehicle moves through its poses at the key frames, objects through their annotations,
-//! and both go straight on beyond the first and the last. What is parked, or stays within 5 cm in all key frames, stands
-//! still. Sensors become the rig. Voxels come from Occ3D's `gts/SCENE/SAMPLE/labels.npz` if they lie beside, else from the
+//! and both go straight on beyond the first and the last. What stays within 5 cm in all key frames stands still, and so do barriers,
+//! cones and what is parked as long as they stay within half a metre, in the middle of their places: annotations jitter. Boxes, tracks
+//! and poses are marked as recorded ([`Recorded`]), so that checks do not call them mistakes. Sensors become the rig. Voxels come from Occ3D's `gts/SCENE/SAMPLE/labels.npz` if they lie beside, else from the
 //! LiDAR sweeps of the key frames with their lidarseg labels; there, points in boxes are left out and boxes drawn as drafts.
 //! The map is inferred from the voxels.
 //!
@@ -23,7 +24,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use scene::message::shortened;
 use scene::{
-    BevLayout, Clip, Conditions, Extent, Frame, Inferred, Key, Motion, Pose, Scene, TimeOfDay, Weather,
+    BevLayout, Clip, Conditions, Extent, Frame, Inferred, Key, Motion, Pose, Recorded, Scene, TimeOfDay, Weather,
     draft, infer,
 };
 
@@ -141,10 +142,15 @@ fn read_drive(source: &Source<'_>, which: usize) -> Result<(Loaded, read::Record
     scene.prompt = shortened(&description, LONGEST_DESCRIPTION).into();
     scene.background = Arc::new(background);
     scene.change_clip(|still| *still = clip);
+    if !recording.is_own {
+        let recorded = Arc::new(Recorded::all_of(&scene));
+        scene.change_canvas(|canvas| canvas.inferred.recorded = recorded);
+    }
     let loaded = Loaded {
         scene,
         inferred,
         skipped,
+        notes: Vec::new(),
     };
     Ok((loaded, recording))
 }

@@ -34,6 +34,8 @@ pub(super) struct Recording {
     pub(super) rig: SensorRig,
     /// The frame that all of this is in, from that of the tables.
     pub(super) world_from_global: Pose,
+    /// True for a folder that Sceneloom wrote: nothing was recorded.
+    pub(super) is_own: bool,
     /// Class of each number in lidarseg files; `None` for what is left out.
     pub(super) labels: Vec<Option<Class>>,
 }
@@ -116,6 +118,9 @@ pub(super) fn recording(
         })?;
     let kinds = Kinds::new(&sensors, &calibrated);
     let rig = rig::rig(&kinds, &data, skipped);
+    if let Some(problem) = rig.problem() {
+        return Err(FormatError::new(format!("sensor.json: {problem}")));
+    }
     let reference = reference(&kinds, &data, &place, samples.len());
     if let Some(i) = reference.iter().position(Option::is_none) {
         let token = quoted(&samples[i].token, 40);
@@ -125,7 +130,7 @@ pub(super) fn recording(
     }
     let reference: Vec<&SampleData> = reference.into_iter().flatten().collect();
     let global_from_ego = ego_poses(source, &reference)?;
-    let world_from_global = world_from_global(source, &scene, &global_from_ego[0])?;
+    let (world_from_global, is_own) = world_from_global(source, &scene, &global_from_ego[0])?;
     let (mut frames, from) = (Vec::new(), samples[0].timestamp);
     let labels_of = lidarseg(source, &reference)?;
     for ((sample, data), pose) in samples.iter().zip(&reference).zip(&global_from_ego) {
@@ -139,11 +144,12 @@ pub(super) fn recording(
     Ok(Recording {
         objects: objects(source, &place, &world_from_global, skipped)?,
         labels: label_classes(source)?,
-        name: scene.name,
+        name: scene.title.unwrap_or(scene.name),
         description: scene.description,
         frames,
         rig,
         world_from_global,
+        is_own,
     })
 }
 
@@ -244,23 +250,30 @@ fn ego_poses(source: &Source<'_>, of: &[&SampleData]) -> Result<Vec<Pose>, Forma
     of.iter().map(one).collect()
 }
 
-/// The frame that the scene's coordinates are in: see the module above.
-fn world_from_global(source: &Source<'_>, scene: &SceneRow, first: &Pose) -> Result<Pose, FormatError> {
+/// The frame that the scene's coordinates are in, see the module above, and whether Sceneloom wrote the folder.
+fn world_from_global(
+    source: &Source<'_>,
+    scene: &SceneRow,
+    first: &Pose,
+) -> Result<(Pose, bool), FormatError> {
     let maps: Vec<Map> = rows::of_optional(source, "map", |row: &Map| {
         row.log_tokens.contains(&scene.log_token)
     })?;
     let origin_m = maps.iter().find_map(|m| m.world_origin_m);
     Ok(
         match origin_m.filter(|o| o.iter().all(|v| v.abs() <= FARTHEST_M)) {
-            Some([x, y]) => Pose {
-                rotation: DQuat::IDENTITY,
-                translation_m: DVec3::new(-x, -y, 0.0),
-            },
+            Some([x, y]) => {
+                let world_from_global = Pose {
+                    rotation: DQuat::IDENTITY,
+                    translation_m: DVec3::new(-x, -y, 0.0),
+                };
+                (world_from_global, true)
+            }
             None => {
                 let at = first.translation_m;
                 let mut global_from_world = Pose::planar(at.x, at.y, yaw_rad(first.rotation));
                 global_from_world.translation_m.z = at.z;
-                global_from_world.inverse()
+                (global_from_world.inverse(), false)
             }
         },
     )

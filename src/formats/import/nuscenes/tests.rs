@@ -289,6 +289,18 @@ fn a_truck_ahead_and_to_the_left_is_there() {
     assert_eq!(scene.conditions.weather, Weather::Rain);
     let truck = scene.canvas().boxes[&BoxId(1)];
     assert_eq!(truck.class, Class::Truck);
+    // All of it is marked as recorded, and still is when it was kept.
+    let all: std::collections::BTreeSet<BoxId> = scene
+        .canvas()
+        .boxes
+        .keys()
+        .chain(scene.clip().tracks.keys())
+        .copied()
+        .collect();
+    let kept = crate::loom::from_bytes(&crate::loom::to_bytes(&scene).expect("written")).expect("read");
+    for scene in [&scene, &kept] {
+        assert!(Recorded::boxes_in(scene) == all && Recorded::is_ego_in(scene));
+    }
     assert!(
         (truck.center_m - DVec3::new(8.0, 3.0, 1.4)).length() < 1e-6,
         "{truck:?}"
