@@ -162,4 +162,36 @@ mod tests {
         let near: Vec<_> = near.filter(|b| b.size_m.z > 1.2).collect();
         assert!(near.iter().any(|b| returns.contains_key(&b.id)), "{near:?}");
     }
+
+    /// Returns of things above the ground under their box, and those of them in no box of their class.
+    fn outside(scene: &Scene, sweep: &scene::LidarSweep) -> [usize; 2] {
+        let boxes = &scene.frame().boxes;
+        let of_things = sweep.points.iter().filter_map(|p| {
+            let at = DVec3::from_array(p.position_in_ego.map(f64::from));
+            let mut near = boxes.values().filter(|b| {
+                let over = at.z > b.center_m.z - b.size_m.z / 2.0;
+                b.class == p.class && over && b.contains(at, 1.0)
+            });
+            near.next()?;
+            Some(boxes.values().any(|b| b.class == p.class && b.contains(at, 0.0)))
+        });
+        of_things.fold([0, 0], |[out, all], inside| [out + usize::from(!inside), all + 1])
+    }
+
+    #[test]
+    fn returns_of_things_are_in_their_boxes() {
+        let templates = ["straight", "t-junction", "intersection", "parking"]
+            .map(|name| (name, open::from_template(name, 5).expect("a template")));
+        for (name, scene) in templates.into_iter().chain([("drive", driven().at(1.5))]) {
+            let scene = scene.with_rig_in_world();
+            let [before, after] =
+                [rolling::of_voxels(&scene), rolling::exact(&scene)].map(|sweep| outside(&scene, &sweep));
+            println!("{name}: outside of their boxes {before:?} as voxels, {after:?} on shapes");
+            assert!(
+                before[0] * 10 > before[1] && after[1] > 100,
+                "{name}: {before:?} {after:?}"
+            );
+            assert_eq!(after[0], 0, "{name} of {after:?}");
+        }
+    }
 }
