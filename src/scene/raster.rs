@@ -101,38 +101,73 @@ pub fn polygon_cells(extent: Extent, points_m: &[DVec2], mut visit: impl FnMut(u
 
 /// Visits the cells whose centre lies within `half_width_m` of an open polyline. Zero-length
 /// segments are skipped, vertices that are not finite end their segments. Every cell is visited once.
+/// The work is that of the cells along the line, however large the map and however far away its vertices are.
 pub fn line_cells(
     extent: Extent,
     points_m: &[DVec2],
     half_width_m: f64,
     mut visit: impl FnMut(usize, usize),
 ) {
+    let sound = |p: &&DVec2| p.is_finite();
+    let low = points_m.iter().filter(sound).copied().reduce(DVec2::min);
+    let high = points_m.iter().filter(sound).copied().reduce(DVec2::max);
+    let (Some(low), Some(high)) = (low, high) else {
+        return;
+    };
+    let Some((first, last)) = cell_range(extent, low - half_width_m, high + half_width_m) else {
+        return;
+    };
     // The short segments of a wide bend overlap almost wholly.
-    let mut seen = vec![false; extent.columns()];
+    let rows = last[1] - first[1] + 1;
+    let mut seen = vec![false; (last[0] - first[0] + 1) * rows];
     for pair in points_m.windows(2) {
-        let (a, b) = (pair[0], pair[1]);
-        let d = b - a;
-        let length_squared = d.length_squared();
-        if !(length_squared.is_finite() && length_squared > 0.0) {
-            continue;
-        }
-        for_cells(
-            extent,
-            a.min(b) - half_width_m,
-            a.max(b) + half_width_m,
-            |x, y, p| {
-                let seen = &mut seen[extent.index(x, y)];
-                if *seen {
-                    return;
-                }
-                let t = ((p - a).dot(d) / length_squared).clamp(0.0, 1.0);
-                if p.distance_squared(a + d * t) <= half_width_m * half_width_m {
-                    *seen = true;
-                    visit(x, y);
-                }
-            },
-        );
+        segment_cells(extent, [pair[0], pair[1]], half_width_m, |x, y| {
+            let seen = &mut seen[(x - first[0]) * rows + y - first[1]];
+            if !std::mem::replace(seen, true) {
+                visit(x, y);
+            }
+        });
     }
+}
+
+/// Visits the cells whose centre lies within a distance of a segment: of every column only those rows that may.
+fn segment_cells(extent: Extent, [a, b]: [DVec2; 2], half_width_m: f64, mut visit: impl FnMut(usize, usize)) {
+    let d = b - a;
+    let length_squared = d.length_squared();
+    if !(length_squared.is_finite() && length_squared > 0.0) {
+        return;
+    }
+    let range = cell_range(extent, a.min(b) - half_width_m, a.max(b) + half_width_m);
+    let Some((from, to)) = range else { return };
+    for x in from[0]..=to[0] {
+        for y in rows_near(extent, [a, b], half_width_m, x) {
+            if y < from[1] || y > to[1] {
+                continue;
+            }
+            let p = extent.center(x, y, 0).truncate();
+            let t = ((p - a).dot(d) / length_squared).clamp(0.0, 1.0);
+            if p.distance_squared(a + d * t) <= half_width_m * half_width_m {
+                visit(x, y);
+            }
+        }
+    }
+}
+
+/// Rows of a column that a segment may come near: all that do, and about two more on each side.
+fn rows_near(extent: Extent, [a, b]: [DVec2; 2], half_width_m: f64, x: usize) -> std::ops::Range<usize> {
+    // A cell more on every side: rounding decides nothing here.
+    let reach_m = half_width_m + Extent::VOXEL_M;
+    let at_m = extent.center(x, 0, 0).x;
+    let d = b - a;
+    // The y of the part of the segment that comes near enough to the column in x.
+    let ends = match d.x == 0.0 {
+        true => [a.y, b.y],
+        false => [at_m - reach_m, at_m + reach_m].map(|x_m| a.y + d.y * ((x_m - a.x) / d.x).clamp(0.0, 1.0)),
+    };
+    let row = |y_m: f64| extent.to_voxel_units(DVec3::new(0.0, y_m, 0.0)).y;
+    let low = row(ends[0].min(ends[1]) - reach_m).max(0.0) as usize;
+    let high = row(ends[0].max(ends[1]) + reach_m).clamp(-1.0, extent.ny() as f64 - 1.0) + 1.0;
+    low..high as usize
 }
 
 /// Draws a polyline into the layer of its kind. Lines are one cell wide (half width 0.2 m and a
@@ -141,7 +176,7 @@ pub fn draw_polyline(layout: &mut BevLayout, line: &Polyline) {
     const HALF_LINE_M: f64 = 0.21;
     let mut cells = Vec::new();
     let layer = match line.kind {
-        PolylineKind::LaneCenter => return,
+        PolylineKind::LaneCenter | PolylineKind::SpeedLimit { .. } => return,
         PolylineKind::RoadDivider => BevLayer::RoadDivider,
         PolylineKind::LaneDivider => BevLayer::LaneDivider,
         PolylineKind::StopLine => BevLayer::StopLine,
@@ -295,5 +330,57 @@ mod tests {
             |_, _| square += 1,
         );
         assert_eq!(square, 100);
+    }
+
+    /// Points drawn from a fixed sequence, with some far beyond the map.
+    fn points(seed: u64, count: usize) -> Vec<DVec2> {
+        let mut state = seed;
+        let mut unit = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        let mut out: Vec<DVec2> = (0..count)
+            .map(|i| DVec2::new(unit(), unit()) * [100.0, 8.0, 1e4, 1e11][i % 4])
+            .collect();
+        out.push(out[0]);
+        out.push(out[0] + DVec2::Y * 20.0);
+        out
+    }
+
+    #[test]
+    fn lines_have_the_cells_near_them_wherever_their_points_are() {
+        let extent = Extent::new([-60, 11], [90, 70]).expect("sound");
+        for seed in 0..40 {
+            let half_m = [0.21, 0.3, 3.0, 25.0][seed as usize % 4];
+            let points = points(seed, 9);
+            let mut found = std::collections::BTreeSet::new();
+            line_cells(extent, &points, half_m, |x, y| {
+                assert!(found.insert([x, y]), "twice");
+            });
+            let near = |[x, y]: &[usize; 2]| {
+                let p = extent.center(*x, *y, 0).truncate();
+                points.windows(2).any(|s| {
+                    let d = s[1] - s[0];
+                    let t = ((p - s[0]).dot(d) / d.length_squared()).clamp(0.0, 1.0);
+                    p.distance_squared(s[0] + d * t) <= half_m * half_m
+                })
+            };
+            let expected: std::collections::BTreeSet<[usize; 2]> =
+                extent.all_columns().filter(near).collect();
+            assert_eq!(found, expected, "seed {seed}");
+        }
+    }
+
+    /// Before, every cell of the rectangle around a segment was looked at: 16 million for one line across a large map.
+    #[test]
+    fn a_line_across_a_large_map_costs_its_own_cells() {
+        let extent = Extent::new([-2048, -2048], [4096, 4096]).expect("sound");
+        for reach_m in [500.0, 1e3, 1e6, 1e11] {
+            let ends = [DVec2::splat(-reach_m), DVec2::splat(reach_m)];
+            let looked_at: usize = (0..extent.nx())
+                .map(|x| rows_near(extent, ends, 0.21, x).len())
+                .sum();
+            assert!(looked_at < 12 * extent.nx(), "{looked_at} cells for {reach_m} m");
+        }
     }
 }

@@ -1,7 +1,5 @@
 //! Foreign meshes to voxels: surfaces of what stands still, and columns of things, in the convention of the labels.
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
 use scene::raster::box_cells;
 use scene::solid::fill::{SMEAR, smear_down};
@@ -38,13 +36,20 @@ impl Statics {
             let top = Extent::NZ as f64;
             if high >= 0.0 && low < top {
                 touched = true;
+                let to = high.min(top - 1.0) as usize;
                 // Of ground its highest voxel in the column is enough: it has no sides.
                 let from = if class.is_ground() {
-                    high.min(top - 1.0)
+                    to
                 } else {
-                    low.max(0.0)
+                    low.max(0.0) as usize
                 };
-                (from as usize..=high.min(top - 1.0) as usize).for_each(|z| grid.set(x, y, z, class.id()));
+                // Many triangles lie in voxels that are so already.
+                if grid.column(x, y)[from..=to]
+                    .iter()
+                    .any(|label| *label != class.id())
+                {
+                    grid.column_mut(x, y)[from..=to].fill(class.id());
+                }
             }
         });
         touched
@@ -85,25 +90,44 @@ impl Statics {
     }
 }
 
-/// How high a thing is in each column that it touches.
+/// How high a thing is in each column that its box may cover.
 pub(crate) struct Heights {
     surface: Surface,
-    top: BTreeMap<[usize; 2], f64>,
+    /// First column, and how many along x and y.
+    from: [usize; 2],
+    size: [usize; 2],
+    /// Along y first; `NEG_INFINITY` where nothing was found.
+    top: Vec<f64>,
 }
 
 impl Heights {
-    pub(crate) fn new(extent: Extent) -> Self {
+    /// Nothing yet of a thing with this box.
+    pub(crate) fn new(extent: Extent, b: &SceneBox) -> Self {
+        let reach = DVec3::new(1.0, 1.0, 0.0) * (b.size_m.truncate().length() / 2.0);
+        let [low, high] = [-reach, reach].map(|r| extent.to_voxel_units(b.center_m + r));
+        let most = [extent.nx(), extent.ny()];
+        let column = |v: f64, axis: usize| v.clamp(0.0, most[axis] as f64) as usize;
+        let from = [0, 1].map(|axis| column(low[axis].floor(), axis));
+        let size = [0, 1].map(|axis| column(high[axis].floor() + 1.0, axis) - from[axis]);
         Self {
             surface: Surface::new(extent),
-            top: BTreeMap::new(),
+            from,
+            size,
+            top: vec![f64::NEG_INFINITY; size[0] * size[1]],
         }
     }
 
+    fn place(from: [usize; 2], size: [usize; 2], [x, y]: [usize; 2]) -> Option<usize> {
+        let (x, y) = (x.checked_sub(from[0])?, y.checked_sub(from[1])?);
+        (x < size[0] && y < size[1]).then_some(x * size[1] + y)
+    }
+
     pub(crate) fn add(&mut self, corners: [DVec3; 3]) {
-        let top = &mut self.top;
+        let (top, from, size) = (&mut self.top, self.from, self.size);
         self.surface.visit(corners, |column, [_, high]| {
-            let known = top.entry(column).or_insert(high);
-            *known = known.max(high);
+            if let Some(place) = Self::place(from, size, column) {
+                top[place] = top[place].max(high);
+            }
         });
     }
 
@@ -118,9 +142,11 @@ impl Heights {
         let mut columns = Vec::new();
         box_cells(extent, b, 0.0, |x, y| columns.push([x, y]));
         for [x, y] in columns {
-            let Some(top) = self.top.get(&[x, y]) else {
+            let place = Self::place(self.from, self.size, [x, y]);
+            let top = place.map_or(f64::NEG_INFINITY, |place| self.top[place]);
+            if top == f64::NEG_INFINITY {
                 continue;
-            };
+            }
             let column = grid.column_mut(x, y);
             let ground = |label: &u8| Class::from_id(*label).is_some_and(Class::is_ground);
             let base = column.iter().position(ground);

@@ -147,24 +147,27 @@ impl<'a> Document<'a> {
     fn count(&self, node: &Node) -> u64 {
         let mesh = node.mesh.and_then(|mesh| self.root.meshes.get(mesh));
         let primitives = mesh.map_or(&[][..], |m| &m.primitives);
-        let corners = |p: &Primitive| {
+        let triangles = |p: &Primitive| {
             let position = p.attributes.get(&Checked::Valid(Semantic::Positions));
             let counted = p.indices.or(position.copied());
-            counted
-                .and_then(|a| self.root.accessors.get(a.value()))
-                .map_or(0, |a| a.count.0)
+            let accessor = counted.and_then(|a| self.root.accessors.get(a.value()));
+            let corners = accessor.map_or(0, |a| a.count.0);
+            match p.mode {
+                Checked::Valid(Mode::TriangleStrip | Mode::TriangleFan) => corners.saturating_sub(2),
+                _ => corners / 3,
+            }
         };
-        primitives.iter().map(corners).fold(0, u64::saturating_add)
+        primitives.iter().map(triangles).fold(0, u64::saturating_add)
     }
 
     /// Errors where the scene has more triangles than are read.
     pub(crate) fn check_size(&self) -> Result<(), FormatError> {
-        let corners = self
+        let found = self
             .nodes
             .iter()
             .map(|n| self.count(n))
             .fold(0, u64::saturating_add);
-        match corners / 3 {
+        match found {
             found if found > MOST_TRIANGLES => Err(FormatError::new(format!(
                 "{found} triangles, expected at most {MOST_TRIANGLES}"
             ))),

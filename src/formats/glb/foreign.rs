@@ -13,7 +13,8 @@ use super::class_words::{Said, said};
 use super::columns::{Heights, Statics};
 use super::document::{Document, LeftOut};
 use super::model::{Outline, class_by_size, may_be_one};
-use super::{own, single};
+use super::surface::Surface;
+use super::{own, single, work};
 use crate::FormatError;
 use crate::import::Loaded;
 
@@ -198,6 +199,10 @@ fn map(
 ) -> Result<Loaded, FormatError> {
     let (extent, shift_m) = extent(all);
     let place = |corners: [DVec3; 3]| corners.map(|p| p + shift_m);
+    work::check(document, Surface::cost, extent, |node, corners| {
+        let about = &abouts[node];
+        (about.thing.is_some() || !about.said.nothing).then(|| place(corners))
+    })?;
     let mut solid = Statics::new(extent);
     let mut outlines: Vec<Outline> = things
         .iter()
@@ -221,20 +226,23 @@ fn map(
     let mut occupancy = VoxelGrid::over(extent);
     solid.finish(&mut occupancy)?;
     let mut boxes = BTreeMap::new();
-    let mut heights: Vec<Heights> = things.iter().map(|_| Heights::new(extent)).collect();
-    each_triangle(document, |node, _, corners| {
-        if let Some(thing) = abouts[node].thing {
-            heights[thing].add(place(corners));
-        }
-    })?;
     let mut inferred = Inferred {
         layout: true,
         ..Inferred::default()
     };
-    for ((thing, outline), heights) in things.iter().zip(&outlines).zip(heights) {
+    for (number, (thing, outline)) in things.iter().zip(&outlines).enumerate() {
         let id = BoxId(boxes.len() as u32 + 1);
         match outline.to_box(id, thing.class) {
             Some(b) if boxes.len() < Frame::MAX_BOXES => {
+                let mut heights = Heights::new(extent, &b);
+                // The nodes of a thing follow its own.
+                let of_thing = |node: &usize| abouts[*node].thing == Some(number);
+                for node in (thing.node..abouts.len()).take_while(of_thing) {
+                    let node = &document.nodes[node];
+                    document.triangles(node, &mut LeftOut::default(), |_, corners| {
+                        heights.add(place(corners))
+                    })?;
+                }
                 heights.fill(&b, &mut occupancy)?;
                 if thing.is_guess {
                     inferred.boxes.insert(id);
@@ -260,6 +268,7 @@ fn map(
         scene,
         inferred: &["layout", "background"],
         skipped: left_out.report(),
+        notes: Vec::new(),
     })
 }
 

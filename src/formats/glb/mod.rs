@@ -18,6 +18,7 @@ pub(crate) mod solid;
 pub(crate) mod surface;
 #[cfg(test)]
 mod tests;
+mod work;
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use scene::{BoxId, BoxLabel, Class, Extent, SceneBox};

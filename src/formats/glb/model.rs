@@ -18,8 +18,8 @@ const ALIKE: f64 = 1.6;
 
 /// Points of a thing, as far as its box needs them.
 pub(crate) struct Outline {
-    /// Heading of the first direction, rad.
-    first_rad: f64,
+    /// The first one is the side's.
+    directions: [DVec2; DIRECTIONS],
     /// Least and greatest way along each direction, and across it, m.
     along: [[f64; 2]; DIRECTIONS],
     across: [[f64; 2]; DIRECTIONS],
@@ -37,8 +37,10 @@ impl Outline {
         // A node that lies on its side has an axis left that is level.
         let side = level(linear.x_axis).or(level(linear.y_axis)).unwrap_or(DVec2::X);
         let front = level(linear.z_axis).unwrap_or(-side.perp());
+        let step = std::f64::consts::FRAC_PI_2 / DIRECTIONS as f64;
+        let first_rad = side.to_angle();
         Self {
-            first_rad: side.to_angle(),
+            directions: std::array::from_fn(|i| DVec2::from_angle(first_rad + i as f64 * step)),
             along: [[f64::INFINITY, f64::NEG_INFINITY]; DIRECTIONS],
             across: [[f64::INFINITY, f64::NEG_INFINITY]; DIRECTIONS],
             height: [f64::INFINITY, f64::NEG_INFINITY],
@@ -47,17 +49,12 @@ impl Outline {
         }
     }
 
-    fn direction(&self, i: usize) -> DVec2 {
-        let step = std::f64::consts::FRAC_PI_2 / DIRECTIONS as f64;
-        DVec2::from_angle(self.first_rad + i as f64 * step)
-    }
-
     /// A point of the thing, m.
     pub(crate) fn add(&mut self, p: DVec3) {
         let widen = |range: &mut [f64; 2], v: f64| *range = [range[0].min(v), range[1].max(v)];
         let at = p.truncate();
         for i in 0..DIRECTIONS {
-            let direction = self.direction(i);
+            let direction = self.directions[i];
             widen(&mut self.along[i], direction.dot(at));
             widen(&mut self.across[i], direction.perp_dot(at));
         }
@@ -74,7 +71,7 @@ impl Outline {
             true => 0,
             false => tightest,
         };
-        let direction = self.direction(chosen);
+        let direction = self.directions[chosen];
         let center = direction * middle(self.along[chosen]) + direction.perp() * middle(self.across[chosen]);
         let sides = [
             (direction, long(self.along[chosen])),

@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 use super::document::{Document, LeftOut, Node};
 use super::solid::Solid;
 use super::surface::Surface;
-use super::{BoxExtras, CLASS_MAP, ClassExtras, SceneExtras, VERSION, class_words};
+use super::{BoxExtras, CLASS_MAP, ClassExtras, SceneExtras, VERSION, class_words, work};
 use crate::FormatError;
 use crate::import::Loaded;
 
@@ -81,6 +81,13 @@ pub(crate) fn scene(
         .map_err(|_| FormatError::new(format!("seed {:?}, expected digits", quoted(&told.seed, 40))))?;
     let mut left_out = LeftOut::default();
     let roles = roles(document, &mut left_out);
+    let shown = |node: usize, corners| match role_of(document, &roles, node) {
+        Some(Role::Box(b)) if b.placeholder => None,
+        _ => Some(corners),
+    };
+    // Of the two ways to voxels the dearer one is taken for all.
+    let cost = |extent, corners| Solid::cost(extent, corners).max(Surface::cost(extent, corners));
+    work::check(document, cost, extent, shown)?;
     let mut occupancy = VoxelGrid::over(extent);
     // What stands still first: a box that was moved into it is seen in front of it.
     for boxes in [false, true] {
@@ -122,6 +129,7 @@ pub(crate) fn scene(
         scene,
         inferred: &["layout", "background"],
         skipped: left_out.report(),
+        notes: Vec::new(),
     })
 }
 

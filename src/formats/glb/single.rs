@@ -12,6 +12,8 @@ use super::columns::{Heights, Statics};
 use super::document::{Document, LeftOut};
 use super::foreign::{About, Bounds, each_triangle, static_class};
 use super::model::Outline;
+use super::surface::Surface;
+use super::work;
 use crate::FormatError;
 use crate::import::Loaded;
 
@@ -63,11 +65,14 @@ pub(super) fn scene(
         },
         ..b
     };
+    work::check(document, Surface::cost, extent, |_, corners| {
+        Some(corners.map(|p| place.transform_point3(p)))
+    })?;
     let layout = BevLayout::over(extent);
     let mut occupancy = draft::draft(&layout, std::iter::empty());
     let mut boxes = BTreeMap::new();
     if class.is_object() {
-        let mut heights = Heights::new(extent);
+        let mut heights = Heights::new(extent, &b);
         each_triangle(document, |_, _, corners| {
             heights.add(corners.map(|p| place.transform_point3(p)))
         })?;
@@ -98,6 +103,7 @@ pub(super) fn scene(
         scene: Scene::single(name, frame, Arc::new(SensorRig::default()), 0),
         inferred: if is_guess { &["boxes"] } else { &[] },
         skipped: left_out.report(),
+        notes: Vec::new(),
     })
 }
 

@@ -5,9 +5,9 @@ use scene::Extent;
 
 use crate::FormatError;
 
-/// Most columns that the triangles of a mesh are looked for in, and most crossings that are kept.
-const MOST_VISITS: u64 = 1 << 31;
-const MOST_CROSSINGS: usize = 1 << 26;
+/// Most columns that the triangles of a mesh are looked for in, and most crossings that are kept: 256 MiB of them.
+const MOST_VISITS: u64 = super::work::MOST_WORK;
+const MOST_CROSSINGS: usize = 1 << 25;
 /// Most crossings for each column of the map: a mesh of voxels has 16.
 const MOST_PER_COLUMN: usize = 64;
 
@@ -20,11 +20,20 @@ pub(crate) struct Solid {
 
 /// A face over or under the centre of a column.
 struct Crossing {
-    column: u32,
+    /// Twice the number of the column, and one more if the face looks up.
+    column_and_top: u32,
     /// Height in voxels.
     z: f32,
-    /// True if the face looks up.
-    is_top: bool,
+}
+
+impl Crossing {
+    fn column(&self) -> u32 {
+        self.column_and_top / 2
+    }
+
+    fn is_top(&self) -> bool {
+        self.column_and_top % 2 == 1
+    }
 }
 
 /// How far a face may be from the border of two voxels and still lie on it, in voxels.
@@ -48,15 +57,7 @@ impl Solid {
         if area == 0.0 || !area.is_finite() {
             return;
         }
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let range = |axis: usize, n: usize| {
-            // Centres are at halves.
-            let from = (low[axis] - 0.5).ceil().max(0.0);
-            let to = (high[axis] - 0.5).floor().min(n as f64 - 1.0);
-            (from <= to).then_some((from as usize, to as usize))
-        };
-        let (Some((x0, x1)), Some((y0, y1))) = (range(0, self.extent.nx()), range(1, self.extent.ny()))
-        else {
+        let Some([(x0, x1), (y0, y1)]) = around(self.extent, [a, b, c]) else {
             return;
         };
         self.visits = self.visits.saturating_add(((x1 - x0 + 1) * (y1 - y0 + 1)) as u64);
@@ -74,12 +75,17 @@ impl Solid {
                 let (wa, wb) = (share(corners[1], corners[2]), share(corners[2], corners[0]));
                 let z = c.z + wa * (a.z - c.z) + wb * (b.z - c.z);
                 self.crossings.push(Crossing {
-                    column: self.extent.index(x, y) as u32,
+                    column_and_top: 2 * self.extent.index(x, y) as u32 + u32::from(area > 0.0),
                     z: z as f32,
-                    is_top: area > 0.0,
                 });
             }
         }
+    }
+
+    /// The columns that [`add`](Self::add) will look at for a triangle, m, told without doing it.
+    pub(crate) fn cost(extent: Extent, corners: [DVec3; 3]) -> u64 {
+        let columns = around(extent, corners.map(|p| extent.to_voxel_units(p)));
+        columns.map_or(0, |[(x0, x1), (y0, y1)]| ((x1 - x0 + 1) * (y1 - y0 + 1)) as u64)
     }
 
     fn is_too_much(&self) -> bool {
@@ -96,10 +102,10 @@ impl Solid {
                 self.crossings.len()
             )));
         }
-        let order = |a: &Crossing, b: &Crossing| a.column.cmp(&b.column).then(a.z.total_cmp(&b.z));
+        let order = |a: &Crossing, b: &Crossing| a.column().cmp(&b.column()).then(a.z.total_cmp(&b.z));
         self.crossings.sort_unstable_by(order);
-        for column in self.crossings.chunk_by(|a, b| a.column == b.column) {
-            let [x, y] = self.extent.column(column[0].column as usize);
+        for column in self.crossings.chunk_by(|a, b| a.column() == b.column()) {
+            let [x, y] = self.extent.column(column[0].column() as usize);
             if column.len() % 2 == 0 {
                 for pair in column.chunks_exact(2) {
                     let above = |c: &Crossing| (c.z - 0.5).ceil().clamp(0.0, Extent::NZ as f32) as usize;
@@ -107,7 +113,7 @@ impl Solid {
                 }
             } else {
                 for face in column {
-                    let z = match face.is_top {
+                    let z = match face.is_top() {
                         true => (face.z - ON_BORDER).floor(),
                         false => (face.z + ON_BORDER).floor(),
                     };
@@ -119,6 +125,18 @@ impl Solid {
         }
         Ok(())
     }
+}
+
+/// First and last column along x and y whose centre the rectangle around a triangle covers, all in voxels.
+fn around(extent: Extent, [a, b, c]: [DVec3; 3]) -> Option<[(usize, usize); 2]> {
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    let range = |axis: usize, n: usize| {
+        // Centres are at halves.
+        let from = (low[axis] - 0.5).ceil().max(0.0);
+        let to = (high[axis] - 0.5).floor().min(n as f64 - 1.0);
+        (from <= to).then_some((from as usize, to as usize))
+    };
+    Some([range(0, extent.nx())?, range(1, extent.ny())?])
 }
 
 /// Twice the signed area of a triangle.

@@ -4,10 +4,9 @@
 use glam::DVec3;
 use scene::Extent;
 
+use super::work::{MOST_WORK, RIM};
 use crate::FormatError;
 
-/// Most columns that are looked at for all triangles together.
-const MOST_VISITS: u64 = 1 << 29;
 /// Surfaces are moved up by so much, in voxels: one that lies on the border of two voxels belongs to the upper one alone.
 const NUDGE: f64 = 1e-4;
 
@@ -29,6 +28,23 @@ impl Surface {
         Self { extent, visits: 0 }
     }
 
+    /// What [`visit`](Self::visit) will cost for a triangle (m), told without doing it: as many units as columns that the
+    /// triangle covers wholly, and [`RIM`] for each along its rim.
+    pub(crate) fn cost(extent: Extent, corners: [DVec3; 3]) -> u64 {
+        let corners = corners.map(|p| extent.to_voxel_units(p));
+        let n = [extent.nx() as f64, extent.ny() as f64];
+        let mut on_map = Corners::of(&corners);
+        for (axis, n) in n.into_iter().enumerate() {
+            on_map = on_map.half(axis, 0.0, 1.0).half(axis, n, -1.0);
+        }
+        let (Some([x0, x1]), Some([y0, y1])) = (on_map.range(0), on_map.range(1)) else {
+            return 0;
+        };
+        let (rim, area) = (x1 - x0 + y1 - y0 + 1.0, on_map.area());
+        // Not finite only where no column is touched.
+        (area + rim * RIM as f64) as u64
+    }
+
     /// Visits the columns that a triangle (m) touches, with the lowest and the highest point of it there, in voxels (0 at the
     /// bottom of the map, not cut to it).
     pub(crate) fn visit(&mut self, corners: [DVec3; 3], mut visit: impl FnMut([usize; 2], [f64; 2])) {
@@ -44,12 +60,18 @@ impl Surface {
                 continue;
             };
             self.visits += (y1 - y0 + 1) as u64;
-            if self.visits > MOST_VISITS {
+            if self.visits > MOST_WORK {
                 return;
             }
+            let inner = strip.inner(x as f64, (y0, y1));
             for y in y0..=y1 {
-                if let Some(heights) = strip.cut(1, y as f64).range(2) {
-                    visit([x, y], heights);
+                match &inner {
+                    Some(inner) if (inner.from..inner.to).contains(&y) => visit([x, y], inner.heights(y)),
+                    _ => {
+                        if let Some(heights) = strip.cut(1, y as f64).range(2) {
+                            visit([x, y], heights);
+                        }
+                    }
                 }
             }
         }
@@ -57,12 +79,31 @@ impl Surface {
 
     /// Errors where the triangles covered more than is looked at.
     pub(crate) fn finish(&self) -> Result<(), FormatError> {
-        match self.visits > MOST_VISITS {
+        match self.visits > MOST_WORK {
             true => Err(FormatError::new(format!(
-                "surfaces of more than {MOST_VISITS} columns in all, expected fewer or a smaller map"
+                "surfaces of more than {MOST_WORK} columns in all, expected fewer or a smaller map"
             ))),
             false => Ok(()),
         }
+    }
+}
+
+/// The columns of a strip that a triangle covers wholly: their heights follow from those on the two sides of the strip.
+struct Inner {
+    /// First such column, and the one after the last.
+    from: usize,
+    to: usize,
+    /// Height at y = 0 and its rise over y, on both sides.
+    sides: [[f64; 2]; 2],
+}
+
+impl Inner {
+    fn heights(&self, y: usize) -> [f64; 2] {
+        let at = |[base, rise]: [f64; 2], y: f64| base + rise * y;
+        let corner = |side: usize, y: usize| at(self.sides[side], y as f64);
+        let all = [corner(0, y), corner(0, y + 1), corner(1, y), corner(1, y + 1)];
+        let low = all[0].min(all[1]).min(all[2].min(all[3]));
+        [low, all[0].max(all[1]).max(all[2].max(all[3]))]
     }
 }
 
@@ -93,6 +134,37 @@ impl Corners {
             return None;
         }
         Some((low.max(0.0) as usize, high.min(n as f64 - 1.0) as usize))
+    }
+
+    /// Its area seen from above.
+    fn area(&self) -> f64 {
+        let all = self.all();
+        let first = all.first().copied().unwrap_or_default().truncate();
+        let twice = |pair: &[DVec3]| (pair[0].truncate() - first).perp_dot(pair[1].truncate() - first);
+        (all.windows(2).map(twice).sum::<f64>() / 2.0).abs()
+    }
+
+    /// The columns among some that the part of a triangle between x and x + 1 covers wholly.
+    fn inner(&self, x: f64, (y0, y1): (usize, usize)) -> Option<Inner> {
+        let side = |at: f64| {
+            let on_side = || self.all().iter().filter(|p| p.x == at);
+            let low = on_side().min_by(|a, b| a.y.total_cmp(&b.y))?;
+            let high = on_side().max_by(|a, b| a.y.total_cmp(&b.y))?;
+            Some([*low, *high])
+        };
+        let sides = [side(x)?, side(x + 1.0)?];
+        let low = sides[0][0].y.max(sides[1][0].y).max(y0 as f64).ceil();
+        let high = sides[0][1].y.min(sides[1][1].y).min(y1 as f64 + 1.0).floor();
+        // Where a column fits, both sides are longer than one.
+        let line = |[a, b]: [DVec3; 2]| {
+            let rise = (b.z - a.z) / (b.y - a.y);
+            [a.z - rise * a.y, rise]
+        };
+        (low < high).then(|| Inner {
+            from: low as usize,
+            to: high as usize,
+            sides: sides.map(line),
+        })
     }
 
     /// The part of it between a coordinate and the next whole one.
@@ -185,9 +257,44 @@ mod tests {
             DVec3::new(far, -far, 0.0),
             DVec3::new(0.0, far, 0.0),
         ];
-        surface.visits = MOST_VISITS - 5000;
+        surface.visits = MOST_WORK - 5000;
         let mut seen = 0u64;
         surface.visit(all, |_, _| seen += 1);
         assert!(seen <= 5000 && surface.finish().is_err());
+    }
+
+    /// Columns inside of a triangle have the heights that cutting it gives, and the cost is told beforehand.
+    #[test]
+    fn heights_within_and_costs_are_those_of_cutting() {
+        let extent = Extent::new([-30, 4], [80, 60]).expect("sound");
+        let mut state = 9u64;
+        let mut dice = |size: f64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * size
+        };
+        let mut inside = 0;
+        for i in 0..300 {
+            let size = [3.0, 30.0, 300.0, 1e11][i % 4];
+            let corners = [(); 3].map(|()| DVec3::new(dice(size), dice(size) + 10.0, dice(20.0)));
+            let cut = Corners::of(&corners.map(|p| extent.to_voxel_units(p) + DVec3::splat(NUDGE)));
+            let (mut surface, mut visits) = (Surface::new(extent), 0u64);
+            surface.visit(corners, |[x, y], [low, high]| {
+                let strip = cut.cut(0, x as f64);
+                let [l, h] = strip.cut(1, y as f64).range(2).expect("touched");
+                let near = 1e-9 * size.max(1.0);
+                assert!(
+                    (l - low).abs() < near && (h - high).abs() < near,
+                    "{l} {low}, {h} {high}"
+                );
+                visits += 1;
+                inside += usize::from(strip.inner(x as f64, (y, y)).is_some());
+            });
+            let told = Surface::cost(extent, corners);
+            assert!(
+                told >= visits && told <= visits * RIM + 4 * RIM,
+                "{told} for {visits}"
+            );
+        }
+        assert!(inside > 10_000, "{inside}");
     }
 }

@@ -11,7 +11,7 @@ use super::{Content, Importer};
 use crate::lanelets::{self, Between, Lanelet, LaneletMap, MOST_POINTS, Use};
 use crate::opendrive::lanes::Ground;
 use crate::opendrive::xml::{
-    OpenDriveError, Result, bad, child, count, decode, elements, named, parse_document, shown,
+    OpenDriveError, Result, bad, child, count, decode, elements, named, parse_document, shown, within_reach,
 };
 use crate::opendrive::{self, RoadNetwork, Skipped};
 use crate::{FormatError, Holds};
@@ -95,7 +95,7 @@ pub(super) fn number(node: Node<'_, '_>) -> Result<f64> {
 
 pub(super) fn point(node: Node<'_, '_>) -> Result<DVec3> {
     let coordinate = |name: &'static str| match child(node, name) {
-        Some(value) => number(value),
+        Some(value) => within_reach(value, "content", number(value)?),
         None if name == "z" => Ok(0.0),
         None => Err(bad(node, name, "one element", "none")),
     };

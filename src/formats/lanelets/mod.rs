@@ -134,7 +134,7 @@ pub(crate) fn link_by_ends(lanelets: &mut [Lanelet]) {
     }
 }
 
-/// The roads of a map. Errors in one line if no lanelet carries traffic.
+/// The roads of a map. Errors in one line if no lanelet carries traffic, and for lanelets longer than any is or more than are read.
 pub(crate) fn network(map: LaneletMap) -> Result<RoadNetwork, String> {
     let LaneletMap {
         name,
@@ -146,6 +146,10 @@ pub(crate) fn network(map: LaneletMap) -> Result<RoadNetwork, String> {
         start,
         mut skipped,
     } = map;
+    let becomes_road = |l: &&Lanelet| matches!(l.use_, Use::Traffic | Use::Walking);
+    if let Some(problem) = road::problem(lanelets.iter().filter(becomes_road)) {
+        return Err(problem);
+    }
     let of = junctions::find(&lanelets);
     let mut roads = Vec::new();
     let mut drawn = Drawn {

@@ -16,11 +16,49 @@ const STEP_M: f64 = 0.5;
 /// Stations of a lanelet, at most: longer ones have them farther apart.
 const MOST_STATIONS: f64 = 20_000.0;
 
+/// Longest lanelet that is read, m: motorways have some of two kilometres.
+const LONGEST_M: f64 = 1e5;
+/// Stations of all lanelets together, at most: those of 1,000 km of lanes. Each costs up to 400 bytes.
+const MOST_IN_ALL: f64 = 2e6;
+
+/// Stations that a lanelet is read at.
+fn stations(lanelet: &Lanelet) -> f64 {
+    (longest_m(lanelet) / STEP_M).ceil().clamp(2.0, MOST_STATIONS) + 1.0
+}
+
+/// Length of the longer bound.
+fn longest_m(lanelet: &Lanelet) -> f64 {
+    let [left, right] = &lanelet.bounds;
+    length_m(left).max(length_m(right))
+}
+
+/// What is too much of lanelets that become roads, in one line, told before any work is done for them.
+pub(super) fn problem<'a>(lanelets: impl Iterator<Item = &'a Lanelet>) -> Option<String> {
+    let mut stations_in_all = 0.0;
+    for lanelet in lanelets {
+        let long_m = longest_m(lanelet);
+        if !(0.0..=LONGEST_M).contains(&long_m) {
+            return Some(format!(
+                "lanelet {}: a bound of {long_m:.3e} m, expected at most {LONGEST_M:.0} m",
+                lanelet.id
+            ));
+        }
+        stations_in_all += stations(lanelet);
+        if stations_in_all > MOST_IN_ALL {
+            return Some(format!(
+                "lanelet {}: with it more than {:.0} km of lanelets, expected fewer",
+                lanelet.id,
+                MOST_IN_ALL * STEP_M / 1e3
+            ));
+        }
+    }
+    None
+}
+
 /// The road; `None` if the lanelet has no length.
 pub(super) fn of_lanelet(lanelet: &Lanelet, kind: LaneKind, junctions: &Junctions) -> Option<Road> {
     let [left, right] = &lanelet.bounds;
-    let longest = length_m(left).max(length_m(right));
-    let count = (longest / STEP_M).ceil().clamp(2.0, MOST_STATIONS) as usize + 1;
+    let count = stations(lanelet) as usize;
     let (left, right) = (spread(left, count), spread(right, count));
     let middle: Vec<DVec3> = left.iter().zip(&right).map(|(l, r)| (l + r) / 2.0).collect();
     let plan: Vec<DVec2> = middle.iter().map(|p| p.truncate()).collect();
@@ -75,6 +113,7 @@ pub(super) fn of_lanelet(lanelet: &Lanelet, kind: LaneKind, junctions: &Junction
     };
     let [predecessor, successor] = junctions.ends(lanelet.id);
     Some(Road {
+        limits: Vec::new(),
         id: lanelet.id.to_string(),
         junction: junctions.junction_of.get(&lanelet.id).cloned(),
         left_hand: false,

@@ -4,6 +4,8 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use roxmltree::{Document, Node};
+
+use super::geometry::MAX_COORDINATE_M;
 pub(crate) use scene::message::quoted as shown;
 
 /// Why a file was refused. Each is shown as one line.
@@ -163,6 +165,17 @@ pub(crate) fn number_or_none(node: Node<'_, '_>, field: &str) -> Result<Option<f
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(Some(value)),
         _ => Err(bad(node, field, "a finite number", &format!("{text:?}"))),
+    }
+}
+
+/// A coordinate, if it is not farther from the origin than any place on the earth is in any frame.
+pub(crate) fn within_reach(node: Node<'_, '_>, field: &str, value: f64) -> Result<f64> {
+    match value.abs() <= MAX_COORDINATE_M {
+        true => Ok(value),
+        false => {
+            let expected = format!("a magnitude of at most {MAX_COORDINATE_M:e}");
+            Err(bad(node, field, expected, &value.to_string()))
+        }
     }
 }
 

@@ -76,7 +76,7 @@ pub fn drive_scene_of(
     };
     let layout = near.crop_continued(map(frames));
     let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
-    let background = scenery_over(&layout, &boxes, Background::default(), seed);
+    let (background, _) = scenery_over(&layout, &boxes, Background::default(), seed);
     let occupancy = occupancy_over(&layout, &boxes, &background, seed);
     let frame = Frame::new(layout, boxes, occupancy);
     let mut scene = Scene::single("drive", frame, SensorRig::default().into(), seed);
@@ -165,6 +165,8 @@ fn drive(scene: &mut Scene, id: Option<BoxId>, template: Template, mps: f64, dra
         mps,
         at_s: draw.range(0.0, 2.0),
         over_s: draw.range(2.0, 3.5),
+        gap_m: None,
+        keeps_up: false,
     };
     for edit in motion_of(scene, id, &wish).into_iter().flatten() {
         apply(scene, &edit);

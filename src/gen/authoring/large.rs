@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::scenery_around::merged;
+use super::scenery_around::Taken;
 use scene::background::in_extent;
 use scene::moved::Columns;
-use scene::{Background, BevLayout, BoxId, Extent, SceneBox, Thing, VoxelGrid, Window};
+use scene::{Background, BevLayout, BoxId, Extent, Form, SceneBox, Thing, VoxelGrid, Window};
 use world::World;
 use world::draw::hash;
 use world::scenery;
@@ -75,13 +75,14 @@ impl Tile {
     }
 }
 
-/// What stands beside the roads of a map: what is `there` already, and scenery around it.
+/// What stands beside the roads of a map: what is `there` already, and scenery around it, as much as a scene holds. Also how many
+/// things were drawn and left out because a scene does not hold them.
 pub fn scenery_over(
     layout: &BevLayout,
     boxes: &BTreeMap<BoxId, SceneBox>,
     there: Background,
     seed: u64,
-) -> Background {
+) -> (Background, usize) {
     let tiles = tiles(layout.extent());
     let drawn: Vec<Background> = tiles
         .par_iter()
@@ -100,9 +101,38 @@ pub fn scenery_over(
             tile.moved(&kept, tile.to_window.back())
         })
         .collect();
-    drawn
-        .iter()
-        .fold(there, |there, drawn| merged(layout.extent(), there, drawn))
+    // What a window draws keeps clear of what the windows before it drew.
+    let mut taken = Taken::by(layout.extent(), there.iter().map(|t| &t.form));
+    let mut forms: Vec<&Form> = Vec::new();
+    for drawn in &drawn {
+        let before = forms.len();
+        forms.extend(drawn.iter().map(|t| &t.form).filter(|form| taken.is_free(form)));
+        forms[before..].iter().for_each(|form| taken.add(form));
+    }
+    let room = Background::MAX_THINGS.saturating_sub(there.len());
+    let kept = thinned(&forms, room);
+    let left_out = forms.len() - kept.len();
+    let mut out = there;
+    for form in kept {
+        out.add(form.clone());
+    }
+    (out, left_out)
+}
+
+/// As many of some forms as there is room for, evenly over the map; plants and posts go before buildings, walls and bridges do.
+fn thinned<'a>(forms: &[&'a Form], room: usize) -> Vec<&'a Form> {
+    let is_small = |form: &Form| matches!(form, Form::Tree(_) | Form::Post(_) | Form::Shrubs(_));
+    let small = forms.iter().filter(|form| is_small(form)).count();
+    let large = forms.len() - small;
+    let room_of = [large.min(room), small.min(room - large.min(room))];
+    let mut met = [0; 2];
+    let mut keeps = |form: &&&Form| {
+        let kind = usize::from(is_small(form));
+        let (n, of, most) = (met[kind], [large, small][kind], room_of[kind]);
+        met[kind] += 1;
+        n * most / of != (n + 1) * most / of
+    };
+    forms.iter().filter(|form| keeps(form)).copied().collect()
 }
 
 /// The voxels of a world over a map.
@@ -136,6 +166,8 @@ pub fn occupancy_over(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
+    use scene::background::{Building, Tree, TreeKind};
     use scene::{BevLayer, Class};
     use world::template;
 
@@ -160,7 +192,8 @@ mod tests {
             layout.set(BevLayer::Walkway, x, y, (6.0..9.0).contains(&p.y.abs()));
         }
         let boxes = BTreeMap::new();
-        let background = scenery_over(&layout, &boxes, Background::default(), 3);
+        let (background, left_out) = scenery_over(&layout, &boxes, Background::default(), 3);
+        assert_eq!(left_out, 0);
         assert!(background.len() > 60, "{} things", background.len());
         let grid = occupancy_over(&layout, &boxes, &background, 3);
         assert_eq!(grid.extent(), extent);
@@ -176,9 +209,44 @@ mod tests {
             .build()
             .expect("a pool");
         let again = pool.install(|| {
-            let background = scenery_over(&layout, &boxes, Background::default(), 3);
+            let (background, _) = scenery_over(&layout, &boxes, Background::default(), 3);
             occupancy_over(&layout, &boxes, &background, 3)
         });
         assert_eq!(again, grid);
+    }
+
+    /// A map with 30,075 things was made for 104 s and then refused.
+    #[test]
+    fn more_than_a_scene_holds_is_thinned_evenly() {
+        let tree = |x: usize| {
+            Form::Tree(Tree {
+                position_m: DVec2::new(x as f64, 0.0),
+                height_m: 6.0,
+                crown_radius_m: 1.5,
+                kind: TreeKind::Broadleaf,
+            })
+        };
+        let house = |x: usize| {
+            let at = DVec2::new(x as f64, 20.0);
+            Form::Building(Building::rectangle(at, DVec2::splat(5.0), DVec2::X, 9.0))
+        };
+        let all: Vec<Form> = (0..900)
+            .map(|x| if x % 9 == 0 { house(x) } else { tree(x) })
+            .collect();
+        let forms: Vec<&Form> = all.iter().collect();
+        assert_eq!(thinned(&forms, 900), forms);
+        let kept = thinned(&forms, 300);
+        assert_eq!(kept.len(), 300);
+        let houses = |forms: &[&Form]| forms.iter().filter(|f| matches!(f, Form::Building(_))).count();
+        assert_eq!(houses(&kept), 100);
+        // A third of the trees of every part: 200 of 800.
+        for part in 0..10 {
+            let within = |f: &&&Form| (part * 90..part * 90 + 90).contains(&(f.middle_m().x as usize));
+            let trees = kept.iter().filter(within).count() - 10;
+            assert!((19..=21).contains(&trees), "{trees}");
+        }
+        assert_eq!(houses(&thinned(&forms, 40)), 40);
+        assert_eq!(thinned(&forms, 40).len(), 40);
+        assert!(thinned(&forms, 0).is_empty());
     }
 }

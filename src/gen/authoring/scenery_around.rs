@@ -8,23 +8,45 @@ use scene::{Background, Extent, Form};
 /// Room around a thing of the file, m.
 const ROOM_M: f64 = 1.0;
 
+/// The columns of a map that things stand on, with some room around them.
+pub struct Taken {
+    extent: Extent,
+    is_taken: Vec<bool>,
+}
+
+impl Taken {
+    /// By some forms.
+    pub fn by<'a>(extent: Extent, forms: impl IntoIterator<Item = &'a Form>) -> Self {
+        let mut out = Self {
+            extent,
+            is_taken: vec![false; extent.columns()],
+        };
+        forms.into_iter().for_each(|form| out.add(form));
+        out
+    }
+
+    /// By one more.
+    pub fn add(&mut self, form: &Form) {
+        let (extent, is_taken) = (self.extent, &mut self.is_taken);
+        columns(extent, form, ROOM_M, |x, y| is_taken[extent.index(x, y)] = true);
+    }
+
+    /// True if nothing stands where a form would.
+    pub fn is_free(&self, form: &Form) -> bool {
+        let mut free = true;
+        columns(self.extent, form, 0.0, |x, y| {
+            free &= !self.is_taken[self.extent.index(x, y)]
+        });
+        free
+    }
+}
+
 /// The things that are there, and of those drawn on a map the ones that keep clear of them.
 pub fn merged(extent: Extent, there: Background, drawn: &Background) -> Background {
-    let mut taken = vec![false; extent.columns()];
-    for thing in there.iter() {
-        columns(extent, &thing.form, ROOM_M, |x, y| {
-            taken[extent.index(x, y)] = true
-        });
-    }
+    let taken = Taken::by(extent, there.iter().map(|t| &t.form));
     let mut out = there;
-    for thing in drawn.iter() {
-        let mut free = true;
-        columns(extent, &thing.form, 0.0, |x, y| {
-            free &= !taken[extent.index(x, y)]
-        });
-        if free {
-            out.add(thing.form.clone());
-        }
+    for thing in drawn.iter().filter(|t| taken.is_free(&t.form)) {
+        out.add(thing.form.clone());
     }
     out
 }

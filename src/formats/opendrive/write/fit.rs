@@ -17,7 +17,7 @@ const LONGEST_M: f64 = 60.0;
 const OVER_M: f64 = 1.5;
 
 /// Through points at most a metre or so apart, from the first to the last; headings (rad) at the ends where they are given.
-/// `None` for fewer than two points or a line without length.
+/// `None` for fewer than two points, a line without length, and two neighbours farther apart than any record reaches.
 pub(crate) fn reference(points: &[DVec2], ends_rad: [Option<f64>; 2]) -> Option<ReferenceLine> {
     let mut clean: Vec<DVec2> = Vec::with_capacity(points.len());
     for p in points.iter().filter(|p| p.is_finite()) {
@@ -43,6 +43,8 @@ pub(crate) fn reference(points: &[DVec2], ends_rad: [Option<f64>; 2]) -> Option<
                     records.push(record.at_s(s_m));
                 }
             },
+            // Nothing is left to divide.
+            None if to - from <= 1 => return None,
             None => {
                 let middle = usize::midpoint(from, to);
                 stack.push((middle, to));
@@ -309,7 +311,9 @@ mod tests {
         let line = reference(&points, [Some(0.5), Some(-0.25)]).expect("a line");
         assert!((line.at(0.0).heading_rad - 0.5).abs() < 1e-9);
         assert!(wrapped(line.at(line.end_s_m()).heading_rad + 0.25).abs() < 1e-9);
-        for bad in [&points[..1], &[DVec2::NAN, DVec2::ONE], &[DVec2::ONE; 3]] {
+        // Points too far apart for a record were divided for ever.
+        let far = [DVec2::ZERO, DVec2::new(1e11, 3.0), DVec2::new(1e11, 9.0)];
+        for bad in [&points[..1], &[DVec2::NAN, DVec2::ONE], &[DVec2::ONE; 3], &far] {
             assert!(reference(bad, [None, None]).is_none());
         }
     }
