@@ -164,6 +164,23 @@ pub fn measured(relation: RelationKind, from: &SceneBox, to: &SceneBox) -> f64 {
     }
 }
 
+/// How far a box is from a target, as the distance of a relation is measured, m; none where there is no such target.
+pub fn from_m(map: &LaneMap<'_>, relation: RelationKind, from: &SceneBox, to: &Target) -> Option<f64> {
+    let p = from.center_m.truncate();
+    match to {
+        Target::Thing(b) => Some(measured(relation, from, b)),
+        Target::Lane(role) => {
+            let lane = map
+                .points
+                .iter()
+                .filter(|l| *role == LaneRole::Road || l.role == *role);
+            lane.map(|l| l.p.distance(p)).min_by(f64::total_cmp)
+        }
+        Target::Crossing => Some(outline_m(map.crossing()?, p).max(0.0)),
+        Target::Junction => Some((map.junction?.distance(p) - 10.0).max(0.0)),
+    }
+}
+
 /// True if `relation` holds between a box and a target. Stated distances are met to 15 %, or 1.5 m.
 pub fn holds(
     map: &LaneMap<'_>,

@@ -5,6 +5,7 @@ mod cost;
 pub mod description;
 pub mod holds;
 pub mod lanes;
+pub mod off;
 pub mod road;
 pub mod rules;
 mod spots;

@@ -4,9 +4,11 @@ use serde::Serialize;
 
 use super::grammar;
 use super::lexicon::{is_english, is_other_thing};
+use super::measure::{Kind, Measure, measures};
 use super::notation;
 use super::nouns::Noun;
-use super::reading::{Quantity, Reading, Thing, What};
+use super::reading::{Anchor, Quantity, Reading, Thing, What};
+use super::slots::{Slot, slots};
 use super::tokens::{Speller, Token, number_word};
 use place::beside_road::Span;
 
@@ -84,11 +86,13 @@ const NOT: [&str; 10] = [
 pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Speller) -> Vec<Missing> {
     let line = notation::write(reading);
     let said: Vec<&str> = line.split(' ').collect();
-    let sums = sums(reading);
+    let numbers = Numbers::of(reading, tokens);
+    let nouns = named(reading);
     let corrected = tokens
         .iter()
         .rposition(|t| CORRECTS.contains(&t.text.as_str()))
         .unwrap_or(0);
+    let mut of_text = measures(tokens).into_iter().peekable();
     let mut out: Vec<Missing> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
@@ -102,16 +106,18 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
             end += 1;
         }
         let before = i.checked_sub(1).map_or("", |k| tokens[k].text.as_str());
-        let why = if let Some(v) = t.value {
-            let there = number_is_said(v, t, &said) || !t.is_length && sums.contains(&v);
-            let around = &tokens[i.saturating_sub(NEAR)..tokens.len().min(i + NEAR + 1)];
-            // ("second 3" is a moment)
-            let is_moment = before == "second";
-            let works_out = !is_moment && around.iter().any(|t| ARITHMETIC.contains(&t.text.as_str()));
-            let small = !t.is_length && (v <= 1.0 || works_out);
-            (!there && !small && !NOT.contains(&before) && t.text != "hundred").then_some(Why::NotCarriedOut)
+        while of_text.peek().is_some_and(|m| m.from < i) {
+            of_text.next();
+        }
+        let measure = of_text.peek().filter(|m| m.from == i).copied();
+        let why = if let Some(m) = measure {
+            end = m.to;
+            (!numbers.hold(&m)).then_some(Why::NotCarriedOut)
         } else if !t.senses.is_empty() {
-            let there = t.senses.iter().any(|s| sense_is_said(s.kind, s.symbol, &said));
+            let there = t
+                .senses
+                .iter()
+                .any(|s| sense_is_said(s.kind, s.symbol, &said, &nouns));
             let of_the_thing = t
                 .senses
                 .iter()
@@ -145,6 +151,110 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
     out
 }
 
+/// The numbers that a reading holds, and what the words around those of the text say of them.
+struct Numbers<'t> {
+    tokens: &'t [Token],
+    slots: Vec<Slot>,
+    sums: Vec<f64>,
+    tells_time: bool,
+    halves: bool,
+}
+
+impl<'t> Numbers<'t> {
+    fn of(reading: &Reading, tokens: &'t [Token]) -> Self {
+        Self {
+            tokens,
+            slots: slots(reading),
+            sums: sums(reading),
+            tells_time: reading.acts.iter().any(|a| matches!(a.what, What::Time { .. })),
+            halves: notation::write(reading).split(' ').any(|s| s == "half"),
+        }
+    }
+
+    /// True if a number of the text is in the reading as what it is, or is not meant.
+    fn hold(&self, m: &Measure) -> bool {
+        self.is_taken_back(m)
+            || self.slots.iter().any(|s| s.is(m))
+            || match m.kind {
+                Kind::Count => self.is_worked_out(m),
+                Kind::Share => m.value == 50.0 && self.halves,
+                // ("at 11 pm" is night)
+                Kind::Clock => self.tells_time,
+                _ => false,
+            }
+    }
+
+    fn word(&self, i: Option<usize>) -> &str {
+        i.and_then(|i| self.tokens.get(i)).map_or("", |t| t.text.as_str())
+    }
+
+    /// True if a number of things is one that others add up to, or that is too small to be written as one.
+    fn is_worked_out(&self, m: &Measure) -> bool {
+        let i = m.from;
+        let before = self.word(i.checked_sub(1));
+        let around = &self.tokens[i.saturating_sub(NEAR)..self.tokens.len().min(i + NEAR + 1)];
+        // ("second 3" is a moment)
+        let is_moment = before == "second";
+        let works_out = !is_moment && around.iter().any(|t| ARITHMETIC.contains(&t.text.as_str()));
+        m.value <= 1.0 || works_out || self.sums.contains(&m.value) || self.word(Some(i)) == "hundred"
+    }
+
+    /// True if the words before a number say that it is not meant: "not 25", "from 15 to 20 m".
+    fn is_taken_back(&self, m: &Measure) -> bool {
+        let at = m.from.checked_sub(1);
+        let before = self.word(at);
+        if m.kind == Kind::Count {
+            return NOT.contains(&before);
+        }
+        let earlier = self.word(at.and_then(|k| k.checked_sub(1)));
+        match before {
+            "not" | "no" | "isnt" | "wasnt" | "instead" | "was" | "were" => true,
+            "of" => earlier == "instead",
+            "than" => matches!(earlier, "rather" | "other"),
+            "from" => self.word(Some(m.to)) == "to",
+            _ => false,
+        }
+    }
+}
+
+/// A thing that a reading names.
+struct Named {
+    noun: Noun,
+    /// It stands for every thing there is: "remove all objects".
+    is_everything: bool,
+}
+
+/// All things that a reading names.
+fn named(reading: &Reading) -> Vec<Named> {
+    fn add(t: &Thing, takes: bool, out: &mut Vec<Named>) {
+        // (the others of "no other vehicles" are those that were not named)
+        let rest = takes && t.other;
+        if !rest {
+            out.push(Named {
+                noun: t.noun,
+                is_everything: takes && t.noun == Noun::Thing,
+            });
+        }
+        for p in &t.places {
+            for a in [&p.to, &p.and].into_iter().flatten() {
+                if let Anchor::Thing(t) = a {
+                    add(t, false, out);
+                }
+            }
+        }
+        t.except.iter().for_each(|t| add(t, false, out));
+    }
+    let mut out = Vec::new();
+    for act in &reading.acts {
+        let takes = matches!(
+            act.what,
+            What::Remove { .. } | What::No { .. } | What::Keep { .. } | What::Leave { .. }
+        );
+        act.what.things(&mut |t| add(t, takes, &mut out));
+    }
+    out
+}
+
 /// What numbers of things add up to: "five cars, one of them red" is four and one.
 fn sums(reading: &Reading) -> Vec<f64> {
     const MOST: u32 = 60;
@@ -163,59 +273,37 @@ fn sums(reading: &Reading) -> Vec<f64> {
         sums.extend(more);
     };
     for act in &reading.acts {
-        let (who, things): (&[Thing], &[Thing]) = match &act.what {
-            What::Add { things } => (&[], things),
-            What::Replace { who, things } => (who, things),
-            What::Remove { who }
-            | What::Keep { who }
-            | What::Leave { who }
-            | What::Move { who, .. }
-            | What::Turn { who, .. }
-            | What::Set { who, .. }
-            | What::Go { who, .. } => (who, &[]),
-            What::Swap { one, other } => (std::slice::from_ref(one), std::slice::from_ref(other)),
-            _ => continue,
-        };
-        who.iter().chain(things).for_each(&mut add);
+        if !matches!(act.what, What::No { .. } | What::Count { .. }) {
+            act.what.things(&mut add);
+        }
     }
     sums.into_iter().skip(1).map(f64::from).collect()
 }
 
-fn number_is_said(v: f64, token: &Token, said: &[&str]) -> bool {
-    said.iter().any(|s| {
-        let length = s.strip_suffix('m').and_then(|n| n.parse::<f64>().ok());
-        let plain = s
-            .trim_start_matches('#')
-            .trim_end_matches("kmh")
-            .trim_end_matches('s')
-            .parse::<f64>()
-            .ok()
-            .filter(|_| !token.is_length);
-        length.or(plain).is_some_and(|n| (n - v).abs() < 0.06 + 1e-3 * v)
-    })
-}
-
-fn sense_is_said(kind: &str, symbol: &str, said: &[&str]) -> bool {
+fn sense_is_said(kind: &str, symbol: &str, said: &[&str], nouns: &[Named]) -> bool {
     let has = |s: &str| said.contains(&s) || said.contains(&format!("not_{s}").as_str());
     if has(symbol) {
         return true;
     }
     match kind {
-        // (what is called by a wider or a finer word, or by a pronoun)
+        // (what is called by a wider or a finer word; a pronoun stands for what was named, and for nothing else)
         "noun" => {
             let Some(noun) = Noun::of(symbol) else { return true };
-            said.iter().filter_map(|s| Noun::of(s)).any(|n| {
-                // (who rides or drives is what is ridden)
-                let rides = matches!(
+            let stands_for = |n: Noun| matches!(n, Noun::It | Noun::One | Noun::Thing);
+            // (who rides or drives is what is ridden)
+            let rides = |n: Noun| {
+                matches!(
                     n,
                     Noun::Bicycle | Noun::Motorcycle | Noun::Scooter | Noun::TwoWheeler
-                );
-                let person = noun.classes() == Noun::Person.classes();
-                matches!(n, Noun::It | Noun::One | Noun::Thing)
-                    || person && rides
-                    || said.first() == Some(&"keep")
-                    || n.classes().iter().any(|c| noun.classes().contains(c))
-            })
+                )
+            };
+            let person = noun.classes() == Noun::Person.classes();
+            said.first() == Some(&"keep")
+                || stands_for(noun) && !nouns.is_empty()
+                || nouns.iter().any(|n| {
+                    let shares = || n.noun.classes().iter().any(|c| noun.classes().contains(c));
+                    n.is_everything || person && rides(n.noun) || !stands_for(n.noun) && shares()
+                })
         }
         // ("the colour of the bus", "no more rain")
         "paint" => said.contains(&"paint_of"),

@@ -154,8 +154,10 @@ fn manoeuvre(how: &Manoeuvre) -> String {
     if let Some(s) = how.from_s {
         text += &format!(" after {s} s");
     }
-    if let Some(m) = how.gap_m {
-        text += &format!(" when {m} m are left between us");
+    match how.gap_m {
+        Some(m) if how.what == Template::Follow => text += &format!(" {m} m behind them"),
+        Some(m) => text += &format!(" when {m} m are left between us"),
+        None => {}
     }
     if let Some(kmh) = how.kmh {
         text += &format!(" at {kmh} km/h");

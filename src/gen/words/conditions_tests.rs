@@ -88,6 +88,7 @@ fn edits_by_words_set_the_conditions() {
             layout: &world.layout,
             prompt: "night, rain, downtown",
             conditions,
+            clip: None,
             ego_moves: false,
             length_s: 0.0,
         };

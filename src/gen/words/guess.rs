@@ -2,11 +2,11 @@
 //! are not put in, moved or taken away; of people, who are called by countless words, the reader is unsure.
 
 use super::grammar;
-use super::lexicon::{Lexicon, is_english, is_other_thing};
+use super::lexicon::{Lexicon, is_other_thing};
 use super::notation;
 use super::nouns::Noun;
 use super::reading::{Anchor, Reading, Thing, What};
-use super::tokens::{Token, is_one_slip};
+use super::tokens::Token;
 use place::beside_road::Span;
 use scene::Class;
 
@@ -122,7 +122,7 @@ fn names(token: &Token, fits: &dyn Fn(&str) -> bool) -> bool {
     let alone = Lexicon::bundled().senses(&token.text).unwrap_or_default();
     let senses = token.senses.iter().chain(alone);
     let mut senses = senses.filter(|s| matches!(s.kind, "noun" | "group"));
-    senses.any(|s| fits(s.symbol)) || is_slip_of(&token.text, fits)
+    senses.any(|s| fits(s.symbol)) || token.slip_of.iter().any(|s| fits(s))
 }
 
 /// True if a word of the text names the kind of a thing, or is a slip of a word that does.
@@ -133,15 +133,6 @@ fn is_named(t: &Thing, tokens: &[Token]) -> bool {
         || tokens
             .iter()
             .any(|token| somebody(token) || names(token, &|s| fits(s, t.noun)))
-}
-
-/// True if one slip of the keys makes the word of one whose noun fits.
-fn is_slip_of(word: &str, fits: &dyn Fn(&str) -> bool) -> bool {
-    word.chars().count() > 2
-        && !is_english(word)
-        && Lexicon::bundled()
-            .nouns()
-            .any(|(form, symbol)| is_one_slip(word, form) && fits(symbol))
 }
 
 #[cfg(test)]

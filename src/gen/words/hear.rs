@@ -8,10 +8,13 @@ use super::canonical::canonical;
 use super::conditions;
 use super::grammar;
 use super::guess::take_out_guesses;
+use super::halt;
 use super::indefinite;
+use super::measure::measures;
 use super::notation;
 use super::reader::{LearnedReader, Mode};
 use super::reading::Reading;
+use super::slots;
 use super::tokens::{LONGEST, Token, tokens};
 use nn::weights::WeightsError;
 use place::beside_road::Span;
@@ -76,8 +79,14 @@ impl Heard {
 ///
 /// If the bundled weights are damaged.
 pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
-    let Taken { said, rest } = take(text, mode == Mode::Edit);
+    let Taken { said, rest, idle } = take(text, mode == Mode::Edit);
     let mut heard = hear_objects(&rest, mode)?;
+    let named = idle.into_iter().map(|span| Missing {
+        span,
+        words: span.of(text).to_owned(),
+        why: Why::NotCarriedOut,
+    });
+    heard.missing.extend(named);
     if let Some(other) = &mut heard.other {
         other.background.clone_from(&said);
     }
@@ -92,20 +101,11 @@ pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
 /// If the bundled weights are damaged.
 pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     let learned = LearnedReader::bundled()?;
-    let mut said = learned.read(text, mode);
-    // (of words that are in no list, nothing is guessed)
-    let known = |t: &Token| {
-        !t.senses.is_empty()
-            || t.value.is_some()
-            || learned.speller().is_common(&t.text)
-            || grammar::knows(&t.text)
-    };
-    if !said.tokens.iter().any(known) {
-        said.reading = Reading::default();
-    }
+    let said = learned.read(text, mode);
+    let known = |t: &Token| t.value.is_some() || learned.knows(t);
     let plain = grammar::read(&without_unknown(&said.tokens, &known), mode);
     let agree = plain.is_whole() && says_the_same(&plain.reading, &said.reading, mode);
-    let (by, reading, other) = match (agree, plain.is_whole()) {
+    let (by, reading, mut other) = match (agree, plain.is_whole()) {
         (true, _) => (By::Both, plain.reading, None),
         // (what the grammar reads to the last word is plain English)
         (false, true) => (By::Grammar, plain.reading, Some(said.reading)),
@@ -120,6 +120,11 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     if mode == Mode::Edit {
         indefinite::set_right(&mut reading, &said.tokens);
     }
+    let numbers = measures(&said.tokens);
+    for reading in std::iter::once(&mut reading).chain(&mut other) {
+        slots::set_right(reading, &said.tokens, &numbers);
+    }
+    let halted = halt::set_right(&mut reading, text, &said.tokens, mode);
     let unsure = match by {
         By::Learned => (0..reading.acts.len())
             .filter(|i| reading.acts[*i].confidence < UNSURE)
@@ -150,6 +155,7 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
         })
         .collect();
     missing.extend(unnamed);
+    missing.extend(halted);
     let bytes_left = Span {
         start: said
             .left_out
@@ -227,6 +233,7 @@ pub fn against(
     let other = own
         .map(|h| h.reading.clone())
         .filter(|o| !o.acts.is_empty() && !says_the_same(o, &reading, mode));
+    slots::set_right(&mut reading, &tokens, &measures(&tokens));
     let mut missing = missing(text, &tokens, &reading, learned.speller());
     // (a word that is in no list here may be one that the model knows, of another language say)
     missing.retain(|m| m.why != Why::Unknown || reading.is_empty());

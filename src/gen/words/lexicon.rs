@@ -32,6 +32,8 @@ pub struct Lexicon {
     senses: HashMap<String, Vec<Sense>>,
     units: HashMap<String, Unit>,
     ids: HashMap<Sense, usize>,
+    /// Single words that name a kind of thing, with its symbol, by their number of letters.
+    nouns: HashMap<usize, Vec<(String, &'static str)>>,
 }
 
 static LEXICON: LazyLock<Lexicon> = LazyLock::new(|| Lexicon::new(assets::words::LEXICON));
@@ -69,6 +71,7 @@ impl Lexicon {
             senses: HashMap::new(),
             units: HashMap::new(),
             ids: HashMap::new(),
+            nouns: HashMap::new(),
         };
         let lines = text.lines().filter(|l| !l.starts_with('#'));
         for (key, words) in lines.filter_map(|l| l.split_once(": ")) {
@@ -99,6 +102,12 @@ impl Lexicon {
         }
         let all: BTreeSet<Sense> = out.senses.values().flatten().cloned().collect();
         out.ids = all.into_iter().zip(1..).collect();
+        for (word, senses) in out.senses.iter().filter(|(w, _)| !w.contains(' ')) {
+            for s in senses.iter().filter(|s| s.kind == "noun") {
+                let of = out.nouns.entry(word.chars().count()).or_default();
+                of.push((word.clone(), s.symbol));
+            }
+        }
         out
     }
 
@@ -127,13 +136,12 @@ impl Lexicon {
         self.ids.is_empty()
     }
 
-    /// Words that name a kind of thing, each with its symbol.
-    pub fn nouns(&self) -> impl Iterator<Item = (&str, &'static str)> {
-        let words = self.senses.iter().filter(|(w, _)| !w.contains(' '));
-        let nouns = words.flat_map(|(w, senses)| senses.iter().map(move |s| (w.as_str(), s)));
-        nouns
-            .filter(|(_, s)| s.kind == "noun")
-            .map(|(w, s)| (w, s.symbol))
+    /// Words of about as many letters that name a kind of thing, each with its symbol.
+    pub fn nouns_near(&self, word: &str) -> impl Iterator<Item = (&str, &'static str)> {
+        let n = word.chars().count();
+        let lists = [n.saturating_sub(1), n, n + 1];
+        let found = lists.into_iter().filter_map(|n| self.nouns.get(&n));
+        found.flatten().map(|(w, s)| (w.as_str(), *s))
     }
 
     /// Phrases of one word.

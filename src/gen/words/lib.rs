@@ -12,9 +12,11 @@ pub mod conditions;
 pub mod describe;
 pub mod grammar;
 mod guess;
+mod halt;
 pub mod hear;
 mod indefinite;
 pub mod lexicon;
+pub mod measure;
 mod mode;
 mod named;
 pub mod notation;
@@ -24,9 +26,12 @@ pub mod reader;
 pub mod reading;
 pub mod remark;
 mod resolve;
+pub mod slots;
 pub mod stage;
 pub mod tokens;
 
+#[cfg(test)]
+mod measure_tests;
 #[cfg(test)]
 mod place_tests;
 #[cfg(test)]

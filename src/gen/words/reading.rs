@@ -212,6 +212,30 @@ pub enum What {
     },
 }
 
+impl What {
+    /// Visits the things that it is about, those that it changes first; not what they are placed by.
+    pub fn things(&self, visit: &mut dyn FnMut(&Thing)) {
+        match self {
+            Self::Add { things } => things.iter().for_each(visit),
+            Self::No { who }
+            | Self::Remove { who }
+            | Self::Keep { who }
+            | Self::Leave { who }
+            | Self::Move { who, .. }
+            | Self::Turn { who, .. }
+            | Self::Count { who, .. }
+            | Self::Go { who, .. } => who.iter().for_each(visit),
+            Self::Replace { who, things } => who.iter().chain(things).for_each(visit),
+            Self::Set { who, traits } => {
+                let of = traits.paint_of.as_deref();
+                who.iter().chain(of).for_each(visit);
+            }
+            Self::Swap { one, other } => [&**one, &**other].into_iter().for_each(visit),
+            _ => {}
+        }
+    }
+}
+
 named!(
     /// Parts of a road.
     Feature { Crossing = "crossing", Sidewalk = "sidewalk" }

@@ -52,6 +52,17 @@ pub enum Remark {
         /// Which.
         relations: Vec<&'static str>,
     },
+    /// It stands, and not as far away as was said.
+    Off {
+        /// What the distance is of.
+        relation: &'static str,
+        /// As it was said, m.
+        asked_m: f64,
+        /// As it is, m.
+        found_m: f64,
+    },
+    /// The ego vehicle moves, though nobody else does.
+    WeGoOn,
     /// A box finds no place there and stays.
     NoRoom {
         /// Its id.
@@ -134,6 +145,16 @@ impl fmt::Display for Remark {
                 words.dedup();
                 write!(f, "not everything said could be met: {}", words.join(", "))
             }
+            Self::Off {
+                relation,
+                asked_m,
+                found_m,
+            } => write!(
+                f,
+                "{}: {found_m} m in place of {asked_m} m",
+                relation.replace('_', " ")
+            ),
+            Self::WeGoOn => write!(f, "we ourselves go on"),
             Self::NoRoom { id } => write!(f, "box {id} finds no room there: not moved"),
             Self::Outside { id } => write!(
                 f,

@@ -13,7 +13,8 @@ use scene::clip::Manoeuvre;
 use scene::graph::{LaneRole, ObjectState};
 use scene::roads::{RoadChange, RoadWish};
 use scene::{
-    BevLayer, BevLayout, BoxId, BoxLabel, Class, Conditions, Edit, Polyline, PolylineKind, SceneBox, Shape,
+    BevLayer, BevLayout, BoxId, BoxLabel, Class, Clip, Conditions, Edit, Polyline, PolylineKind, SceneBox,
+    Shape,
 };
 
 /// An open scene, as far as words need it.
@@ -27,6 +28,8 @@ pub struct OpenScene<'a> {
     pub prompt: &'a str,
     /// Its light and air.
     pub conditions: Conditions,
+    /// What moves in the course of time; nothing does without it.
+    pub clip: Option<&'a Clip>,
     /// The ego vehicle moves.
     pub ego_moves: bool,
     /// How long it lasts, s; 0 for one moment.
@@ -100,6 +103,7 @@ pub struct Stage<'a> {
     pub(super) prompt: String,
     pub(super) conditions: Conditions,
     pub(super) ego_moves: bool,
+    pub(super) clip: Option<&'a Clip>,
     pub(super) length_s: f64,
     /// What acts before let boxes do.
     pub(super) does: BTreeMap<BoxId, Manoeuvre>,
@@ -131,6 +135,7 @@ impl<'a> Stage<'a> {
             prompt: scene.prompt.to_owned(),
             conditions: scene.conditions,
             ego_moves: scene.ego_moves,
+            clip: scene.clip,
             length_s: scene.length_s,
             does: BTreeMap::new(),
             seed,
@@ -196,6 +201,25 @@ impl<'a> Stage<'a> {
         self.done().changed.push(b.id);
         self.out.edits.push(Edit::RemoveBox { id: b.id });
         self.out.edits.push(b.into());
+    }
+
+    /// Lets a box that moves in the course of time stand where it is; false if it does not move.
+    pub(super) fn halt_box(&mut self, id: BoxId) -> bool {
+        let track = self.clip.and_then(|clip| clip.tracks.get(&id));
+        if track.is_none_or(|t| t.stands()) {
+            return false;
+        }
+        if let Some(b) = self.boxes.get_mut(&id) {
+            b.velocity_mps = DVec2::ZERO;
+        }
+        self.done().changed.push(id);
+        self.out.edits.push(Edit::SetMotion {
+            id: Some(id),
+            motion: None,
+            from_s: None,
+            to_s: None,
+        });
+        true
     }
 
     pub(super) fn label_box(&mut self, id: BoxId, label: BoxLabel) {

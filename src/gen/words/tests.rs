@@ -62,6 +62,66 @@ fn content_words_are_in_the_reading_or_named() {
     );
 }
 
+/// A pronoun stands for what was named, and not for what was not.
+#[test]
+fn a_pronoun_silences_no_noun() {
+    let not = |words: &[&str]| -> Vec<(String, Why)> {
+        let named = words.iter().map(|w| ((*w).to_owned(), Why::NotCarriedOut));
+        named.collect()
+    };
+    for (text, line, named) in [
+        ("remove the bus and the car", "remove it", &["bus", "car"][..]),
+        (
+            "a red car and a blue bus",
+            "add 1 red car and 1 blue one",
+            &["bus"],
+        ),
+        (
+            "two cars, a bus, no other objects",
+            "add 2 car ; no other thing",
+            &["bus"],
+        ),
+        ("no bus and no other vehicles", "no other vehicle", &["bus"]),
+        (
+            "move the taxi next to the truck",
+            "move the thing to ( next_to it )",
+            &["taxi", "truck"],
+        ),
+        // What is meant by them is there.
+        ("remove the cars, the bus, everything", "remove all thing", &[]),
+        ("the taxi: paint it red", "set the taxi red", &[]),
+        (
+            "a yellow truck and a black one",
+            "add 1 yellow truck and 1 black one",
+            &[],
+        ),
+        ("remove the box", "remove the thing", &[]),
+    ] {
+        assert_eq!(missed(text, line), not(named), "{text}");
+    }
+}
+
+#[test]
+fn who_shall_stand_is_not_taken_away() {
+    use super::reading::What;
+    for text in [
+        "nobody moves any more",
+        "nobody moves anymore",
+        "no one is moving any more",
+        "nothing moves any longer",
+        "no cars drive any more",
+    ] {
+        let heard = hear(text, Mode::Edit).expect("weights");
+        let line = notation::write(&heard.reading);
+        let takes = |w: &What| matches!(w, What::No { .. } | What::Remove { .. } | What::Keep { .. });
+        assert!(
+            !heard.reading.acts.iter().any(|a| takes(&a.what)),
+            "{text}: {line}"
+        );
+        assert!(line.contains("waiting"), "{text}: {line}");
+    }
+}
+
 #[test]
 fn answers_are_sentences() {
     let say = |line: &str| answer(&parse(line).expect("a reading"), None, &[], &[]);
@@ -175,6 +235,7 @@ fn random_and_hostile_texts_end() {
         layout: &chosen.layout,
         prompt: "day",
         conditions: Default::default(),
+        clip: None,
         ego_moves: false,
         length_s: 0.0,
     };

@@ -19,6 +19,8 @@ pub struct Token {
     pub span: Span,
     /// Of a number, or of a length in metres.
     pub value: Option<f64>,
+    /// The number as it was typed, whatever its unit.
+    pub raw: Option<f64>,
     /// A length.
     pub is_length: bool,
     /// The value is a speed, km/h.
@@ -27,6 +29,8 @@ pub struct Token {
     pub senses: Vec<Sense>,
     /// The word as it was typed, where a slip was mended.
     pub typed: Option<String>,
+    /// Kinds of things whose names one slip of the keys makes of the word.
+    pub slip_of: Vec<&'static str>,
 }
 
 /// Tokens of a text in which slips are mended: as many as are read.
@@ -257,10 +261,12 @@ pub fn tokens(text: &str, speller: Option<&Speller>) -> Vec<Token> {
             text: word.clone(),
             span: *span,
             value: None,
+            raw: None,
             is_length: false,
             is_speed: false,
             senses: Vec::new(),
             typed: None,
+            slip_of: Vec::new(),
         };
         i += 1;
         if word.starts_with(|c: char| c.is_ascii_digit()) {
@@ -287,6 +293,7 @@ pub fn tokens(text: &str, speller: Option<&Speller>) -> Vec<Token> {
                 i += 1;
             }
         }
+        token.raw = token.value;
         if let Some(value) = token.value {
             for n in [3, 2, 1] {
                 let Some(unit) = words.get(i..i + n) else { continue };
@@ -306,7 +313,27 @@ pub fn tokens(text: &str, speller: Option<&Speller>) -> Vec<Token> {
         out.push(token);
     }
     look_up(&mut out, lexicon);
+    find_slips(&mut out, lexicon);
     out
+}
+
+/// Finds what words may be slips of, each word once: a text may hold the same one a thousand times.
+fn find_slips(tokens: &mut [Token], lexicon: &Lexicon) {
+    let mut known: HashMap<String, Vec<&'static str>> = HashMap::new();
+    for t in tokens.iter_mut().take(MOST_MENDED) {
+        // (a number is a slip of nothing, and an English word is meant)
+        let word = t.text.chars().count() > 2 && t.text.chars().all(char::is_alphabetic);
+        if !word || is_english(&t.text) {
+            continue;
+        }
+        let slips = known.entry(t.text.clone()).or_insert_with(|| {
+            let near = lexicon.nouns_near(&t.text);
+            near.filter(|(form, _)| is_one_slip(&t.text, form))
+                .map(|(_, symbol)| symbol)
+                .collect()
+        });
+        t.slip_of.clone_from(slips);
+    }
 }
 
 /// Gives each token the senses of the longest phrase that begins with it or holds it.

@@ -14,6 +14,8 @@ pub struct Taken {
     pub said: Vec<Said>,
     /// The text with spaces for what was taken.
     pub rest: String,
+    /// Numbers of what was taken that nothing is made of.
+    pub idle: Vec<Span>,
 }
 
 /// Reads all clauses about the background. `edits`: the text changes a scene rather than describes one.
@@ -22,6 +24,7 @@ pub fn take(text: &str, edits: bool) -> Taken {
     let mut out = Taken {
         said: Vec::new(),
         rest: text.to_owned(),
+        idle: Vec::new(),
     };
     let mut verb = None; // carried from one clause of a sentence to the next
     let mut before = true; // whether the clause before was taken
@@ -52,6 +55,8 @@ pub fn take(text: &str, edits: bool) -> Taken {
         let joint = joint.filter(|t| t.kind == TokenKind::Word || t.kind == TokenKind::Comma);
         blank(&mut out.rest, joint.map_or(span, |t| t.span.to(span)));
         out.said.push(said);
+        let idle = clause.iter().filter(|t| t.kind == TokenKind::Idle);
+        out.idle.extend(idle.map(|t| t.span));
     }
     out
 }
@@ -273,7 +278,8 @@ pub fn may_be_barrier(s: &Said) -> bool {
 
 /// What the words of a clause say, one after another; `None` if one is not known.
 fn senses(clause: &[Token]) -> Option<Vec<Word>> {
-    let clause: Vec<&Token> = clause.iter().filter(|t| t.text != "#").collect();
+    let is_word = |t: &&Token| t.text != "#" && t.kind != TokenKind::Idle;
+    let clause: Vec<&Token> = clause.iter().filter(is_word).collect();
     let words: Vec<&str> = clause.iter().map(|t| t.text.as_str()).collect();
     let mut out = Vec::new();
     let mut i = 0;

@@ -283,7 +283,7 @@ fn scene() -> (Background, BevLayout) {
 }
 
 fn edit(text: &str) -> ThingOutcome {
-    let Taken { said, rest } = take(text, true);
+    let Taken { said, rest, .. } = take(text, true);
     assert!(!rest.contains(char::is_alphanumeric), "{rest:?} was left over");
     carried_out(&said)
 }

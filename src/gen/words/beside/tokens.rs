@@ -1,5 +1,6 @@
 //! A text to words, numbers and marks: the tokens of [`words`](crate), with lengths as number and unit.
 
+use super::super::measure::{Kind, measures};
 use place::beside_road::Span;
 
 /// What a token is.
@@ -13,6 +14,8 @@ pub enum TokenKind {
     Comma,
     /// The end of a sentence: . ; ! ? and line breaks.
     Stop,
+    /// A number that measures what no thing beside the road has: "30 km/h".
+    Idle,
     /// Any other mark.
     Mark,
 }
@@ -32,8 +35,22 @@ pub struct Token {
 pub fn tokens(text: &str) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut end = 0;
-    for t in super::super::tokens::tokens(text, None) {
-        let span = t.span;
+    let all = super::super::tokens::tokens(text, None);
+    let mut numbers = measures(&all).into_iter().peekable();
+    for (i, t) in all.iter().enumerate() {
+        let mut span = t.span;
+        while numbers.peek().is_some_and(|m| m.to <= i) {
+            numbers.next();
+        }
+        let measure = numbers.peek().filter(|m| m.from <= i);
+        let kind = measure.map_or(Kind::Count, |m| m.kind);
+        let is_own = matches!(kind, Kind::Count | Kind::Length | Kind::Storeys);
+        if let Some(m) = measure.filter(|_| !is_own) {
+            if m.from < i {
+                continue;
+            }
+            span = m.span(&all);
+        }
         let mut push = |kind, text: &str| {
             out.push(Token {
                 kind,
@@ -47,6 +64,8 @@ pub fn tokens(text: &str) -> Vec<Token> {
         end = span.end;
         match (t.value, t.text.as_str()) {
             // ("one more", "one of")
+            (Some(_), _) if kind == Kind::Speed => push(TokenKind::Idle, "km/h"),
+            (Some(_), _) if !is_own => push(TokenKind::Mark, "unit"),
             (Some(_), "one") => push(TokenKind::Word, "one"),
             (Some(n), word) => {
                 push(TokenKind::Number(n), word);

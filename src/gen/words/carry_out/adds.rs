@@ -10,6 +10,7 @@ use super::super::resolve::Spare;
 use super::super::stage::Stage;
 use place::description::{Anchor, Count, Description, ObjectSpec, Stated};
 use place::holds::{Target, holds, role_of};
+use place::off::off;
 use place::rules::{Placement, place_from};
 use place::to_graph::to_graph;
 use scene::graph::{LaneRole, Locked, ObjectState, RelationKind, SizeHint};
@@ -20,6 +21,8 @@ pub(super) struct Arranged {
     pub(super) new: Vec<SceneBox>,
     pub(super) left_out: Vec<String>,
     pub(super) unmet: Vec<RelationKind>,
+    /// Distances that are not as they were asked for: which, as asked and as found, m.
+    pub(super) off: Vec<(RelationKind, [f64; 2])>,
 }
 
 impl Site for Stage<'_> {
@@ -136,12 +139,25 @@ impl Stage<'_> {
                 relations: found.unmet.iter().map(|r| r.name()).collect(),
             });
         }
+        self.tell_off(&found.off);
         if !last.is_empty() {
             self.last = last;
             self.last_noun = None;
             if let Some(b) = self.last.first().and_then(|id| self.boxes.get(id)) {
                 self.last_noun = Some(super::super::nouns::Noun::of_class(b.class));
             }
+        }
+    }
+
+    /// Says which distances are not as they were asked for.
+    pub(super) fn tell_off(&mut self, off: &[(RelationKind, [f64; 2])]) {
+        for (relation, [asked_m, found_m]) in off {
+            let tenth = |m: f64| (m * 10.0).round() / 10.0;
+            self.remark(Remark::Off {
+                relation: relation.name(),
+                asked_m: tenth(*asked_m),
+                found_m: tenth(*found_m),
+            });
         }
     }
 
@@ -213,7 +229,20 @@ impl Stage<'_> {
             &others,
             from,
         );
+        let stated: Vec<f64> = specs
+            .iter()
+            .flat_map(|s| s.relations.iter().filter_map(|r| r.distance_m))
+            .collect();
+        // (of several in a line the first stands where it was said)
+        let is_stated = |m: f64| stated.iter().any(|s| (s - m).abs() < 1e-9);
+        let off = off(&graphed.graph, &self.map, &p.boxes)
+            .into_iter()
+            .map(|o| (graphed.graph.edges[o.edge], o))
+            .filter(|(e, o)| !locked.contains(&e.from) && is_stated(o.asked_m))
+            .map(|(e, o)| (e.relation, [o.asked_m, o.found_m]))
+            .collect();
         Arranged {
+            off,
             new: p
                 .boxes
                 .iter()

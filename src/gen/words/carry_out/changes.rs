@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::super::nouns::Noun;
 use super::super::reading::{Quantity, Thing, Traits, Turn};
 use super::super::remark::Remark;
 use super::super::resolve::{Spare, words_of};
@@ -112,6 +113,11 @@ impl Stage<'_> {
         for id in ids {
             self.set_one(id, traits, paint);
         }
+        let everybody =
+            |t: &Thing| t.noun == Noun::Thing && t.quantity == Quantity::All && t.places.is_empty();
+        if traits.state == Some(ObjectState::Waiting) && self.ego_moves && who.iter().any(everybody) {
+            self.remark(Remark::WeGoOn);
+        }
     }
 
     /// The paint of a thing that is there, or was before the first act.
@@ -153,6 +159,10 @@ impl Stage<'_> {
             });
         }
         let Some(state) = traits.state else { return };
+        // (what has a motion keeps it, and its voxels, until it is taken away)
+        if state == ObjectState::Waiting && self.halt_box(id) {
+            return;
+        }
         let b = self.boxes[&id];
         if state == ObjectState::Parked && b.class.is_vehicle() && !self.does(&b, ObjectState::Parked) {
             // (what parks stands at the edge of the road, on its side)

@@ -19,6 +19,8 @@ pub(super) struct Found {
     /// What was said and does not hold there.
     pub(super) unmet: Vec<RelationKind>,
     pub(super) parked: bool,
+    /// Distances that are not as they were asked for.
+    pub(super) off: Vec<(RelationKind, [f64; 2])>,
 }
 
 impl Found {
@@ -45,6 +47,7 @@ impl Stage<'_> {
                 found = Some(Found {
                     new: *new,
                     unmet: a.unmet,
+                    off: a.off,
                     parked: tried.state == Some(ObjectState::Parked),
                 });
             }

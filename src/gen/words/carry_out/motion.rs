@@ -25,11 +25,14 @@ impl Stage<'_> {
         }
         if who.is_empty() {
             self.ego_moves = true;
-            if how.gap_m.is_some() {
+            // (who follows keeps it to the one ahead)
+            let keeps = how.what == Template::Follow;
+            if how.gap_m.is_some() && !keeps {
                 let why = "we are never a distance from ourselves: it begins soon".to_owned();
                 self.remark(Remark::NoMotion { why });
             }
-            let how = Manoeuvre { gap_m: None, ..*how };
+            let gap_m = how.gap_m.filter(|_| keeps);
+            let how = Manoeuvre { gap_m, ..*how };
             self.out.edits.push(Edit::let_move(&how, None, None));
             self.done().scene = true;
             return;
@@ -38,7 +41,8 @@ impl Stage<'_> {
             return;
         };
         // Nobody cuts in before a vehicle that stands, or comes nearer to one.
-        let needs_us = how.what == Template::CutIn || how.gap_m.is_some();
+        let comes_near = how.gap_m.is_some() && how.what != Template::Follow;
+        let needs_us = how.what == Template::CutIn || comes_near;
         if needs_us && !self.ego_moves && !ids.is_empty() {
             self.ego_moves = true;
             self.out

@@ -292,7 +292,13 @@ impl Stage<'_> {
             let near = open.then(|| self.destination(&b, &closer, &plan)).flatten();
             found = near.filter(|f| f.unmet.is_empty()).or(found);
         }
-        let Some(Found { new, unmet, parked }) = found else {
+        let Some(Found {
+            new,
+            unmet,
+            parked,
+            off,
+        }) = found
+        else {
             self.remark(Remark::NoRoom { id: id.0 });
             return false;
         };
@@ -301,6 +307,16 @@ impl Stage<'_> {
                 relations: unmet.iter().map(|r| r.name()).collect(),
             });
         }
+        let said = |m: f64| {
+            places
+                .iter()
+                .any(|p| p.metres.is_some_and(|s| (s - m).abs() < 1e-9))
+        };
+        let off: Vec<_> = off
+            .into_iter()
+            .filter(|(_, [asked_m, _])| said(*asked_m))
+            .collect();
+        self.tell_off(&off);
         let center_m = new.center_m.truncate().extend(b.center_m.z);
         let yaw_rad = new.yaw_rad;
         let still =

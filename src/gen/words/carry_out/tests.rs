@@ -38,6 +38,7 @@ impl Base {
             layout: &self.layout,
             prompt: "day",
             conditions: Default::default(),
+            clip: None,
             ego_moves: false,
             length_s: 0.0,
         };

@@ -9,6 +9,7 @@ mod tests;
 use std::sync::{Arc, OnceLock};
 
 use super::account::missing;
+use super::grammar;
 pub use super::mode::Mode;
 use super::notation;
 use super::reading::Reading;
@@ -85,6 +86,11 @@ impl LearnedReader {
         &self.speller
     }
 
+    /// True if a word means something, or is one of the frequent ones.
+    pub fn knows(&self, t: &Token) -> bool {
+        !t.senses.is_empty() || self.speller.is_common(&t.text) || grammar::knows(&t.text)
+    }
+
     /// Reads a text: whole if it is short, else sentence by sentence, and at most [`MOST_PARTS`] of these.
     pub fn read(&self, text: &str, mode: Mode) -> Said {
         let mut all = tokens(text, Some(&self.speller));
@@ -93,8 +99,11 @@ impl LearnedReader {
         let mut out = Said::default();
         let mut from = 0;
         for end in ends {
-            let reading = self.say(text, &all[from..end], mode);
-            out.reading.acts.extend(reading.acts);
+            let part = &all[from..end];
+            // (of words that are in no list, and of numbers alone, nothing is guessed)
+            if part.iter().any(|t| self.knows(t)) {
+                out.reading.acts.extend(self.say(text, part, mode).acts);
+            }
             from = end;
         }
         out.left_out = all.split_off(read_to);

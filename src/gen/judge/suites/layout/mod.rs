@@ -438,7 +438,8 @@ fn changed(
         layout: &frame.layout,
         prompt: &scene.prompt,
         conditions: scene.conditions,
-        ego_moves: false,
+        clip: None,
+            ego_moves: false,
         length_s: 0.0,
     };
     let outcome = carry_out(reading, &open, seed);

@@ -1,0 +1,45 @@
+//! How far things stand from where a distance was stated: a place may be met and still be metres off.
+
+use super::holds::{Target, ego, from_m};
+use super::lanes::LaneMap;
+use scene::SceneBox;
+use scene::graph::{NodeKind, SceneGraph};
+
+/// Off by less than this a distance is as it was stated, m.
+pub const TOLERATED_M: f64 = 0.5;
+
+/// A distance that is not as it was stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Off {
+    /// Index of the edge that states it.
+    pub edge: usize,
+    /// As it was stated, m.
+    pub asked_m: f64,
+    /// As it is, m.
+    pub found_m: f64,
+}
+
+/// The distances of a graph that its boxes (the id of each is that of its node) do not have.
+pub fn off(graph: &SceneGraph, map: &LaneMap<'_>, boxes: &[SceneBox]) -> Vec<Off> {
+    let placed = |id: u32| boxes.iter().find(|b| b.id.0 == id);
+    let target = |id: u32| {
+        Some(match &graph.node(id)?.kind {
+            NodeKind::Ego => Target::Thing(ego()),
+            NodeKind::Object(_) => Target::Thing(*placed(id)?),
+            NodeKind::Lane { role, .. } => Target::Lane(*role),
+            NodeKind::Crossing { .. } => Target::Crossing,
+            NodeKind::Junction => Target::Junction,
+        })
+    };
+    let of = |(i, e): (usize, &scene::graph::Edge)| {
+        let asked_m = e.distance_m?;
+        let found_m = from_m(map, e.relation, placed(e.from)?, &target(e.to)?)?;
+        let is_off = (found_m - asked_m).abs() > TOLERATED_M;
+        is_off.then_some(Off {
+            edge: i,
+            asked_m,
+            found_m,
+        })
+    };
+    graph.edges.iter().enumerate().filter_map(of).collect()
+}
