@@ -10,6 +10,12 @@ pub mod keys {
     pub static MAGICAVOXEL: &str = include_str!("keys/magicavoxel.json");
 }
 
+/// Files of `assets/licences`.
+pub mod licences {
+    /// `notices.txt`, made by `make.py` beside it: licences of libraries and data inside the program.
+    pub static NOTICES: &str = include_str!("licences/notices.txt");
+}
+
 /// Files of `assets/memory`.
 pub mod memory {
     /// `bank.json`.

@@ -60,6 +60,16 @@ fn rooms() -> BTreeMap<String, (String, Vec<String>)> {
     rooms
 }
 
+/// The last column of a room's row in docs/architecture.md, as a set of names.
+fn knows(room: &str) -> BTreeSet<String> {
+    let opening = format!("| {room} | `");
+    let row = DOCUMENT.lines().find(|l| l.starts_with(&opening));
+    let row = row.unwrap_or_else(|| panic!("docs/architecture.md has no row {room}"));
+    let last = row.trim_end_matches([' ', '|']).rsplit('|').next().unwrap_or("");
+    let names = last.split(',').map(|n| n.trim().to_owned());
+    names.filter(|n| n != "–").collect()
+}
+
 #[test]
 fn rooms_know_only_whom_they_may() {
     for (name, (folder, known)) in rooms() {
@@ -67,6 +77,10 @@ fn rooms_know_only_whom_they_may() {
             DOCUMENT.contains(&format!("| {name} | `{folder}/`")),
             "docs/architecture.md does not name {name} in {folder}"
         );
+        let listed = knows(&name);
+        let of_its_own = |n: &&String| !matches!(n.as_str(), "scene" | "numeric");
+        let depends: BTreeSet<String> = known.iter().filter(of_its_own).cloned().collect();
+        assert_eq!(listed, depends, "docs/architecture.md, column *knows* of {name}");
         // The rooms that open and change scenes may know those that do.
         let opens_scenes = matches!(&*name, "authoring" | "judge" | "serve");
         for other in known {
@@ -199,18 +213,7 @@ fn documents_are_short_and_their_links_lead_somewhere() {
 /// its alternatives consists of listed licences.
 #[test]
 fn licences_are_permissive() {
-    let output = std::process::Command::new(env!("CARGO"))
-        .current_dir(root())
-        .args(["metadata", "--format-version", "1", "--offline", "--locked"])
-        .args(["--filter-platform", "x86_64-unknown-linux-gnu"])
-        .output()
-        .expect("cargo");
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let metadata = metadata();
     let allowed = read(&root().join("deny.toml"));
     let is_allowed = |one: &str| allowed.contains(&format!("\"{one}\""));
     let packages = metadata["packages"].as_array().expect("packages");
@@ -224,6 +227,78 @@ fn licences_are_permissive() {
         });
         assert!(met, "{name} is under {text}");
     }
+}
+
+/// Every library that this system links into the program stands in the notices with its version, and so does the data of others.
+#[test]
+fn notices_name_all_that_is_inside() {
+    let metadata = metadata();
+    let notices = assets::licences::NOTICES;
+    let list = |value: &serde_json::Value| value.as_array().cloned().unwrap_or_default();
+    let mut ahead: Vec<String> = Vec::new();
+    let mut named = BTreeMap::new();
+    for package in list(&metadata["packages"]) {
+        let id = package["id"].as_str().expect("an id").to_owned();
+        if package["name"] == "sceneloom" {
+            ahead.push(id.clone());
+        }
+        let name = format!(
+            "{} {}",
+            package["name"].as_str().unwrap_or(""),
+            package["version"].as_str().unwrap_or("")
+        );
+        named.insert(id, (name, package["source"].is_string()));
+    }
+    let nodes = list(&metadata["resolve"]["nodes"]);
+    let mut seen = BTreeSet::new();
+    while let Some(id) = ahead.pop() {
+        if !seen.insert(id.clone()) {
+            continue;
+        }
+        let node = nodes.iter().find(|n| n["id"] == id.as_str()).expect("a node");
+        for dependency in list(&node["deps"]) {
+            if list(&dependency["dep_kinds"]).iter().any(|k| k["kind"].is_null()) {
+                ahead.push(dependency["pkg"].as_str().expect("an id").to_owned());
+            }
+        }
+    }
+    let linked: Vec<&String> = seen
+        .iter()
+        .filter_map(|id| named[id].1.then_some(&named[id].0))
+        .collect();
+    assert!(linked.len() > 300, "{}", linked.len());
+    for name in linked {
+        assert!(
+            notices.contains(&format!("  {name}: ")),
+            "{name} is missing: run assets/licences/make.py"
+        );
+    }
+    for data in [
+        "SCOWL",
+        "WordNet",
+        "Noto Sans CJK",
+        "esmini",
+        "H.264",
+        "Cisco Systems",
+    ] {
+        assert!(notices.contains(data), "{data}");
+    }
+}
+
+/// What `cargo metadata` says of this workspace on this system.
+fn metadata() -> serde_json::Value {
+    let output = std::process::Command::new(env!("CARGO"))
+        .current_dir(root())
+        .args(["metadata", "--format-version", "1", "--offline", "--locked"])
+        .args(["--filter-platform", "x86_64-unknown-linux-gnu"])
+        .output()
+        .expect("cargo");
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
 /// Ten lines that a reader of docs/architecture.md is asked to find, and the folder that the answer is. Somebody who had

@@ -18,6 +18,7 @@ mod eval;
 mod export;
 pub(crate) mod generate;
 mod import;
+mod licences;
 mod mcp;
 mod new;
 pub(crate) mod output;
@@ -113,6 +114,8 @@ enum Command {
     Schema(schema::SchemaCommand),
     /// What this machine offers.
     Doctor(doctor::Doctor),
+    /// The licences of what travels inside the program: data, libraries, patents.
+    Licences(licences::Licences),
 }
 
 /// Whether a command line can be parsed, program name first; the message that a user would see if not. Runs nothing.
@@ -147,6 +150,9 @@ pub fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
+    if let Some(line) = app::start_workers(cli.command.is_none()) {
+        eprintln!("sceneloom: {line}");
+    }
     let outcome = match cli.command {
         Some(Command::Demo(c)) => c.run(),
         Some(Command::New(c)) => c.run(),
@@ -173,6 +179,7 @@ pub fn main() -> ExitCode {
         Some(Command::Serve(c)) => c.run(),
         Some(Command::Schema(c)) => c.run(),
         Some(Command::Doctor(c)) => c.run(),
+        Some(Command::Licences(c)) => c.run(),
         None => editor(cli.scene, cli.trace),
     };
     match outcome {
