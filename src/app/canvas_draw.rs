@@ -71,6 +71,7 @@ pub(super) fn draw_lines(painter: &egui::Painter, map: &ScreenMap, scene: &Scene
                     Stroke::new(1.0, theme::rgba(BevLayer::PedCrossing.color(), 0.8)),
                 );
             }
+            PolylineKind::SpeedLimit { .. } => {}
         }
     }
 }

@@ -22,6 +22,24 @@ pub enum PolylineKind {
     StopLine,
     /// Closed outline of a crossing; layer `ped_crossing`.
     PedCrossing,
+    /// A speed limit along the middle of a lane, in driving direction. Not drawn into a layer.
+    SpeedLimit {
+        /// The limit, mm/s: whole numbers of km/h and mph come back as they were.
+        mm_per_s: u32,
+    },
+}
+
+impl PolylineKind {
+    /// Number of a kind of line where lines are drawn (`shaders/appearance/paint.wgsl`): 0 for those that are not.
+    pub fn drawn_as(self) -> u32 {
+        match self {
+            Self::LaneCenter | Self::SpeedLimit { .. } => 0,
+            Self::RoadDivider => 1,
+            Self::LaneDivider => 2,
+            Self::StopLine => 3,
+            Self::PedCrossing => 4,
+        }
+    }
 }
 
 /// A line on the ground, world frame.

@@ -17,7 +17,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 # Scripts that are no format: this one, and the clients of `mcp` and `serve`.
-OTHERS = {"run", "mcp_client", "serve"}
+OTHERS = {"run", "mcp_client", "serve", "sumo_speed", "drives"}
 CLIPS = {"nuscenes", "openlabel", "mcap", "openscenario", "world-scenario", "control-video", "kitti"}
 
 
@@ -105,15 +105,15 @@ def main():
                     raise RuntimeError((done.stderr.strip().splitlines() or ["no reason"])[-1])
                 said = json.loads(done.stdout.strip().splitlines()[-1])
                 reader = f"{said['reader']} {said.get('version', '')}".strip()
-                rows.append((name, reader, "yes" if said["accepted"] else "no", lost.get(name, "")))
+                rows.append((name, reader, "yes" if said["accepted"] else "no", said.get("figure", ""), lost.get(name, "")))
                 failed += not said["accepted"]
             except (RuntimeError, subprocess.SubprocessError, OSError, ValueError, KeyError) as error:
                 failed += 1
-                rows.append((name, script.name, f"no: {error}", lost.get(name, "")))
-            print(*rows[-1][:3], sep=" | ", flush=True)
+                rows.append((name, script.name, f"no: {error}", "", lost.get(name, "")))
+            print(*rows[-1][:4], sep=" | ", flush=True)
     if not args.names:
         lines = ["# Formats and their own readers", "", "Made by `tests/readers/run.py`.", "",
-                 "| format | reader | accepted | lost when Sceneloom reads it again |", "|---|---|---|---|"]
+                 "| format | reader | accepted | figure of what it is for | lost when Sceneloom reads it again |", "|---|---|---|---|---|"]
         lines += [f"| {' | '.join(str(c).replace('|', '/') for c in row)} |" for row in rows]
         args.table.write_text("\n".join(lines) + "\n")
     return 1 if failed else 0

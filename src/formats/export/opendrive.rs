@@ -14,7 +14,12 @@ pub const EXPORTER: Exporter = Exporter {
     span: Span::Clip,
     needs: &[],
     write: |scene, _| {
-        let bytes = opendrive::write::to_bytes(&scene.name, &scene.canvas().layout, &scene.roads);
+        let bytes = opendrive::write::to_bytes(
+            &scene.name,
+            &scene.canvas().layout,
+            &scene.roads,
+            &scene.background,
+        );
         Ok(vec![OutFile::new("map.xodr", bytes)])
     },
 };

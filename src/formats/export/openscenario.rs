@@ -17,7 +17,12 @@ pub const EXPORTER: Exporter = Exporter {
             OutFile::new("scenario.xosc", openscenario::to_bytes(scene)?),
             OutFile::new(
                 openscenario::MAP,
-                opendrive::write::to_bytes(&scene.name, &scene.canvas().layout, &scene.roads),
+                opendrive::write::to_bytes(
+                    &scene.name,
+                    &scene.canvas().layout,
+                    &scene.roads,
+                    &scene.background,
+                ),
             ),
         ])
     },

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::decks;
 use super::lanes::{Ground, LaneKind, LaneSection, Travel};
 use super::levels::Levels;
 use super::lines::{Follower, SectionLines, clipped};
@@ -15,6 +14,7 @@ use super::sampling::{BUDGET, Row, walk};
 use super::things::Things;
 use super::xml::{Skipped, count};
 use super::{Drawn, Road, RoadNetwork, tidy};
+use super::{cost, decks};
 use scene::raster::{draw_polyline, polygon_cells};
 use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, Polyline, PolylineKind, SceneBox, Window};
 
@@ -177,9 +177,7 @@ impl RoadNetwork {
         }
         canvas.pave_gaps();
         canvas.roads_cover_walkways();
-        for line in &canvas.lines {
-            draw_polyline(&mut canvas.layout, line);
-        }
+        canvas.draw_lines();
         let mut forms = Vec::new();
         if is_somewhere {
             forms = canvas.things(self, &mut skipped);
@@ -200,7 +198,7 @@ impl RoadNetwork {
         }
         let mut background = Background::default();
         forms.into_iter().for_each(|form| {
-            background.add(form);
+            background.add_as(form, true);
         });
         if canvas.budget == 0 {
             count(&mut skipped, "roads beyond the drawing budget");
@@ -282,8 +280,15 @@ impl Canvas {
     }
 
     fn fill(&mut self, area_in_ego: &[DVec2], layers: &[BevLayer], in_junction: bool) -> bool {
-        let mut cells = Vec::new();
         let extent = self.window.extent;
+        self.budget = self
+            .budget
+            .saturating_sub(cost::of_scan(extent, area_in_ego.len()));
+        // What is left out is counted with the roads beyond the budget.
+        if self.budget == 0 {
+            return false;
+        }
+        let mut cells = Vec::new();
         polygon_cells(extent, area_in_ego, |x, y| cells.push((x, y)));
         self.budget = self.budget.saturating_sub(cells.len() / 8);
         for (x, y) in &cells {
@@ -294,6 +299,19 @@ impl Canvas {
             }
         }
         !cells.is_empty()
+    }
+
+    /// Draws the lines that were found, as far as a budget of their own goes.
+    fn draw_lines(&mut self) {
+        let extent = self.window.extent;
+        let mut budget = self.window.budget();
+        for line in &self.lines {
+            budget = budget.saturating_sub(cost::of_line(extent, line));
+            match budget {
+                0 => self.budget = 0,
+                _ => draw_polyline(&mut self.layout, line),
+            }
+        }
     }
 
     fn note_kind(&mut self, area_in_ego: &[DVec2], kind: LaneKind) {
@@ -339,6 +357,7 @@ impl Canvas {
                     grounds,
                     in_junction: road.junction.is_some(),
                     marks_known,
+                    limit_at: &|s_m| road.limit_at(s_m),
                 };
                 follower.step(&lines.tracks(from, to), from, to, &mut self.budget);
                 *budget = self.budget;

@@ -38,6 +38,8 @@ pub(super) struct SectionLines<'a> {
     pub in_junction: bool,
     /// False for a file without any road mark: an edge without a mark is a line then.
     pub marks_known: bool,
+    /// The speed limit at an s in m, mm/s.
+    pub limit_at: &'a dyn Fn(f64) -> Option<u32>,
 }
 
 impl SectionLines<'_> {
@@ -63,6 +65,13 @@ impl SectionLines<'_> {
                     [i, i + 1],
                     lane.travel == Travel::Backward,
                 );
+                if let Some(mm_per_s) = (self.limit_at)(middle_s) {
+                    add(
+                        PolylineKind::SpeedLimit { mm_per_s },
+                        [i, i + 1],
+                        lane.travel == Travel::Backward,
+                    );
+                }
             }
             let cycles = lane.kind == LaneKind::Biking && self.grounds[i] == Ground::Road;
             if !(traffic || cycles) || width(i) < NARROWEST_M {

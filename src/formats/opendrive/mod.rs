@@ -1,6 +1,7 @@
 //! OpenDRIVE roads (ASAM OpenDRIVE 1.4 to 1.8, `.xodr`): read a road network, cut a layout out of it.
 
 pub mod bounds;
+mod cost;
 mod decks;
 pub mod elevation;
 pub mod geometry;
@@ -85,6 +86,8 @@ pub struct Road {
     pub predecessor: Option<RoadEnd>,
     /// What lies beyond its end.
     pub successor: Option<RoadEnd>,
+    /// Speed limits of all its lanes, mm/s, each from an s in m on, in order; none where none is given.
+    pub limits: Vec<(f64, Option<u32>)>,
     /// Plan view.
     pub reference: ReferenceLine,
     /// Height and tilt.
@@ -121,6 +124,12 @@ impl Road {
     /// Length by its geometry, m.
     pub fn length_m(&self) -> f64 {
         self.reference.end_s_m()
+    }
+
+    /// The speed limit at `s_m`, mm/s.
+    pub fn limit_at(&self, s_m: f64) -> Option<u32> {
+        let from = self.limits.partition_point(|(from_m, _)| *from_m <= s_m);
+        self.limits.get(from.checked_sub(1)?)?.1
     }
 
     /// The section that holds `s_m`; the first or last outside, `None` for a road without lanes.

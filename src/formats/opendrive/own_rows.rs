@@ -2,7 +2,8 @@
 //!
 //! `<userData code="sceneloom" value="layout 1">` holds `<extent from="-100 -100" columns="200 200" roads="..."/>`, then
 //! `<cells rows="2">3*40 0*160</cells>` (map layers as bits, run by run along y, for so many columns along x), `<heights>` of the
-//! same form (m; only where the ground is not flat) and `<line kind="lane_center">x y x y</line>`. `roads` is a check sum of the
+//! same form (m; only where the ground is not flat) and `<line kind="lane_center">x y x y</line>`, with
+//! `kind="speed_limit" mm_per_s="13889"` for limits. `roads` is a check sum of the
 //! text from the first `<road ` up to the rows: where another program has changed a road, the rows count no more.
 
 use std::fmt::Write as _;
@@ -17,7 +18,7 @@ use scene::{BevLayout, Extent, Polyline, PolylineKind, Relief};
 pub(super) const CODE: &str = "sceneloom";
 /// Value of the `value` attribute.
 const VERSION: &str = "layout 1";
-/// Names of the kinds of lines, as in project files.
+/// Names of the kinds of lines, as in project files; a speed limit has its number beside it.
 const KINDS: [(&str, PolylineKind); 5] = [
     ("lane_center", PolylineKind::LaneCenter),
     ("road_divider", PolylineKind::RoadDivider),
@@ -25,6 +26,10 @@ const KINDS: [(&str, PolylineKind); 5] = [
     ("stop_line", PolylineKind::StopLine),
     ("ped_crossing", PolylineKind::PedCrossing),
 ];
+
+/// Name and attribute of a speed limit.
+const LIMIT: &str = "speed_limit";
+const LIMIT_FIELD: &str = "mm_per_s";
 
 /// A layout as it was written, still packed.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,12 +130,17 @@ pub(super) fn write(layout: &BevLayout, roads: &str) -> String {
         });
     }
     for line in layout.polylines.iter() {
-        let kind = KINDS.iter().find(|(_, kind)| *kind == line.kind);
+        let name = match line.kind {
+            PolylineKind::SpeedLimit { mm_per_s } => format!("{LIMIT}\" {LIMIT_FIELD}=\"{mm_per_s}"),
+            kind => {
+                let known = KINDS.iter().find(|(_, known)| *known == kind);
+                known.map_or("", |(name, _)| name).to_owned()
+            }
+        };
         let points = line.points_m.iter().map(|p| format!("{} {}", p.x, p.y));
         let _ = writeln!(
             out,
-            "    <line kind=\"{}\">{}</line>",
-            kind.map_or("", |(name, _)| name),
+            "    <line kind=\"{name}\">{}</line>",
             points.collect::<Vec<_>>().join(" ")
         );
     }
@@ -211,7 +221,12 @@ fn unpacked<T: Copy>(rows: &[Rows<T>]) -> impl Iterator<Item = T> {
 
 fn line(node: Node<'_, '_>) -> Option<Polyline> {
     let name = node.attribute("kind")?;
-    let (_, kind) = KINDS.iter().find(|(known, _)| *known == name)?;
+    let kind = match name {
+        LIMIT => PolylineKind::SpeedLimit {
+            mm_per_s: node.attribute(LIMIT_FIELD)?.parse().ok()?,
+        },
+        _ => KINDS.iter().find(|(known, _)| *known == name)?.1,
+    };
     let text = node.text().unwrap_or_default();
     let numbers = text
         .split(' ')
@@ -223,7 +238,7 @@ fn line(node: Node<'_, '_>) -> Option<Polyline> {
         _ => None,
     });
     Some(Polyline {
-        kind: *kind,
+        kind,
         points_m: points.collect::<Option<_>>()?,
     })
 }

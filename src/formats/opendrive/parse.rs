@@ -5,13 +5,16 @@ use std::sync::Arc;
 use glam::DVec2;
 use roxmltree::Node;
 
-use super::geometry::{Geometry, MAX_COORDINATE_M, MAX_LENGTH_M, ReferenceLine, Shape};
+use super::geometry::{Geometry, MAX_LENGTH_M, ReferenceLine, Shape};
 use super::own_rows::{self, OwnLayout};
 use super::xml::{
     OpenDriveError, Result, Skipped, ascending, bad, child, count, count_others, decode, elements, four,
-    named, number, parse_document, shown,
+    named, number, parse_document, shown, within_reach,
 };
 use super::{Junction, Road, RoadEnd, RoadNetwork, parse_elevation, parse_lanes, parse_objects};
+
+/// A higher limit is a mistake, mm/s.
+const FASTEST_MM_PER_S: f64 = 150_000.0;
 
 /// Reads the bytes of an `.xodr` file. Nothing of the file is dropped without being counted in
 /// [`RoadNetwork::skipped`]; a number that is not finite, a record without length, a road without
@@ -82,8 +85,10 @@ fn road(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Road> {
     let surface = parse_elevation::surface(node, reference.end_s_m(), skipped)?;
     let lanes = parse_lanes::lanes(node, &reference, left_hand, skipped)?;
     let marks = parse_objects::objects(node, skipped)?;
+    let limits = limits(node, skipped)?;
     let known = [
         "link",
+        "type",
         "planView",
         "elevationProfile",
         "lateralProfile",
@@ -113,8 +118,45 @@ fn road(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Road> {
         lane_offset: lanes.offset,
         sections: lanes.sections,
         objects: marks,
+        limits,
         reference,
     })
+}
+
+/// Speed limits of `<type>` records. A record without a limit ends the one before.
+fn limits(road: Node<'_, '_>, skipped: &mut Skipped) -> Result<Vec<(f64, Option<u32>)>> {
+    let mut out: Vec<(f64, Option<u32>)> = Vec::new();
+    for node in named(road, "type") {
+        let s_m = number(node, "s")?;
+        ascending(node, "s", s_m, out.last().map(|l| l.0))?;
+        count_others(node, &["speed"], skipped);
+        let limit = child(node, "speed").map(|speed| speed_mm_per_s(speed, skipped));
+        out.push((s_m, limit.flatten()));
+    }
+    match out.iter().any(|(_, limit)| limit.is_some()) {
+        true => Ok(out),
+        false => Ok(Vec::new()),
+    }
+}
+
+/// The limit of a `<speed>` element, mm/s; none for "no limit" and "undefined". What cannot be read is counted.
+fn speed_mm_per_s(node: Node<'_, '_>, skipped: &mut Skipped) -> Option<u32> {
+    let max = node.attribute("max").unwrap_or_default().trim();
+    let mps = match node.attribute("unit").map(str::trim) {
+        None | Some("m/s" | "") => Some(1.0),
+        Some("km/h") => Some(1.0 / 3.6),
+        Some("mph") => Some(0.447_04),
+        Some(_) => None,
+    };
+    let limit = mps.and_then(|mps| Some(max.parse::<f64>().ok()? * mps * 1000.0));
+    match limit {
+        Some(mm_per_s) if (1.0..=FASTEST_MM_PER_S).contains(&mm_per_s) => Some(mm_per_s.round() as u32),
+        None if matches!(max, "no limit" | "undefined") => None,
+        _ => {
+            count(skipped, "speed limit that cannot be read");
+            None
+        }
+    }
 }
 
 fn plan_view(road: Node<'_, '_>, skipped: &mut Skipped) -> Result<ReferenceLine> {
@@ -216,12 +258,7 @@ fn looks_normalized(speed: f64, length: f64) -> bool {
 }
 
 fn coordinate(node: Node<'_, '_>, field: &str) -> Result<f64> {
-    let value = number(node, field)?;
-    if value.abs() > MAX_COORDINATE_M {
-        let expected = format!("a magnitude of at most {MAX_COORDINATE_M:e}");
-        return Err(bad(node, field, expected, &value.to_string()));
-    }
-    Ok(value)
+    within_reach(node, field, number(node, field)?)
 }
 
 fn junction(node: Node<'_, '_>, skipped: &mut Skipped) -> Junction {

@@ -100,7 +100,7 @@ impl Map {
                     let corners = points_m.iter().map(|p| on_ground(scene, scenario_from_world, *p));
                     out.crossings.push(corners.collect());
                 }
-                PolylineKind::LaneCenter => {}
+                PolylineKind::LaneCenter | PolylineKind::SpeedLimit { .. } => {}
             }
         }
         let bits = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();

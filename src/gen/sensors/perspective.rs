@@ -28,7 +28,7 @@ fn line_channel(kind: PolylineKind) -> Option<u32> {
         PolylineKind::RoadDivider => Some(0),
         PolylineKind::LaneDivider => Some(1),
         PolylineKind::PedCrossing => Some(2),
-        PolylineKind::LaneCenter | PolylineKind::StopLine => None,
+        PolylineKind::LaneCenter | PolylineKind::StopLine | PolylineKind::SpeedLimit { .. } => None,
     }
 }
 

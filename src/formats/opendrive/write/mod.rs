@@ -9,6 +9,8 @@ mod chains;
 mod connect;
 mod curve;
 pub(crate) mod fit;
+pub(crate) mod lane_graph;
+mod limits;
 mod middles;
 mod on_road;
 mod profile;
@@ -23,10 +25,11 @@ use super::own_rows;
 use bundles::Bundled;
 use chains::{Chain, Near};
 use connect::{Ground, Junction};
+use limits::Limits;
 use on_road::OnRoads;
 use roads::Road;
 use scene::distance::nearest_source;
-use scene::{BevLayout, RoadNetwork};
+use scene::{Background, BevLayout, RoadNetwork};
 use zones::Zones;
 
 /// Ground beside a way of one lane that is still its own, m.
@@ -44,19 +47,30 @@ pub(super) enum Detail {
     Rows,
 }
 
-/// The bytes of an OpenDRIVE file with the roads of a layout. Its frame is that of the layout. Speed limits are those of `limits`,
-/// the scene's network.
-pub fn to_bytes(name: &str, layout: &BevLayout, limits: &RoadNetwork) -> Vec<u8> {
-    text_of(name, layout, limits, Detail::Rows).into_bytes()
+/// The bytes of an OpenDRIVE file with the roads of a layout, and signs and traffic lights of the background. Its frame is that of the
+/// layout. Speed limits are those of `roads`, the scene's network, else of the layout's own lines.
+pub fn to_bytes(name: &str, layout: &BevLayout, roads: &RoadNetwork, background: &Background) -> Vec<u8> {
+    text_of(name, layout, (roads, background), Detail::Rows).into_bytes()
 }
 
 /// The same as text without limits, with less in it.
 #[cfg(test)]
 pub(super) fn to_text(name: &str, layout: &BevLayout, detail: Detail) -> String {
-    text_of(name, layout, &RoadNetwork::default(), detail)
+    text_of(
+        name,
+        layout,
+        (&RoadNetwork::default(), &Background::default()),
+        detail,
+    )
 }
 
-fn text_of(name: &str, layout: &BevLayout, limits: &RoadNetwork, detail: Detail) -> String {
+fn text_of(
+    name: &str,
+    layout: &BevLayout,
+    (reshaped, background): (&RoadNetwork, &Background),
+    detail: Detail,
+) -> String {
+    let limits = Limits::of(layout, reshaped);
     let (mut roads, junctions) = network(layout);
     if roads.is_empty() {
         roads.push(on_road::nowhere(layout));
@@ -64,8 +78,9 @@ fn text_of(name: &str, layout: &BevLayout, limits: &RoadNetwork, detail: Detail)
     let mut on_roads = OnRoads::new(&mut roads);
     on_roads.crossings(layout);
     on_roads.stop_lines(layout);
+    on_roads.signals(background);
     let header = xml::header(name, layout);
-    let mut body = xml::network(&roads, &junctions, layout, limits);
+    let mut body = xml::network(&roads, &junctions, layout, &limits);
     if detail != Detail::Roads {
         // What a reader makes of the roads shows what is missing.
         let text = format!("{header}{body}</OpenDRIVE>\n");
@@ -74,7 +89,7 @@ fn text_of(name: &str, layout: &BevLayout, limits: &RoadNetwork, detail: Detail)
                 .to_layout_over(layout.extent(), glam::DVec2::ZERO, 0.0)
                 .layout;
             OnRoads::new(&mut roads).areas(layout, &found);
-            body = xml::network(&roads, &junctions, layout, limits);
+            body = xml::network(&roads, &junctions, layout, &limits);
         }
     }
     let rows = match detail {

@@ -1,5 +1,6 @@
 //! Crossings, stop lines and areas: each is written with the road that is nearest.
 
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write as _;
 
 use glam::DVec2;
@@ -9,12 +10,18 @@ use super::fit::reference;
 use super::roads::Road;
 use super::strips::{Strip, Strips};
 use crate::xml_text::number;
-use scene::{BevLayer, BevLayout, PolylineKind};
+use scene::background::PostKind;
+use scene::{Background, BevLayer, BevLayout, Form, PolylineKind};
 
 /// A stop line farther from a lane holds for nobody, m.
 const STOP_M: f64 = 3.0;
 /// Nor does one that is farther from the middle of its road, m.
 const STOP_ROAD_M: f64 = 40.0;
+/// A sign or light farther from the middle of every road is nobody's, m.
+const SIGNAL_ROAD_M: f64 = 40.0;
+/// Height of what a post carries at its top: the plate of a sign, the housing of lights, m.
+const SIGN_M: f64 = 0.6;
+const LIGHT_M: f64 = 1.0;
 /// Stations that are looked at first.
 const EVERY: usize = 8;
 /// A road in a junction counts as so much farther away, m.
@@ -167,6 +174,42 @@ impl<'a> OnRoads<'a> {
                  orientation=\"{orientation}\" country=\"DE\" type=\"294\" subtype=\"-1\"/>\n",
                 number(place.s_m),
                 number(place.t_m),
+            ));
+        }
+    }
+
+    /// Signs and traffic lights, each with the road that is nearest.
+    pub fn signals(&mut self, background: &Background) {
+        for thing in background.iter() {
+            let Form::Post(post) = &thing.form else {
+                continue;
+            };
+            let (name, dynamic, kind, own_m) = match post.kind {
+                PostKind::TrafficLight => ("traffic light", "yes", "1000001", LIGHT_M),
+                PostKind::Sign => ("sign", "no", "-1", SIGN_M),
+                _ => continue,
+            };
+            let Some(place) = self.nearest(post.position_m).filter(|p| p.away_m < SIGNAL_ROAD_M) else {
+                continue;
+            };
+            let road = &mut self.roads[place.road];
+            // A signal for who drives along the road looks back at them.
+            let turn_rad = (post.yaw_rad - road.reference.at(place.s_m).heading_rad).rem_euclid(TAU);
+            let against = (FRAC_PI_2..3.0 * FRAC_PI_2).contains(&turn_rad);
+            let (orientation, offset_rad) = match against {
+                true => ("+", turn_rad - PI),
+                false => ("-", (turn_rad + PI).rem_euclid(TAU) - PI),
+            };
+            let own_m = own_m.min(post.height_m);
+            road.signals.push(format!(
+                "      <signal id=\"thing{}\" name=\"{name}\" s=\"{}\" t=\"{}\" zOffset=\"{}\" hOffset=\"{}\" dynamic=\"{dynamic}\" \
+                 orientation=\"{orientation}\" country=\"OpenDRIVE\" type=\"{kind}\" subtype=\"-1\" height=\"{}\" width=\"{own_m}\"/>\n",
+                thing.id.0,
+                number(place.s_m),
+                number(place.t_m),
+                number(post.height_m - own_m),
+                number(offset_rad),
+                number(own_m),
             ));
         }
     }

@@ -78,9 +78,20 @@ fn a_hundred_random_scenes_come_back_to_the_last_bit() {
         if seed % 2 == 0 {
             layout.polylines = junction().polylines;
         }
-        let bytes = to_bytes("random", &layout, &scene::RoadNetwork::default());
+        let bytes = to_bytes(
+            "random",
+            &layout,
+            &scene::RoadNetwork::default(),
+            &scene::Background::default(),
+        );
         assert!(
-            bytes == to_bytes("random", &layout, &scene::RoadNetwork::default()),
+            bytes
+                == to_bytes(
+                    "random",
+                    &layout,
+                    &scene::RoadNetwork::default(),
+                    &scene::Background::default()
+                ),
             "{seed}: the same bytes"
         );
         let network = opendrive::read(&bytes).unwrap_or_else(|e| panic!("{seed}: {e}"));
@@ -326,7 +337,13 @@ fn traffic_on_the_left_stays_there() {
 #[test]
 fn own_rows_that_do_not_fit_are_left_out_and_said_to_be() {
     let layout = junction();
-    let text = String::from_utf8(to_bytes("rows", &layout, &scene::RoadNetwork::default())).expect("text");
+    let text = String::from_utf8(to_bytes(
+        "rows",
+        &layout,
+        &scene::RoadNetwork::default(),
+        &scene::Background::default(),
+    ))
+    .expect("text");
     let said = |text: &str, extent: Extent, at: [f64; 2]| -> Option<String> {
         let import = read(text).to_layout_over(extent, at.into(), 0.0);
         let said = import
@@ -395,8 +412,13 @@ fn an_empty_map_is_a_file_too() {
         Extent::new([0, 0], [7, 900]).expect("a map"),
     ] {
         let layout = BevLayout::over(extent);
-        let text =
-            String::from_utf8(to_bytes("<&\">", &layout, &scene::RoadNetwork::default())).expect("text");
+        let text = String::from_utf8(to_bytes(
+            "<&\">",
+            &layout,
+            &scene::RoadNetwork::default(),
+            &scene::Background::default(),
+        ))
+        .expect("text");
         let network = read(&text);
         assert_eq!(network.name, "<&\">");
         let back = network.to_layout_over(extent, DVec2::ZERO, 0.0);

@@ -1,17 +1,15 @@
 //! Roads and junctions as text.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use glam::DVec2;
-
 use super::connect::Junction;
+use super::limits::Limits;
 use super::profile::{Record, elevation, straight, superelevation};
 use super::roads::{End, Road};
 use super::strips::Strip;
 use crate::opendrive::geometry::{Geometry, Shape};
 use crate::xml_text::{escaped, number};
-use scene::{BevLayer, BevLayout, Relief, RoadId, RoadNetwork};
+use scene::{BevLayer, BevLayout, Relief};
 
 /// Widths of lanes are kept to this, m.
 const LANE_M: f64 = 0.01;
@@ -21,8 +19,6 @@ const BESIDE_M: f64 = 0.06;
 const CENTER_M: f64 = 0.004;
 /// Paint is looked for so far to both sides of a border of lanes, m.
 const PAINT_M: [f64; 5] = [0.0, -0.2, 0.2, -0.4, 0.4];
-/// A road that is written so near to one of the network is that one, m.
-const LIMIT_REACH_M: f64 = 1.0;
 /// A painted line, or a gap in one, is not shorter, m.
 const PAINT_RUN_M: f64 = 3.0;
 
@@ -41,20 +37,16 @@ pub(super) fn header(name: &str, layout: &BevLayout) -> String {
     )
 }
 
-/// Roads with their limits, and the lines of them.
-type Limits<'a> = (&'a RoadNetwork, &'a BTreeMap<RoadId, Vec<DVec2>>);
-
 /// All roads, then all junctions.
 pub(super) fn network(
     roads: &[Road],
     junctions: &[Junction],
     layout: &BevLayout,
-    limits: &RoadNetwork,
+    limits: &Limits<'_>,
 ) -> String {
     let mut out = String::new();
-    let lines = limits.lines();
     for r in roads {
-        road(&mut out, r, layout, (limits, &lines));
+        road(&mut out, r, layout, limits);
     }
     for j in junctions {
         junction(&mut out, j);
@@ -62,7 +54,7 @@ pub(super) fn network(
     out
 }
 
-fn road(out: &mut String, road: &Road, layout: &BevLayout, limits: Limits<'_>) {
+fn road(out: &mut String, road: &Road, layout: &BevLayout, limits: &Limits<'_>) {
     let rule = if road.left_hand { "LHT" } else { "RHT" };
     let junction = road.junction.map_or("-1".into(), |j| j.to_string());
     let length = number(road.reference.end_s_m());
@@ -72,7 +64,7 @@ fn road(out: &mut String, road: &Road, layout: &BevLayout, limits: Limits<'_>) {
         road.id
     );
     link(out, road);
-    limit(out, road, limits);
+    limits.write(out, road);
     out.push_str("    <planView>\n");
     for record in road.reference.records() {
         geometry(out, record);
@@ -88,19 +80,6 @@ fn road(out: &mut String, road: &Road, layout: &BevLayout, limits: Limits<'_>) {
         }
     }
     out.push_str("  </road>\n");
-}
-
-/// The speed limit at the road's middle.
-fn limit(out: &mut String, road: &Road, (limits, lines): Limits<'_>) {
-    let middle = road.reference.at(road.reference.end_s_m() / 2.0);
-    let found = limits.road_among(lines, middle.position_m, LIMIT_REACH_M);
-    if let Some(kph) = found.and_then(|id| limits.road(id)?.limit_kph) {
-        let max = number(kph);
-        let _ = writeln!(
-            out,
-            "    <type s=\"0\" type=\"unknown\">\n      <speed max=\"{max}\" unit=\"km/h\"/>\n    </type>"
-        );
-    }
 }
 
 fn link(out: &mut String, road: &Road) {

@@ -97,7 +97,7 @@ impl Crossing {
 
 fn layer_of(kind: PolylineKind) -> Option<BevLayer> {
     match kind {
-        PolylineKind::LaneCenter => None,
+        PolylineKind::LaneCenter | PolylineKind::SpeedLimit { .. } => None,
         PolylineKind::RoadDivider => Some(BevLayer::RoadDivider),
         PolylineKind::LaneDivider => Some(BevLayer::LaneDivider),
         PolylineKind::StopLine => Some(BevLayer::StopLine),
@@ -121,7 +121,7 @@ impl Paint {
         for line in layout.polylines.iter() {
             if line.kind == PolylineKind::PedCrossing {
                 paint.crossings.extend(Crossing::new(&line.points_m));
-            } else if line.kind != PolylineKind::LaneCenter {
+            } else if layer_of(line.kind).is_some() {
                 let mut along_m = 0.0;
                 for pair in line.points_m.windows(2) {
                     let (a, b, kind) = (pair[0], pair[1], line.kind);
@@ -208,7 +208,7 @@ impl Paint {
         for bin in &self.bins {
             for s in bin {
                 let [ax, ay, bx, by] = [s.a.x, s.a.y, s.b.x, s.b.y].map(bits);
-                segments.extend([ax, ay, bx, by, s.kind as u32, bits(s.along_m)]);
+                segments.extend([ax, ay, bx, by, s.kind.drawn_as(), bits(s.along_m)]);
             }
             starts.push((segments.len() / 6) as u32);
         }
