@@ -53,6 +53,13 @@ pub fn npy(shape: &[usize], values: &[i32]) -> io::Result<Vec<u8>> {
     Ok(out)
 }
 
+/// The same of `<u2`.
+pub fn npy_u16(shape: &[usize], values: &[u16]) -> io::Result<Vec<u8>> {
+    let mut out = header::<u16>(shape, values.len())?;
+    out.extend_from_slice(cast_slice(values));
+    Ok(out)
+}
+
 /// What comes before so many values as they lie in memory.
 fn header<T: AutoSerialize>(shape: &[usize], values: usize) -> io::Result<Vec<u8>> {
     if shape.iter().product::<usize>() != values {

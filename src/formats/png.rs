@@ -115,6 +115,18 @@ pub fn grey16(width: usize, height: usize, values: &[u16], notes: &Notes<'_>) ->
     )
 }
 
+/// Width and height, and the values of a grey picture of 16 bits, row-major; none if the bytes are another picture, or damaged.
+pub fn grey16_inside(bytes: &[u8]) -> Option<([usize; 2], Vec<u16>)> {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().ok()?;
+    if reader.output_color_type() != (ColorType::Grayscale, BitDepth::Sixteen) {
+        return None;
+    }
+    let mut pixels = vec![0; reader.output_buffer_size()?];
+    let frame = reader.next_frame(&mut pixels).ok()?;
+    let values = pixels.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]]));
+    Some(([frame.width as usize, frame.height as usize], values.collect()))
+}
+
 /// Labels, 8 bits, with the colour of each: viewers show the colours, programs read the labels. Errors if there are
 /// not `width * height` labels or not 1 to 256 colours, or a label has none.
 pub fn indexed(

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use anyhow::{Context, bail};
 
+use super::deep_pictures;
 use super::plan::{Base, Change, Generate, Output, Plan, video};
 use super::record::{FILE, FileRecord, Findings, Record};
 use super::thumb;
@@ -14,6 +15,8 @@ use crate::clip_export::{ClipOptions, ClipView, clip};
 use crate::export::{ExportOptions, ExportProgress, export_all};
 use crate::open::{self, Placement};
 use crate::text;
+use authoring::new_ground::with_scenery;
+use authoring::whole::scenery_first;
 use editor::checks::Severity;
 use editor::{Document, Edit, apply_all};
 use formats::export::Span;
@@ -133,13 +136,17 @@ impl Maker {
         for change in changes {
             let edits = edits_of(change, document.scene(), seed)?;
             if !edits.is_empty() {
+                let edits = with_scenery(document.scene(), edits);
                 document.apply_all("Variant", &edits)?;
             }
         }
         if let (Some(generate), Some(models)) = (&self.plan.generate, &self.models) {
+            let params = params_of(generate, seed)?;
+            let scenery = scenery_first(document.scene(), &params)?;
+            document.apply_all("Draw scenery", &scenery)?;
             let job = Job {
                 scene: document.scene().clone(),
-                params: params_of(generate, seed)?,
+                params,
             };
             // One for each variant: nothing of another one is kept.
             let result = OccPipeline::new(models.clone()).run(&job, &JobCtx::detached())?;
@@ -233,8 +240,11 @@ impl Maker {
         if output.learned_lidar {
             options.lidar = LidarModel::Learned;
         }
-        export_all(scene, &[format], &options, &place, &ExportProgress::default())?;
-        Ok(())
+        let written = export_all(scene, &[format], &options, &place, &ExportProgress::default())?;
+        match self.plan.pack {
+            Some(_) => deep_pictures::as_arrays(&written),
+            None => Ok(()),
+        }
     }
 }
 

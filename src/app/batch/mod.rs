@@ -3,6 +3,7 @@
 //! A variant is made in a folder beside its final name and renamed when it is whole, so a run that is killed leaves nothing
 //! half done and the next one goes on. Its bytes depend on the plan and its number alone.
 
+mod deep_pictures;
 pub mod index;
 pub mod make;
 pub mod marks;

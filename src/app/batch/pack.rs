@@ -6,6 +6,7 @@ use anyhow::Context;
 
 use super::record::{FILE, Record};
 use formats::{atomic, input};
+use scene::plain_name;
 
 /// Name of a pack without ending.
 fn stem(pack: usize) -> String {
@@ -39,11 +40,19 @@ pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<(
     let text = serde_json::to_string_pretty(records)?;
     atomic::write(&records_of(output, pack), text.as_bytes())?;
     let half = output.join(format!(".{}.tar", stem(pack)));
-    let file = std::fs::File::create(&half).with_context(|| format!("create {}", half.display()))?;
+    // (what an ended run left, or a link that leads elsewhere)
+    if half.symlink_metadata().is_ok() {
+        std::fs::remove_file(&half).with_context(|| format!("remove {}", half.display()))?;
+    }
+    let file = std::fs::File::create_new(&half).with_context(|| format!("create {}", half.display()))?;
     let mut tar = tar::Builder::new(std::io::BufWriter::new(file));
     for record in records.iter().filter(|r| r.failed.is_none()) {
         let folder = output.join(format!("{:06}", record.variant));
         let mut add = |path: &str| -> anyhow::Result<()> {
+            // (records may come from a file of another)
+            path.split('/')
+                .try_for_each(plain_name::check_file)
+                .with_context(|| record.variant.to_string())?;
             let place = folder.join(path);
             let bytes = std::fs::read(&place).with_context(|| place.display().to_string())?;
             let mut header = tar::Header::new_ustar();

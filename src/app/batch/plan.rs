@@ -163,7 +163,7 @@ pub enum Change {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Generate {
-    /// A preset of the measured trade: `draft`, `balanced`, `accurate`, `reference`.
+    /// A preset of the measured trade: `draft`, `balanced`, `careful`, `reference`.
     pub quality: String,
     /// All of the scene; what the changes touch if false.
     #[serde(default)]

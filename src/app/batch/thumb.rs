@@ -37,7 +37,7 @@ fn draw(scene: &Scene) -> Picture {
         return map;
     };
     let input = camera_input(&scene, Detail::Full);
-    let appearance = Appearance::new(input.frame, input.rig, &input.conditions);
+    let appearance = Appearance::with_things(input.frame, input.background, input.rig, &input.conditions);
     let image = appearance.render(camera, SIZE[0], SIZE[1], Quality::Preview);
     let seen = Picture {
         width: image.width,

@@ -14,29 +14,37 @@ use super::{BEHIND, CaptureOptions, Subject, above};
 use crate::paint;
 use crate::picture::Picture;
 
-/// Height of a line, pixels.
+/// Height of a line, points.
 const LINE: f32 = 20.0;
-/// Around what is below a picture, pixels.
+/// Around what is below a picture, points.
 const EDGE: f32 = 10.0;
+/// A picture up to so wide has a pixel per point, a wider one more, so that letters keep their share of it.
+const WIDE_PX: f32 = 1200.0;
 const LETTERS: f32 = 13.0;
 const DIM: Color32 = Color32::from_rgb(170, 176, 186);
 
 /// A colour and what it means.
 type Entry = (Color32, String);
 
-/// Drawn by egui: `show` on so many pixels.
-fn drawn(size: [f32; 2], show: impl FnMut(&mut Ui)) -> Picture {
+/// Pixels per point on a picture so many pixels wide.
+fn pixels_per_point(width: usize) -> f32 {
+    (width as f32 / WIDE_PX).max(1.0)
+}
+
+/// Drawn by egui: `show` on so many points, each so many pixels.
+fn drawn(size: [f32; 2], pixels_per_point: f32, show: impl FnMut(&mut Ui)) -> Picture {
     let ctx = egui::Context::default();
     theme::apply(&ctx, theme::Theme::Dark);
     fonts::apply(&ctx, language::chosen().map_or("", |l| &l.code));
-    paint::picture(&ctx, size, 1.0, show)
+    paint::picture(&ctx, size, pixels_per_point, show)
 }
 
 /// Writes a name into the upper left corner.
 pub(super) fn name(picture: &mut Picture, name: &str) {
-    let wide = (name.chars().count() as f32 * LETTERS + 14.0).min(picture.width as f32);
+    let scale = pixels_per_point(picture.width);
+    let wide = (name.chars().count() as f32 * LETTERS + 14.0).min(picture.width as f32 / scale);
     let mut right = 0.0f32;
-    let label = drawn([wide, LINE], |ui| {
+    let label = drawn([wide, LINE], scale, |ui| {
         let [r, g, b] = BEHIND;
         ui.painter()
             .rect_filled(ui.ctx().content_rect(), 0.0, Color32::from_rgb(r, g, b));
@@ -47,7 +55,9 @@ pub(super) fn name(picture: &mut Picture, name: &str) {
             .text(at, Align2::LEFT_CENTER, name, font, Color32::WHITE);
         right = text.right() + 7.0;
     });
-    let width = (right.ceil() as usize).min(label.width).min(picture.width);
+    let width = ((right * scale).ceil() as usize)
+        .min(label.width)
+        .min(picture.width);
     for row in 0..label.height.min(picture.height) {
         let from = row * label.width * 4;
         let to = row * picture.width * 4;
@@ -57,14 +67,16 @@ pub(super) fn name(picture: &mut Picture, name: &str) {
 
 /// The legend of a picture so many pixels wide; a map has so many pixels per metre.
 pub(super) fn below(width: usize, per_m: Option<f32>, scene: &Scene, options: &CaptureOptions) -> Picture {
-    let width = width as f32;
+    let (pixels, scale) = (width, pixels_per_point(width));
+    let width = pixels as f32 / scale;
+    let per_m = per_m.map(|per_m| per_m / scale);
     let depths = options.subject == Subject::Cameras && options.view == ViewId::DEPTH;
     let entries = entries(scene, options);
     let mut height = LINE + 2.0 * EDGE;
     // Once to see how high it is, once to draw it.
-    let mut below = drawn([width, height], |_| {});
+    let mut below = drawn([width, height], scale, |_| {});
     for _ in 0..2 {
-        below = drawn([width, height], |ui| {
+        below = drawn([width, height], scale, |ui| {
             let [r, g, b] = BEHIND;
             ui.painter()
                 .rect_filled(ui.ctx().content_rect(), 0.0, Color32::from_rgb(r, g, b));
@@ -206,4 +218,36 @@ fn depth_bar(ui: &Ui, at: Pos2, width: f32) -> Pos2 {
         DIM,
     );
     pos2(far.right() + 24.0, at.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::open;
+
+    /// Rows of the first line of letters, pixels.
+    fn letters_px(width: usize) -> usize {
+        let scene = open::from_template("straight", 3).expect("a template");
+        let options = CaptureOptions {
+            subject: Subject::Map,
+            ..CaptureOptions::default()
+        };
+        let legend = below(width, Some(10.0), &scene, &options);
+        assert_eq!(legend.width, width);
+        let rows = legend.rgba.chunks_exact(width * 4);
+        let bright = |row: &[u8]| row.chunks_exact(4).any(|p| p[..3].iter().all(|v| *v > 220));
+        rows.skip_while(|row| !bright(row))
+            .take_while(|row| bright(row))
+            .count()
+    }
+
+    #[test]
+    fn letters_grow_with_the_picture() {
+        let (small, large) = (letters_px(900), letters_px(3508));
+        assert!((6..=20).contains(&small), "{small}");
+        assert!(
+            large * 10 >= small * 25 && large * 10 <= small * 35,
+            "{small} {large}"
+        );
+    }
 }

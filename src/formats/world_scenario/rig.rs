@@ -15,19 +15,21 @@ const KNOWN: [(&str, f64, f64); 7] = [
     ("camera:rear:left:70fov", 151.0, 70.0),
     ("camera:rear:right:70fov", -155.0, 70.0),
     ("camera:rear:tele:30fov", 180.0, 30.0),
-    ("camera:front:tele:sat:30fov", 0.0, 30.0),
+    ("camera:front:tele:30fov", 0.0, 30.0),
 ];
 /// A camera gets one of those names only if it looks that way, degrees.
 const AWAY_DEG: f64 = 50.0;
 
 /// A camera under its name in the scenario.
-pub(crate) struct Named<'a> {
+pub(crate) struct Named {
     pub(crate) name: String,
-    pub(crate) camera: &'a Camera,
+    pub(crate) camera: Camera,
     pub(crate) model: FTheta,
+    /// True for one that the rig has not, see [`substitute`].
+    pub(crate) added: bool,
 }
 
-impl Named<'_> {
+impl Named {
     /// The name as it is in names of files.
     pub(crate) fn file_name(&self) -> String {
         self.name.replace(':', "_")
@@ -35,8 +37,8 @@ impl Named<'_> {
 }
 
 /// The cameras of a rig, in its order. Each of the known names goes to the camera that looks most nearly that way; others keep
-/// their own.
-pub(crate) fn named(rig: &SensorRig) -> Vec<Named<'_>> {
+/// their own. Names that no camera got follow, so that readers find all seven; a rig without cameras stays so.
+pub(crate) fn named(rig: &SensorRig) -> Vec<Named> {
     let mut names: Vec<Option<String>> = vec![None; rig.cameras.len()];
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for (i, camera) in rig.cameras.iter().enumerate() {
@@ -57,7 +59,7 @@ pub(crate) fn named(rig: &SensorRig) -> Vec<Named<'_>> {
             taken[k] = true;
         }
     }
-    let mut out: Vec<Named<'_>> = Vec::new();
+    let mut out: Vec<Named> = Vec::new();
     for (camera, name) in rig.cameras.iter().zip(names) {
         let name = name.unwrap_or_else(|| own_name(&camera.name));
         let is_new = |name: &str| out.iter().all(|n| n.name != name);
@@ -70,11 +72,38 @@ pub(crate) fn named(rig: &SensorRig) -> Vec<Named<'_>> {
         };
         out.push(Named {
             name,
-            camera,
+            camera: camera.clone(),
             model: FTheta::of(camera),
+            added: false,
         });
     }
+    let missing = KNOWN.iter().zip(taken).filter(|(_, taken)| !taken);
+    let added: Vec<Named> = missing.filter_map(|(known, _)| substitute(rig, *known)).collect();
+    out.extend(added);
     out
+}
+
+/// A pinhole camera of the heading and width that belong to a known name, where the camera of the rig stands that looks most
+/// nearly that way.
+fn substitute(rig: &SensorRig, (name, yaw_deg, fov_deg): (&str, f64, f64)) -> Option<Named> {
+    let away_deg = |c: &Camera| ((c.aim().yaw_deg - yaw_deg + 180.0).rem_euclid(360.0) - 180.0).abs();
+    let nearest = rig
+        .cameras
+        .iter()
+        .min_by(|a, b| away_deg(a).total_cmp(&away_deg(b)))?;
+    let mut camera = Camera::new(name, fov_deg);
+    camera.translation_m = nearest.translation_m;
+    camera.set_aim(Aim {
+        yaw_deg,
+        pitch_deg: 0.0,
+        roll_deg: 0.0,
+    });
+    Some(Named {
+        name: name.to_owned(),
+        model: FTheta::of(&camera),
+        camera,
+        added: true,
+    })
 }
 
 /// `CAM_FRONT` as `camera:cam:front`.
@@ -97,13 +126,15 @@ pub(crate) fn to_json(rig: &SensorRig) -> String {
     json!({"rig": {"sensors": sensors, "vehicle": {}}, "version": 8}).to_string()
 }
 
-fn sensor(named: &Named<'_>) -> Value {
-    let (camera, model) = (named.camera, &named.model);
+fn sensor(named: &Named) -> Value {
+    let (camera, model) = (&named.camera, &named.model);
+    let origin = if named.added { "added" } else { "sceneloom" };
     let polynomial: Vec<String> = model.angle_of_px.iter().map(|k| format!("{k:e}")).collect();
     json!({
         "name": named.name,
         "protocol": "camera.virtual",
-        "parameter": format!("sceneloom={},fit_error_px={:.4}", camera.name, model.error_px),
+        // (a list of keys and values)
+        "parameter": format!("{origin}={},fit_error_px={:.4}", camera.name.replace([',', '='], "_"), model.error_px),
         "properties": {
             "Model": "ftheta",
             "cx": model.center_px[0].to_string(),
@@ -163,6 +194,7 @@ mod tests {
                 "CAM_BACK_RIGHT camera:rear:right:70fov",
                 "CAM_BACK camera:rear:tele:30fov",
                 "CAM_BACK_LEFT camera:rear:left:70fov",
+                "camera:front:tele:30fov camera:front:tele:30fov",
             ]
         );
         // Two that look ahead, and one more that keeps its own name.
@@ -175,14 +207,34 @@ mod tests {
             ..rig
         };
         rig.cameras.push(Camera::new("WIDE", 100.0));
-        let names: Vec<String> = named(&rig).into_iter().map(|n| n.name).collect();
+        let all = named(&rig);
+        let names: Vec<&str> = all.iter().filter(|n| !n.added).map(|n| n.name.as_str()).collect();
         let expected = [
-            "camera:front:tele:sat:30fov",
+            "camera:front:tele:30fov",
             "camera:front:wide:120fov",
             "camera:wide",
             "camera:wide:2",
         ];
         assert_eq!(names, expected);
+        // The five names that nobody got: readers look for all seven.
+        let added: Vec<&Named> = all.iter().filter(|n| n.added).collect();
+        assert_eq!(added.len(), 5);
+        for (name, yaw_deg, fov_deg) in KNOWN {
+            assert_eq!(all.iter().filter(|n| n.name == name).count(), 1, "{name}");
+            if let Some(new) = added.iter().find(|n| n.name == name) {
+                assert!((new.camera.fov_deg() - fov_deg).abs() < 1e-6, "{name}");
+                let away_deg = (new.camera.aim().yaw_deg - yaw_deg).rem_euclid(360.0);
+                assert!(away_deg.min(360.0 - away_deg) < 1e-6, "{name}");
+                assert_eq!(new.camera.translation_m, rig.cameras[0].translation_m, "{name}");
+            }
+        }
+        assert!(
+            named(&SensorRig {
+                cameras: Vec::new(),
+                ..rig
+            })
+            .is_empty()
+        );
     }
 
     /// The pose as a reader puts it together: scipy's `from_euler("xyz")`, then optical axes.
