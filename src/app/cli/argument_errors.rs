@@ -1,21 +1,21 @@
-//! Wrong arguments in one line, and where it helps one more with a hint: what was found, what was expected.
+//! Wrong arguments in one line: what was found, what was expected, and where it helps what was probably meant.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 /// Most characters of a line: what was typed may be long.
 const LONGEST: usize = 400;
+/// Of these, most of the hint.
+const LONGEST_HINT: usize = 120;
 
-/// The message about wrong arguments: a line that begins with `sceneloom: `, and perhaps one that begins with `hint: `.
-/// Help and version are given as they are.
+/// The message about wrong arguments: one line that begins with `sceneloom: `; what was probably meant, or where to look, stands in
+/// brackets at its end. Help and version are given as they are.
 pub(super) fn message(error: &clap::Error) -> String {
     if !error.use_stderr() {
         return error.to_string();
     }
-    let line = short(&format!("sceneloom: {}", what(error)));
-    match hint(error) {
-        Some(hint) => format!("{line}\n{}\n", short(&format!("hint: {hint}"))),
-        None => format!("{line}\n"),
-    }
+    let hint = hint(error).map_or(String::new(), |hint| format!(" ({})", short(&hint, LONGEST_HINT)));
+    let line = short(&format!("sceneloom: {}", what(error)), LONGEST - LONGEST_HINT);
+    format!("{line}{hint}\n")
 }
 
 /// What was found, and what was expected.
@@ -111,12 +111,12 @@ fn context(error: &clap::Error, kind: ContextKind) -> Option<Vec<String>> {
     }
 }
 
-/// On one line, and not longer than a few lines of a terminal.
-fn short(text: &str) -> String {
+/// On one line of so many characters at most.
+fn short(text: &str, longest: usize) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let clean = |c: char| if c.is_control() { '?' } else { c };
-    let mut cut: String = line.chars().map(clean).take(LONGEST).collect();
-    if line.chars().count() > LONGEST {
+    let mut cut: String = line.chars().map(clean).take(longest).collect();
+    if line.chars().count() > longest {
         cut.push('…');
     }
     cut
@@ -137,20 +137,14 @@ mod tests {
         assert_eq!(error.exit_code(), 2, "{words:?}");
         let text = message(&error);
         let lines: Vec<&str> = text.lines().collect();
-        assert!(
-            text.ends_with('\n') && (1..=2).contains(&lines.len()),
-            "{words:?}: {text}"
-        );
+        assert!(text.ends_with('\n') && lines.len() == 1, "{words:?}: {text}");
         assert!(lines[0].starts_with("sceneloom: "), "{words:?}: {text}");
         assert!(
             lines[0].contains("expected") || lines[0].contains("found"),
             "{words:?}: {text}"
         );
-        assert!(lines.iter().all(|l| l.chars().count() <= LONGEST + 1), "{text}");
-        assert!(
-            lines[1..].iter().all(|l| l.starts_with("hint: ")),
-            "{words:?}: {text}"
-        );
+        // With the brackets and two signs of what was cut.
+        assert!(text.trim_end().chars().count() <= LONGEST + 5, "{text}");
         text
     }
 
@@ -164,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_arguments_of_every_command_are_one_line_and_a_hint() {
+    fn wrong_arguments_of_every_command_are_one_line() {
         let mut root = Cli::command();
         root.build();
         let mut commands = Vec::new();
@@ -218,15 +212,15 @@ mod tests {
             lidar.contains("found \"exakt\", expected one of exact, learned"),
             "{lidar}"
         );
-        assert!(lidar.contains("hint: did you mean exact?"), "{lidar}");
+        assert!(lidar.contains("(did you mean exact?)"), "{lidar}");
         let unknown = text("sceneloom check a.loom --fixx");
         assert!(
-            unknown.contains("found --fixx") && unknown.contains("hint: did you mean --fix"),
+            unknown.contains("found --fixx") && unknown.contains("(did you mean --fix"),
             "{unknown}"
         );
         let missing = text("sceneloom check a.loom --fix");
         assert!(missing.contains("expected --output <S.loom>"), "{missing}");
-        assert!(missing.contains("hint: see sceneloom check --help"), "{missing}");
+        assert!(missing.contains("(see sceneloom check --help)"), "{missing}");
         let twice = text("sceneloom check a.loom --json --json");
         assert!(twice.contains("more than once"), "{twice}");
         // Help is no error.

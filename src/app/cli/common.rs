@@ -1,6 +1,7 @@
 //! What the commands have in common: options, knobs of a generation, and how a command ends.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
 
@@ -8,6 +9,7 @@ use super::region_arg::RegionArg;
 use ::trade::Presets;
 use diffusion::solver::SolverKind;
 use job::{GenParams, Named, Precision, RegionMode};
+use nets::OccModels;
 
 /// Options that every command has.
 #[derive(Args, Clone, Debug, Default)]
@@ -72,7 +74,7 @@ pub(super) struct Gen {
     /// Compute every token, not only those around an edit.
     #[arg(long)]
     pub(super) dense: bool,
-    /// A preset of the measured trade: `draft`, `balanced`, `accurate` or another that `sceneloom trade` names; the
+    /// A preset of the measured trade: `draft`, `balanced`, `careful` or another that `sceneloom trade` names; the
     /// options beside it go first.
     #[arg(long, value_name = "PRESET")]
     pub(super) quality: Option<String>,
@@ -88,6 +90,19 @@ pub(super) struct Gen {
 }
 
 impl Gen {
+    /// The networks that a generation takes. Errors in one line if the folder of weights lacks or damages what was asked for by
+    /// name.
+    pub(super) fn models(&self, weights: &Weights) -> anyhow::Result<Arc<OccModels>> {
+        let models = OccModels::of(weights.folder.as_deref())?;
+        if let (Some(n @ 1..), None, Some(folder)) = (self.fine_steps, &models.refiner, &weights.folder) {
+            anyhow::bail!(
+                "--fine-steps {n}: {} has no refiner.safetensors, expected it beside the other weights",
+                folder.display()
+            );
+        }
+        Ok(models)
+    }
+
     pub(super) fn params(&self, default: GenParams) -> anyhow::Result<GenParams> {
         let default = match &self.quality {
             Some(name) => {

@@ -123,6 +123,9 @@ impl Eval {
     }
 
     pub(super) fn run(self) -> Outcome {
+        if self.generation.fine_steps.is_some() {
+            self.generation.models(&self.weights)?;
+        }
         let params = [
             self.generation.params(GenParams::whole_scene())?,
             self.generation.params(GenParams::default())?,

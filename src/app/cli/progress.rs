@@ -69,3 +69,23 @@ impl Progress {
         out
     }
 }
+
+/// A time for a person: `40 s`, `3 min`, `2 h`, to the accuracy that a forecast has.
+pub fn in_words(seconds: f64) -> String {
+    match seconds {
+        s if s < 100.0 => format!("{:.0} s", (s / 5.0).ceil() * 5.0),
+        s if s < 6000.0 => format!("{:.0} min", (s / 60.0).ceil()),
+        s => format!("{:.0} h", (s / 3600.0).ceil()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_as_exact_as_forecasts_are() {
+        let words = [21.0, 99.0, 101.0, 150.0, 7300.0].map(in_words);
+        assert_eq!(words, ["25 s", "100 s", "2 min", "3 min", "3 h"]);
+    }
+}

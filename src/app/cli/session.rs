@@ -9,6 +9,7 @@ use super::Outcome;
 use app::open;
 use assist::{Desk, Folder, Holder};
 use editor::Document;
+use nets::OccModels;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -38,6 +39,10 @@ impl On {
             Some(path) => open::scene(path)?,
             None => open::bundled()?,
         };
+        // What is asked for by name is refused now, not at the first call that needs it.
+        if self.weights.is_some() {
+            OccModels::of(self.weights.as_deref()).context("--weights")?;
+        }
         let document = Box::new(Document::new(scene));
         Ok(Desk::new(Holder::Own(document), folder, self.weights))
     }

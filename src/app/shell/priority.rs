@@ -36,13 +36,44 @@ pub fn give_way() -> bool {
     renice.is_ok_and(|status| status.success())
 }
 
-/// Makes the threads that share the heavy work give way. Call it before they are used; later it does nothing.
-pub fn workers_give_way() {
-    let pool = rayon::ThreadPoolBuilder::new().start_handler(|_| {
-        give_way();
-    });
+/// What names the number of threads, as everywhere with rayon.
+const ASKED_BY: &str = "RAYON_NUM_THREADS";
+
+/// Starts the threads that share the heavy work; in the window they give way to it. Call it before they are used; later it does
+/// nothing. A number of threads that the environment asks for is kept to what helps; the line says so where it is.
+pub fn start_workers(give_way_to_window: bool) -> Option<String> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let (threads, line) = number(std::env::var(ASKED_BY).ok().as_deref(), cores);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .start_handler(move |_| {
+            if give_way_to_window {
+                give_way();
+            }
+        });
     // Somebody was faster: the work is done all the same.
     let _ = pool.build_global();
+    line
+}
+
+/// How many threads there shall be (0: as many as processors), and what there is to say about it.
+fn number(asked: Option<&str>, cores: usize) -> (usize, Option<String>) {
+    let most = (4 * cores).max(64);
+    let Some(text) = asked.map(str::trim).filter(|text| !text.is_empty()) else {
+        return (0, None);
+    };
+    let said = |used: &str| {
+        let shown = scene::message::quoted(text, 40);
+        Some(format!("{ASKED_BY} is {shown:?}, expected 1 to {most}: {used}"))
+    };
+    let is_digits = text.chars().all(|c| c.is_ascii_digit());
+    match text.parse::<usize>() {
+        Ok(0) => (0, None),
+        Ok(n) if n <= most => (n, None),
+        // More than fit a number are too many as well.
+        _ if is_digits => (most, said(&format!("{most} threads work"))),
+        _ => (0, said("as many threads work as there are processors")),
+    }
 }
 
 #[cfg(test)]
@@ -60,5 +91,39 @@ mod tests {
             (_, after) => assert_eq!(after, Some(before), "nothing has changed"),
         }
         assert_eq!(nice(), Some(before), "this thread keeps its own");
+    }
+
+    /// 100,000 threads hung the machine.
+    #[test]
+    fn a_number_of_threads_is_kept_to_what_helps() {
+        for (asked, threads) in [
+            (None, 0),
+            (Some(""), 0),
+            (Some("0"), 0),
+            (Some("1"), 1),
+            (Some(" 8 "), 8),
+            (Some("64"), 64),
+        ] {
+            assert_eq!(number(asked, 2), (threads, None), "{asked:?}");
+        }
+        for (asked, threads) in [
+            ("65", 64),
+            ("100000", 64),
+            ("99999999999999999999999", 64),
+            ("-4", 0),
+            ("many\nlines", 0),
+        ] {
+            let (found, line) = number(Some(asked), 2);
+            assert_eq!(found, threads, "{asked}");
+            let line = line.expect("said");
+            assert!(
+                line.starts_with("RAYON_NUM_THREADS is ")
+                    && line.contains("expected 1 to 64")
+                    && !line.contains('\n'),
+                "{line}"
+            );
+        }
+        assert_eq!(number(Some("100"), 32), (100, None));
+        assert_eq!(number(Some("100000"), 32).0, 128);
     }
 }

@@ -69,6 +69,17 @@ pub struct How {
     pub others: Vec<SceneBox>,
 }
 
+impl How {
+    /// Errors in one line where weights are named that lack or damage what places the objects: what was asked for by name is not
+    /// replaced by something else.
+    pub fn check(&self) -> anyhow::Result<()> {
+        match (self.placer, &self.weights) {
+            (Placer::Diffusion, Some(_)) => network(self).map(drop),
+            _ => Ok(()),
+        }
+    }
+}
+
 /// A scene that is asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ask {

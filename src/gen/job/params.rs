@@ -150,6 +150,9 @@ type Bits = ([u32; 6], [u64; 4], [Option<u32>; 4], Choices);
 type Choices = (SolverKind, RegionMode, InpaintMask, Quality, Precision, [bool; 2]);
 
 impl GenParams {
+    /// Guidance with which layouts come out as asked for, see docs/trade.md.
+    pub const MEASURED_GUIDANCE: [f64; 2] = [1.0, 4.0];
+
     /// For all of a scene from its layout and boxes alone.
     pub fn whole_scene() -> Self {
         Self {
@@ -207,7 +210,7 @@ impl GenParams {
             )))
         };
         in_range("steps", f64::from(self.steps), 1.0, 1000.0)?;
-        in_range("guidance", self.guidance, -100.0, 100.0)?;
+        in_range("guidance", self.guidance, 0.0, 100.0)?;
         in_range("guidance_rescale", self.guidance_rescale, 0.0, 1.0)?;
         in_range("strength", self.strength, 0.0, 1.0)?;
         for (name, value) in ["vegetation", "building", "clutter", "completeness"]
@@ -222,6 +225,19 @@ impl GenParams {
         in_range("halo_tokens", f64::from(self.halo_tokens), 0.0, 25.0)?;
         in_range("fine_steps", f64::from(self.fine_steps), 0.0, 100.0)?;
         in_range("reuse_steps", f64::from(self.reuse_steps), 1.0, 100.0)
+    }
+
+    /// What is worth knowing of values that are in range and beyond what was measured, a line each.
+    pub fn notes(&self) -> Vec<String> {
+        let [low, high] = Self::MEASURED_GUIDANCE;
+        let guidance = (!(low..=high).contains(&self.guidance)).then(|| {
+            format!(
+                "guidance is {}, measured is {low} to {high}: beyond that the networks leave out what the layout asks for, such as \
+                 road",
+                self.guidance
+            )
+        });
+        guidance.into_iter().collect()
     }
 
     /// The guidance that these parameters ask for.
@@ -299,7 +315,9 @@ mod tests {
     #[test]
     fn parameters_out_of_range_are_refused_in_one_line() {
         assert_eq!(GenParams::default().check(), Ok(()));
-        let changes: [fn(&mut GenParams); 12] = [
+        let changes: [fn(&mut GenParams); 14] = [
+            |p| p.guidance = -0.5,
+            |p| p.guidance = 100.5,
             |p| p.fine_steps = 101,
             |p| p.reuse_steps = 0,
             |p| p.halo_tokens = 26,
@@ -328,5 +346,25 @@ mod tests {
         };
         let text = zero.check().expect_err("0").to_string();
         assert_eq!(text, "steps is 0, expected 1 to 1000");
+    }
+
+    /// Guidance 50 left 2 % of the road, and nobody was told.
+    #[test]
+    fn what_was_not_measured_is_said() {
+        for params in [GenParams::default(), GenParams::whole_scene()] {
+            assert!(params.notes().is_empty(), "{params:?}");
+        }
+        for guidance in [0.0, 0.99, 4.5, 50.0, 100.0] {
+            let params = GenParams {
+                guidance,
+                ..GenParams::default()
+            };
+            assert_eq!(params.check(), Ok(()));
+            let [note] = &params.notes()[..] else {
+                panic!("one note for {guidance}");
+            };
+            let told = format!("guidance is {guidance}, measured is 1 to 4: ");
+            assert!(note.starts_with(&told) && note.lines().count() == 1, "{note}");
+        }
     }
 }

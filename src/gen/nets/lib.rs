@@ -101,10 +101,10 @@ impl OccModels {
     }
 
     /// `occ_vae.safetensors` and `occ_dit.safetensors` of a folder, and `refiner.safetensors` with `occ_vae_fine.safetensors` where it
-    /// has them.
+    /// has one of them. Errors if a file is missing or damaged.
     pub fn from_dir(folder: &Path) -> Result<Arc<Self>, WeightsError> {
         let [vae, dit] = FILES.map(|f| weights::read(&folder.join(f)));
-        let refiner = match folder.join(refiner::FILE).exists() {
+        let refiner = match [refiner::FILE, FINE].iter().any(|f| folder.join(f).exists()) {
             true => {
                 let [net, fine] = [refiner::FILE, FINE].map(|f| weights::read(&folder.join(f)));
                 let (net, fine) = (net?, fine?);

@@ -1,5 +1,6 @@
 //! Pictures and data of what the sensors see, as files of a folder: what `sceneloom render` and the call `render` share.
 
+mod forecast;
 mod plan;
 mod truth;
 mod write;
@@ -19,6 +20,7 @@ use sensors::appearance::Quality;
 use sensors::cameras::{self, CameraInput, Card, Detail, Ready, RenderOptions, SourceId};
 use sensors::painter::PaintWith;
 
+pub use forecast::{Listen, Told};
 use plan::{Cameras, Plan};
 use write::Writer;
 
@@ -97,12 +99,14 @@ impl Rendering {
         }
     }
 
-    /// Renders and writes the pictures of one source, a few cameras at a time if they are small, else one.
+    /// Renders and writes the pictures of one source, a few cameras at a time if they are small, else one; `made` is called for
+    /// each.
     fn cameras(
         &self,
         scene: &Scene,
         cameras: &Cameras,
         (writer, out): (&mut Writer, &mut Rendered),
+        made: &mut dyn FnMut() -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let mut time_s = 0.0;
         let start = Instant::now();
@@ -129,6 +133,7 @@ impl Rendering {
             for picture in pictures {
                 writer.camera(picture, &cameras.views, (place, all.len()))?;
                 place += 1;
+                made()?;
             }
         }
         writer.finish_sheet(&cameras.views)?;
@@ -136,20 +141,27 @@ impl Rendering {
         Ok(())
     }
 
-    /// Renders the moment that a scene shows, and writes the files into a folder, which is made. Errors in one line; whatever
-    /// cannot be had is told before anything is written.
-    pub fn write(&self, scene: &Scene, folder: &Path) -> anyhow::Result<Rendered> {
+    /// Renders the moment that a scene shows, and writes the files into a folder, which is made; `listen` hears how long it will
+    /// take and how far it is. Errors in one line, also what `listen` says; whatever cannot be had is told before anything is
+    /// written.
+    pub fn write(&self, scene: &Scene, folder: &Path, listen: &mut Listen<'_>) -> anyhow::Result<Rendered> {
         let of_file = scene;
         let scene = &*of_file.with_rig_in_world();
         let plan = Plan::new(self, scene)?;
+        self.forecast(&plan, scene, listen)?;
+        let (mut pictures, of) = (0, plan.pictures(scene));
+        let mut made = || {
+            pictures += 1;
+            listen(Told::Made { pictures, of })
+        };
         let mut writer = Writer::new(folder, self.recipe(of_file))?;
         let mut out = Rendered::default();
         let frame = scene.frame();
         for cameras in &plan.cameras {
-            self.cameras(scene, cameras, (&mut writer, &mut out))?;
+            self.cameras(scene, cameras, (&mut writer, &mut out), &mut made)?;
         }
         if plan.truth {
-            let time_s = self.truth(scene, &mut writer)?;
+            let time_s = self.truth(scene, &mut writer, &mut made)?;
             out.wall_s.insert("truth", time_s);
         }
         if plan.truth || !plan.cameras.is_empty() || plan.lidar.is_some() {

@@ -7,10 +7,11 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use super::painting::Painting;
+use super::progress::{Progress, in_words};
 use super::{Common, Moment, Outcome, output};
 use app::camera_views::LidarModel;
 use app::open;
-use assist::render::{Rendering, check_what};
+use assist::render::{Rendering, Told, check_what};
 use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
 use sensors::cameras::{SourceId, learned};
 use sensors::rolling;
@@ -58,6 +59,9 @@ pub struct Render {
     common: Common,
 }
 
+/// What takes longer is told beforehand, s.
+const LONG_S: f64 = 20.0;
+
 /// The six cameras' maps and the LiDAR sweep of a scene.
 pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, LidarSweep) {
     let scene = &*scene.with_rig_in_world();
@@ -91,7 +95,20 @@ impl Render {
             },
             paint,
         };
-        let made = rendering.write(&scene, &self.output)?;
+        let progress = Progress::new(&self.common);
+        let made = rendering.write(&scene, &self.output, &mut |told| {
+            match told {
+                Told::Takes { pixels, seconds } if seconds >= LONG_S => eprintln!(
+                    "sceneloom: {} million pixels will take about {} on this machine",
+                    pixels / 1_000_000,
+                    in_words(seconds)
+                ),
+                Told::Takes { .. } => {}
+                Told::Made { pictures, of } => progress.at("pictures", pictures, of),
+            }
+            Ok(())
+        })?;
+        progress.done();
         let of_lidar = |[rays, returns]: [usize; 2]| json!({ "rays": rays, "returns": returns, "dropped": rays - returns });
         let report = json!({
             "files": made.files,
