@@ -7,8 +7,9 @@ use rayon::prelude::*;
 use super::border::Border;
 use super::lidar::{EgoBox, Rays, look_through};
 use super::raycast::{ColumnMasks, LANES, Met, Packet};
+use super::shaped;
 use super::surroundings::{Around, Height};
-use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, VoxelGrid};
+use scene::{Class, Extent, Frame, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
 
 /// With more changed boxes than this, all rays are cast: testing them would cost as much.
 const MAX_BOXES: usize = 16;
@@ -165,6 +166,14 @@ impl Caster {
         }
     }
 
+    /// The returns on the shapes of boxes ([`shaped::onto_shapes`]); the frame has the voxels that were cast last, `seed` is the
+    /// scene's.
+    pub fn shaped(&self, frame: &Frame, rig: &SensorRig, seed: u64) -> LidarSweep {
+        let mut sweep = self.sweep();
+        shaped::place(&mut sweep, frame, rig, seed, Some(&self.masks));
+        sweep
+    }
+
     /// Rays that the last update cast.
     pub fn cast_last(&self) -> usize {
         self.cast
@@ -311,7 +320,7 @@ impl Changed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{SensorRig, Window};
+    use scene::Window;
     use world::draw::Draw;
 
     fn world() -> VoxelGrid {

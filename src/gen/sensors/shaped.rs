@@ -1,6 +1,7 @@
 //! Returns on the shapes of boxes: rays are cast through voxels of 0.4 m, which stick out of the boxes that they stand for. Here what
 //! a ray met of a box's voxels becomes what it meets of the box's solids, those that pictures show, and lies within the box.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use glam::DVec3;
@@ -39,6 +40,17 @@ const RAYS: usize = 512;
 /// them. Boxes whose voxels are their own, and classes without solids, keep their voxels as far as they are within the box.
 /// `seed` is the scene's: it varies the solids.
 pub fn onto_shapes(sweep: &mut LidarSweep, frame: &Frame, rig: &SensorRig, seed: u64) {
+    place(sweep, frame, rig, seed, None);
+}
+
+/// The same with the masks of the frame's voxels, those in the own vehicle left out; made here if there are none.
+pub(super) fn place(
+    sweep: &mut LidarSweep,
+    frame: &Frame,
+    rig: &SensorRig,
+    seed: u64,
+    known: Option<&ColumnMasks>,
+) {
     let Some(pattern) = rig.lidars.first() else { return };
     let boxes: Vec<&SceneBox> = frame.boxes.values().filter(|b| b.problem().is_none()).collect();
     if boxes.is_empty() || sweep.points.is_empty() {
@@ -46,13 +58,16 @@ pub fn onto_shapes(sweep: &mut LidarSweep, frame: &Frame, rig: &SensorRig, seed:
     }
     let shapes = Shapes::new(frame, &boxes, seed);
     let physical = sweep.physical;
-    let masks = (!physical).then(|| {
-        let mut masks = ColumnMasks::from_grid(&frame.occupancy);
-        look_through(&mut masks, EgoBox::of_rig(rig));
-        masks
+    let masks = (!physical).then(|| match known {
+        Some(masks) => Cow::Borrowed(masks),
+        None => {
+            let mut masks = ColumnMasks::from_grid(&frame.occupancy);
+            look_through(&mut masks, EgoBox::of_rig(rig));
+            Cow::Owned(masks)
+        }
     });
     let (at, velocity) = (pattern.ego_from_sensor().translation_m, rig.velocity_mps());
-    let place = |point: &LidarPoint| {
+    let placed = |point: &LidarPoint| {
         let origin = at - velocity * pattern.before_end_s(point.azimuth.into());
         let way = DVec3::from_array(point.position_in_ego.map(f64::from)) - origin;
         let Some(direction) = way.try_normalize() else {
@@ -64,7 +79,7 @@ pub fn onto_shapes(sweep: &mut LidarSweep, frame: &Frame, rig: &SensorRig, seed:
             met_m: way.length(),
         };
         let met = match &masks {
-            Some(masks) => shapes.exact(&ray, point, (masks, &frame.occupancy), pattern),
+            Some(masks) => shapes.exact(&ray, point, (&**masks, &frame.occupancy), pattern),
             None => shapes.learned(&ray, point),
         };
         let (range_m, class) = match met {
@@ -83,7 +98,7 @@ pub fn onto_shapes(sweep: &mut LidarSweep, frame: &Frame, rig: &SensorRig, seed:
         .points
         .par_iter()
         .with_min_len(RAYS)
-        .filter_map(place)
+        .filter_map(placed)
         .collect();
 }
 
