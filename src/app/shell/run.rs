@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::app::{AppConfig, SceneloomApp};
 use super::guests::Door;
-use super::{priority, settings};
+use super::{gone, priority, settings};
 use crate::{open, pipeline};
 use formats::loom;
 use job::GenParams;
@@ -59,7 +59,8 @@ fn new_scene() -> anyhow::Result<Scene> {
 }
 
 /// Opens the window and returns when it is closed. Errors in one line if there is no display or no
-/// graphics adapter (a software one will do), or if the file that measurements go to cannot be written.
+/// graphics adapter (a software one will do), if the file that measurements go to cannot be written, or if the window is taken
+/// away from outside.
 pub fn run_window_with(
     config: AppConfig,
     trace: Option<PathBuf>,
@@ -93,12 +94,7 @@ pub fn run_window_with(
         }
         Ok(Box::new(app))
     };
-    eframe::run_native("sceneloom", options, Box::new(start)).map_err(|error| {
-        anyhow::anyhow!(
-            "the window could not be opened: {}",
-            error.to_string().replace('\n', "; ")
-        )
-    })
+    gone::guarded(|| eframe::run_native("sceneloom", options, Box::new(start)))
 }
 
 /// Any adapter, a software one too, with limits that all of them have.
