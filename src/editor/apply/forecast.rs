@@ -1,14 +1,19 @@
 //! How a scene goes on after its end: what moves keeps moving along its lane and behind whoever is ahead, the vehicle too, and
 //! the map grows to where it comes.
 
+use std::collections::BTreeSet;
+
 use glam::DVec2;
+use language::tf;
 
 use scene::clip::{Path, Speed};
 use scene::{BoxId, Class, Clip, Edit, Key, Motion, Moving, Scene};
 
 use super::apply_all;
+use crate::checks::meetings;
 use crate::reaching::{reaching, sights_m};
-use crate::traffic::follow::{self, Driver, Other};
+use crate::traffic::everybody::Everybody;
+use crate::traffic::follow::{Body, Driver, follow};
 use crate::traffic::lane_path::lane_path;
 use crate::traffic::template;
 
@@ -18,6 +23,8 @@ const MOVES_MPS: f64 = 0.3;
 const STEP_S: f64 = 0.5;
 /// Who brakes makes the one behind brake, and that one the next: each round hears of one more.
 const ROUNDS: usize = 4;
+/// Meetings that are told.
+const MOST_TOLD: usize = 4;
 /// A path is laid this much farther than it is driven, m.
 const BEYOND_M: f64 = 20.0;
 
@@ -28,6 +35,27 @@ pub struct Forecast {
     pub edits: Vec<Edit>,
     /// Objects that go on.
     pub objects: usize,
+    /// What comes into something in these seconds, as the checks say it.
+    pub meets: Vec<String>,
+}
+
+impl Forecast {
+    /// What a person is told of what goes wrong, in one line; none if nothing does.
+    pub fn said(&self) -> Option<String> {
+        let first: Vec<&str> = self.meets.iter().take(MOST_TOLD).map(String::as_str).collect();
+        let more = self.meets.len().saturating_sub(MOST_TOLD);
+        let more = if more > 0 {
+            format!("; +{more}")
+        } else {
+            String::new()
+        };
+        (!first.is_empty()).then(|| {
+            tf!(
+                "What goes on comes into something: {why}",
+                why = first.join("; ") + &more
+            )
+        })
+    }
 }
 
 /// So many seconds more. Errors in one line.
@@ -50,46 +78,48 @@ pub fn forecast(scene: &Scene, seconds: f64) -> Result<Forecast, String> {
         return Err("nothing moves at the end of the scene: let something move first".to_owned());
     }
     let (motions, later) = together(scene, &goers, &edits, (from_s, to_s))?;
+    let known: BTreeSet<String> = meetings(scene).into_iter().map(|m| m.text).collect();
+    let mut meets: Vec<String> = meetings(&later).into_iter().map(|m| m.text).collect();
+    meets.retain(|text| !known.contains(text));
     edits.extend(motions);
     edits.extend(room_for_us(&later, from_s));
     Ok(Forecast {
         edits,
         objects: goers.iter().filter(|g| g.id.is_some()).count(),
+        meets,
     })
 }
 
-/// Lets everything that is labelled as moving, but has no motion, move from the beginning on. Errors in one line.
-pub fn traffic_drives(scene: &Scene) -> Result<Vec<Edit>, String> {
-    let mut goers = goers(scene, 0.0);
-    goers.retain(|g| g.id.is_some() && g.motion.is_none());
-    Ok(together(scene, &goers, &[], (0.0, scene.clip().length_s))?.0)
-}
-
 /// Edits that let these move on from a time to another, each looking out for the others; and the scene after `first` and them.
-fn together(
+pub(super) fn together(
     scene: &Scene,
     goers: &[Goer],
     first: &[Edit],
     (from_s, to_s): (f64, f64),
 ) -> Result<(Vec<Edit>, Scene), String> {
+    let set = |goer: &Goer, motion| Edit::SetMotion {
+        id: goer.id,
+        motion: Some(motion),
+        from_s: goer.there_s[0],
+        to_s: goer.there_s[1],
+    };
+    let motions = |others: Option<&Scene>| -> Vec<Edit> {
+        // (where everybody is at each moment is worked out once, not once for each of them)
+        let everybody = others.map(|later| Everybody::of(later, from_s, to_s - from_s));
+        let motion = |g: &Goer| set(g, g.goes_on(scene, everybody.as_ref(), (from_s, to_s)));
+        goers.iter().map(motion).collect()
+    };
     // First everybody goes on as fast as they are, so that who follows then finds the others moving.
-    let (mut motions, mut later) = (Vec::new(), scene.clone());
-    for round in 0..ROUNDS {
-        motions.clear();
-        for goer in goers {
-            let motion = goer.goes_on(scene, (round > 0).then_some(&later), (from_s, to_s));
-            motions.push(Edit::SetMotion {
-                id: goer.id,
-                motion: Some(motion),
-                from_s: goer.there_s[0],
-                to_s: goer.there_s[1],
-            });
-        }
-        later = scene.clone();
-        let all: Vec<Edit> = first.iter().chain(&motions).cloned().collect();
-        apply_all(&all, &mut later).map_err(|e| e.to_string())?;
+    let mut later = scene.clone();
+    let mut found = motions(None);
+    let all: Vec<Edit> = first.iter().chain(&found).cloned().collect();
+    apply_all(&all, &mut later).map_err(|e| e.to_string())?;
+    for _ in 1..ROUNDS {
+        found = motions(Some(&later));
+        // (what moves by now only moves otherwise)
+        apply_all(&found, &mut later).map_err(|e| e.to_string())?;
     }
-    Ok((motions, later))
+    Ok((found, later))
 }
 
 /// The edit that makes the map reach where the ego vehicle comes after `from_s`, with as much around it as there was until then;
@@ -108,16 +138,17 @@ pub(super) fn room_for_us(scene: &Scene, from_s: f64) -> Option<Edit> {
 }
 
 /// Something that moves at the end.
-struct Goer {
-    id: Option<BoxId>,
+pub(super) struct Goer {
+    pub(super) id: Option<BoxId>,
     now: Moving,
     class: Option<Class>,
-    half_length_m: f64,
+    body: Body,
     there_s: [Option<f64>; 2],
-    motion: Option<Motion>,
+    pub(super) motion: Option<Motion>,
 }
 
-fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
+/// Everything that moves at a time, the ego vehicle first.
+pub(super) fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
     let (clip, end) = (scene.clip(), scene.at(from_s));
     let mut out = Vec::new();
     let pose = end.frame().world_from_ego;
@@ -135,7 +166,7 @@ fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
         id: None,
         now: clip.ego_moving(from_s).unwrap_or(still),
         class: None,
-        half_length_m: scene.rig.ego_size_m[0] / 2.0,
+        body: template::body_of_ego(scene),
         there_s: [None; 2],
         motion: clip.ego.clone(),
     });
@@ -145,7 +176,7 @@ fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
             id: Some(b.id),
             now: Moving::from(b),
             class: Some(b.class),
-            half_length_m: b.size_m.x / 2.0,
+            body: template::body_of(b),
             there_s: track.map_or([None; 2], |t| t.there_s),
             motion: track.map(|t| t.motion.clone()),
         });
@@ -156,8 +187,13 @@ fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
 }
 
 impl Goer {
-    /// Its motion up to `to_s`; `others`: the scene in which it looks out for others, none to keep its speed.
-    fn goes_on(&self, scene: &Scene, others: Option<&Scene>, (from_s, to_s): (f64, f64)) -> Motion {
+    /// Its motion up to `to_s`; `everybody`: who is where from `from_s` on, none to keep its speed.
+    fn goes_on(
+        &self,
+        scene: &Scene,
+        everybody: Option<&Everybody<'_>>,
+        (from_s, to_s): (f64, f64),
+    ) -> Motion {
         let mps = self.now.velocity_mps.length();
         let reach_m = mps * (to_s - from_s) * 1.3 + BEYOND_M;
         let way = match self.class {
@@ -168,8 +204,8 @@ impl Goer {
             }
             _ => lane_path(&scene.canvas().layout, &self.now, reach_m),
         };
-        let speeds = match others {
-            Some(others) => self.careful_speeds(others, &way, (from_s, to_s)),
+        let speeds = match everybody {
+            Some(everybody) => self.careful_speeds(everybody, &way, (from_s, to_s)),
             None => vec![Speed { time_s: from_s, mps }],
         };
         let on = Path {
@@ -185,17 +221,22 @@ impl Goer {
         }
     }
 
-    fn careful_speeds(&self, scene: &Scene, way: &[DVec2], (from_s, to_s): (f64, f64)) -> Vec<Speed> {
+    fn careful_speeds(
+        &self,
+        everybody: &Everybody<'_>,
+        way: &[DVec2],
+        (from_s, to_s): (f64, f64),
+    ) -> Vec<Speed> {
         let mps = self.now.velocity_mps.length();
         if self.class == Some(Class::Pedestrian) {
             return vec![Speed { time_s: from_s, mps }];
         }
-        let others = |t: f64| -> Vec<Other> { template::others(scene, self.id, from_s + t) };
-        let found = follow::speeds(
+        let others = |t: f64| everybody.others(self.id, t);
+        let found = follow(
             &Driver::at(mps.max(2.0)),
             way,
             (0.0, mps),
-            self.half_length_m,
+            &self.body,
             to_s - from_s,
             others,
         );
@@ -203,7 +244,7 @@ impl Goer {
             time_s: from_s + s.time_s,
             ..s
         };
-        found.into_iter().map(at).collect()
+        found.speeds.into_iter().map(at).collect()
     }
 }
 

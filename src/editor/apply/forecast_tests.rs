@@ -65,22 +65,6 @@ fn what_moves_goes_on_and_stops_behind_what_stands() {
 }
 
 #[test]
-fn traffic_that_only_has_speeds_is_let_drive() {
-    let mut scene = scene();
-    let long = Edit::SetLength {
-        length_s: 5.0,
-        rate_hz: None,
-    };
-    apply_all(&[long], &mut scene).expect("a clip");
-    let edits = traffic_drives(&scene).expect("sound");
-    assert_eq!(edits.len(), 1);
-    apply_all(&edits, &mut scene).expect("sound edits");
-    let x = |t: f64| scene.at(t).frame().boxes[&BoxId(1)].center_m.x;
-    assert!(x(0.0) == 20.0 && (58.0..71.0).contains(&x(5.0)), "{}", x(5.0));
-    assert_eq!(traffic_drives(&scene), Ok(Vec::new()));
-}
-
-#[test]
 fn the_map_grows_to_where_we_come() {
     let mut free = scene();
     free.change_canvas(|c| c.boxes.remove(&BoxId(2)));
@@ -107,4 +91,26 @@ fn the_map_grows_to_where_we_come() {
             "{error}"
         );
     }
+}
+
+/// Who goes on through a wall or somebody who walks is told with the seconds that are added.
+#[test]
+fn what_goes_on_into_something_is_told() {
+    let mut start = scene();
+    start.change_canvas(|c| {
+        c.boxes.remove(&BoxId(2));
+        let [x, _] = c.extent().column_at(60.0, 0.0).expect("inside");
+        for y in 0..c.extent().ny() {
+            (0..9).for_each(|z| c.occupancy.set(x, y, z, Class::Manmade.id()));
+        }
+    });
+    let found = forecast(&start, 6.0).expect("it goes on");
+    let said = found.said().expect("a wall is ahead");
+    assert!(
+        said.contains("car 1 drives through manmade") && !said.contains('\n'),
+        "{said}"
+    );
+    let edits = [Edit::Forecast { seconds: 6.0 }];
+    assert_eq!(crate::remarks(&start, &edits), [said]);
+    assert_eq!(forecast(&scene(), 3.0).expect("it goes on").said(), None);
 }

@@ -4,7 +4,7 @@ use scene::{BoxId, Edit, EditError, Scene, Template};
 
 use super::apply_all;
 use super::forecast::room_for_us;
-use crate::traffic::template::{Wish, motion_of, time_near};
+use crate::traffic::template::{Wish, leader_mps, motion_of, time_near};
 
 /// The edits of an [`Edit::LetMove`]; none of another edit.
 pub(super) fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditError> {
@@ -21,12 +21,16 @@ pub(super) fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditErro
     let bad = EditError::BadMotion;
     let class = id.and_then(|id| scene.frame().boxes.get(&id)).map(|b| b.class);
     let usual = Wish::usual(template, class);
+    // Who follows begins as fast as whoever is ahead, if they move.
+    let leader = || leader_mps(scene, id).filter(|mps| template == Template::Follow && *mps > 0.5);
     let mut wish = Wish {
-        mps: mps.or(limit_mps(scene, id)).unwrap_or(usual.mps),
+        mps: mps.or_else(leader).or(limit_mps(scene, id)).unwrap_or(usual.mps),
         at_s: from_s.unwrap_or(usual.at_s),
         ..usual
     };
-    if let Some(gap_m) = gap_m {
+    if template == Template::Follow {
+        wish.gap_m = gap_m;
+    } else if let Some(gap_m) = gap_m {
         wish.at_s = approach_s(scene, id, &wish, gap_m).map_err(bad)?;
     }
     // Who drives from a moment on stands until then.
@@ -78,7 +82,7 @@ fn approach_s(scene: &Scene, id: Option<BoxId>, wish: &Wish, gap_m: f64) -> Resu
     };
     let mut until = scene.clone();
     apply_all(&before, &mut until).map_err(|e| e.to_string())?;
-    time_near(until.clip(), until.canvas(), id, gap_m, scene.rig.ego_size_m[0]).ok_or_else(|| {
+    time_near(until.clip(), until.canvas(), &scene.rig, id, gap_m).ok_or_else(|| {
         format!(
             "box {} and the ego vehicle never come within {gap_m} m of each other",
             id.0

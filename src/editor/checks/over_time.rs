@@ -6,10 +6,12 @@ use std::collections::BTreeMap;
 use super::geometry::{area_m2, shared_area_m2, shared_height_m};
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::reaching::reaching;
+use crate::traffic::gap::ego_box;
 use glam::DVec2;
 use language::{t, tf};
+use scene::grid::NOT_PAINTED;
 use scene::raster::box_cells;
-use scene::{BoxId, Class, Extent, Motion, SceneBox};
+use scene::{BoxId, Class, Extent, Motion, Recorded, SceneBox};
 
 pub const TOO_FAST: &str = "too_fast";
 pub const TOO_SUDDEN: &str = "too_sudden";
@@ -50,21 +52,30 @@ pub(super) struct Trace {
     at: Vec<Option<SceneBox>>,
     /// It does not move by itself.
     attached: Option<BoxId>,
+    /// It moves as a recording has it.
+    recorded: bool,
 }
 
 /// The moments that are looked at, and everything that moves at each.
 pub(super) struct OverTime {
     times_s: Vec<f64>,
     traces: Vec<Trace>,
+    /// The ego vehicle is where a recording has it.
+    ego_recorded: bool,
 }
 
 impl OverTime {
     pub(super) fn of(context: &Context<'_>) -> Self {
-        let (scene, clip) = (context.scene, context.scene.clip());
+        Self::of_scene(context.scene)
+    }
+
+    fn of_scene(scene: &scene::Scene) -> Self {
+        let clip = scene.clip();
         if clip.stands() || clip.problem().is_some() {
             return Self {
                 times_s: Vec::new(),
                 traces: Vec::new(),
+                ego_recorded: false,
             };
         }
         let steps = ((clip.length_s / STEP_S).ceil() as usize).clamp(1, MOST_STEPS);
@@ -72,6 +83,7 @@ impl OverTime {
             .map(|i| clip.length_s * i as f64 / steps as f64)
             .collect();
         let relief = &scene.canvas().layout.relief;
+        let (recorded, ego_recorded) = (Recorded::boxes_in(scene), Recorded::is_ego_in(scene));
         let mut traces: Vec<Trace> = clip
             .tracks
             .iter()
@@ -82,29 +94,22 @@ impl OverTime {
                     Motion::Attached { to, .. } => Some(to),
                     _ => None,
                 },
+                recorded: recorded.contains(id),
             })
             .collect();
         if clip.ego.is_some() {
-            let ego = |t: &f64| {
-                let pose = clip.ego_at(*t, &scene.canvas().world_from_ego, relief);
-                let moving = clip.ego_moving(*t)?;
-                Some(SceneBox {
-                    id: BoxId(0),
-                    class: Class::Car,
-                    center_m: pose.apply(scene.rig.ego_center_m.into()),
-                    size_m: scene.rig.ego_size_m.into(),
-                    yaw_rad: moving.yaw_rad,
-                    velocity_mps: moving.velocity_mps,
-                    label: Default::default(),
-                })
-            };
             traces.push(Trace {
                 id: None,
-                at: times_s.iter().map(ego).collect(),
+                at: times_s.iter().map(|t| Some(ego_box(scene, *t))).collect(),
                 attached: None,
+                recorded: ego_recorded,
             });
         }
-        Self { times_s, traces }
+        Self {
+            times_s,
+            traces,
+            ego_recorded,
+        }
     }
 
     fn moments<'a>(&'a self, trace: &'a Trace) -> impl Iterator<Item = (f64, &'a SceneBox)> + 'a {
@@ -128,7 +133,10 @@ fn finding(
 ) -> Finding {
     Finding {
         check,
-        severity,
+        severity: match trace.recorded {
+            true => Severity::Info,
+            false => severity,
+        },
         where_m: b.center_m,
         time_s: Some(time_s),
         box_id: trace.id,
@@ -208,12 +216,46 @@ pub fn backwards(context: &Context<'_>, out: &mut Findings) {
     }
 }
 
-pub fn collision(context: &Context<'_>, out: &mut Findings) {
-    let over_time = context.over_time();
-    let standing: Vec<SceneBox> = context.scene.canvas().boxes.values().copied().collect();
+/// Something that moves, and what it comes into in the course of a clip.
+pub(crate) struct Met {
+    /// Index of its trace.
+    trace: usize,
+    /// What moves; the ego vehicle if none.
+    pub(crate) id: Option<BoxId>,
+    /// What it meets: a box or the ego vehicle (none); `Err` with the class of what stands there.
+    pub(crate) other: Result<Option<BoxId>, Class>,
+    /// As a person is told: `car 1 and car 2 meet at 2.6 s`.
+    pub(crate) text: String,
+    /// Index of the first moment.
+    at: usize,
+    /// The largest share of the smaller footprint that two boxes share.
+    share: f64,
+    /// What stands there was painted by somebody.
+    painted: bool,
+}
+
+/// All that meet in the course of a clip: boxes that move and any others first, then boxes and walls.
+pub(crate) fn meetings(scene: &scene::Scene) -> Vec<Met> {
+    let over_time = OverTime::of_scene(scene);
+    let mut out = boxes_that_meet(scene, &over_time);
+    out.extend(walls_that_are_met(scene, &over_time));
+    out
+}
+
+fn boxes_that_meet(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
+    let mut standing: Vec<(Option<BoxId>, SceneBox)> = scene
+        .canvas()
+        .boxes
+        .iter()
+        .map(|(id, b)| (Some(*id), *b))
+        .collect();
+    if scene.clip().ego.is_none() {
+        standing.push((None, ego_box(scene, 0.0)));
+    }
+    let mut out = Vec::new();
     for (i, trace) in over_time.traces.iter().enumerate() {
         // When each other one is met first, and the largest share of area while they do.
-        let mut met: BTreeMap<Option<BoxId>, (Finding, f64)> = BTreeMap::new();
+        let mut met: BTreeMap<Option<BoxId>, Met> = BTreeMap::new();
         for (at, time_s) in over_time.times_s.iter().enumerate() {
             let Some(b) = &trace.at[at] else { continue };
             let moving = over_time.traces[i + 1..].iter().filter_map(|other| {
@@ -221,7 +263,7 @@ pub fn collision(context: &Context<'_>, out: &mut Findings) {
                     || trace.attached == other.id && trace.attached.is_some();
                 (!tied).then_some((other.id, other.at[at].as_ref()?))
             });
-            let others = moving.chain(standing.iter().map(|s| (Some(s.id), s)));
+            let others = moving.chain(standing.iter().map(|(id, s)| (*id, s)));
             for (other_id, other) in others {
                 let reach = (b.size_m.truncate().length() + other.size_m.truncate().length()) / 2.0;
                 let (pa, pb) = (b.center_m.truncate(), other.center_m.truncate());
@@ -233,64 +275,116 @@ pub fn collision(context: &Context<'_>, out: &mut Findings) {
                 if share <= TOLERATED_SHARE {
                     continue;
                 }
-                let (first, most) = met.entry(other_id).or_insert_with(|| {
-                    let other_name =
-                        other_id.map_or_else(|| t("the ego vehicle").to_owned(), |_| name_of(other));
-                    let text = tf!(
+                let first = met.entry(other_id).or_insert_with(|| Met {
+                    trace: i,
+                    id: trace.id,
+                    other: Ok(other_id),
+                    text: tf!(
                         "{first} and {second} meet at {time} s",
                         first = called(trace, b),
-                        second = other_name,
+                        second = other_id.map_or_else(|| t("the ego vehicle").to_owned(), |_| name_of(other)),
                         time = format!("{time_s:.1}")
-                    );
-                    let here = (trace, *time_s, b);
-                    (finding(COLLISION, Severity::Warning, here, text), share)
+                    ),
+                    at,
+                    share,
+                    painted: false,
                 });
-                *most = most.max(share);
-                if *most > WRONG_SHARE {
-                    first.severity = Severity::Error;
-                }
+                first.share = first.share.max(share);
             }
         }
-        met.into_values().for_each(|(first, _)| out.push(first));
+        out.extend(met.into_values());
     }
+    out
+}
+
+fn walls_that_are_met(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
+    let canvas = scene.canvas();
+    let (extent, relief) = (canvas.extent(), &canvas.layout.relief);
+    let hits = |b: &SceneBox| {
+        let core = SceneBox {
+            size_m: b.size_m * 0.8,
+            ..*b
+        };
+        let mut met = None;
+        box_cells(extent, &core, 0.0, |x, y| {
+            let ground_m = relief.column_m(x, y);
+            // What a bumper meets, and not what hangs over the road.
+            for up in [0.9, 1.3] {
+                let p = extent.center(x, y, 0).with_z(ground_m + up);
+                let Some([x, y, z]) = extent.voxel_at(p) else {
+                    continue;
+                };
+                let class = Class::from_id(canvas.occupancy.get(x, y, z));
+                let solid = |c: &Class| matches!(c, Class::Manmade | Class::Vegetation | Class::Barrier);
+                let painted = || canvas.painted.get(x, y, z) != NOT_PAINTED;
+                met = met.or_else(|| class.filter(solid).map(|class| (class, painted())));
+            }
+        });
+        met
+    };
+    let of = |(i, trace): (usize, &Trace)| {
+        let mut moments = trace.at.iter().enumerate();
+        let (at, b, (class, painted)) = moments.find_map(|(at, b)| {
+            let b = b.as_ref()?;
+            Some((at, b, hits(b)?))
+        })?;
+        Some(Met {
+            trace: i,
+            id: trace.id,
+            other: Err(class),
+            text: tf!(
+                "{thing} drives through {class} at {time} s",
+                thing = called(trace, b),
+                class = t(&class.label()),
+                time = format!("{:.1}", over_time.times_s[at])
+            ),
+            at,
+            share: 1.0,
+            painted,
+        })
+    };
+    over_time.traces.iter().enumerate().filter_map(of).collect()
+}
+
+fn report(check: &'static str, over_time: &OverTime, met: Vec<Met>, out: &mut Findings) {
+    for m in met {
+        let trace = &over_time.traces[m.trace];
+        let Some(b) = &trace.at[m.at] else { continue };
+        let severity = match m.share > WRONG_SHARE {
+            true => Severity::Error,
+            false => Severity::Warning,
+        };
+        let found = finding(check, severity, (trace, over_time.times_s[m.at], b), m.text);
+        let other_recorded = match m.other {
+            Ok(Some(id)) => out.is_recorded(id),
+            Ok(None) => over_time.ego_recorded,
+            Err(_) => !m.painted,
+        };
+        match other_recorded {
+            true => out.push(found),
+            false => out.push_made(Finding { severity, ..found }),
+        }
+    }
+}
+
+pub fn collision(context: &Context<'_>, out: &mut Findings) {
+    let over_time = context.over_time();
+    report(
+        COLLISION,
+        over_time,
+        boxes_that_meet(context.scene, over_time),
+        out,
+    );
 }
 
 pub fn through_wall(context: &Context<'_>, out: &mut Findings) {
     let over_time = context.over_time();
-    let canvas = context.scene.canvas();
-    let (extent, relief) = (canvas.extent(), &canvas.layout.relief);
-    for trace in &over_time.traces {
-        let hits = |b: &SceneBox| {
-            let core = SceneBox {
-                size_m: b.size_m * 0.8,
-                ..*b
-            };
-            let mut met = None;
-            box_cells(extent, &core, 0.0, |x, y| {
-                let ground_m = relief.column_m(x, y);
-                // What a bumper meets, and not what hangs over the road.
-                for up in [0.9, 1.3] {
-                    let p = extent.center(x, y, 0).with_z(ground_m + up);
-                    let label = extent.voxel_at(p).map(|[x, y, z]| canvas.occupancy.get(x, y, z));
-                    let class = label.and_then(Class::from_id);
-                    let solid = |c: &Class| matches!(c, Class::Manmade | Class::Vegetation | Class::Barrier);
-                    met = met.or(class.filter(solid));
-                }
-            });
-            met
-        };
-        let mut moments = over_time.moments(trace);
-        let met = moments.find_map(|(t, b)| hits(b).map(|class| (t, *b, class)));
-        if let Some((time_s, b, class)) = met {
-            let text = tf!(
-                "{thing} drives through {class} at {time} s",
-                thing = called(trace, &b),
-                class = t(&class.label()),
-                time = format!("{time_s:.1}")
-            );
-            out.push(finding(THROUGH_WALL, Severity::Error, (trace, time_s, &b), text));
-        }
-    }
+    report(
+        THROUGH_WALL,
+        over_time,
+        walls_that_are_met(context.scene, over_time),
+        out,
+    );
 }
 
 pub fn leaves_map(context: &Context<'_>, out: &mut Findings) {
@@ -318,101 +412,5 @@ pub fn leaves_map(context: &Context<'_>, out: &mut Findings) {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::collections::BTreeMap;
-    use std::sync::Arc;
-
-    use glam::{DVec2, DVec3};
-    use scene::clip::{Path, Speed};
-    use scene::{BevLayout, Frame, Key, Scene, SensorRig, VoxelGrid};
-
-    use super::*;
-    use crate::Apply;
-    use crate::Edit;
-    use crate::checks::run_checks;
-
-    /// Cars 1 (moving as given) and 2 (standing 30 m ahead), a wall 50 m ahead.
-    fn found(motion: Motion, ego: bool) -> BTreeMap<&'static str, (String, f64)> {
-        let extent = Extent::new([-50, -50], [300, 100]).expect("sound");
-        let car = |id: u32, x: f64| SceneBox {
-            id: BoxId(id),
-            class: Class::Car,
-            center_m: DVec3::new(x, 0.0, 0.8),
-            size_m: DVec3::new(4.5, 1.9, 1.6),
-            yaw_rad: 0.0,
-            velocity_mps: DVec2::ZERO,
-            label: Default::default(),
-        };
-        let mut grid = VoxelGrid::over(extent);
-        let [x, _] = extent.column_at(50.0, 0.0).expect("inside");
-        (0..100).for_each(|y| (0..9).for_each(|z| grid.set(x, y, z, Class::Manmade.id())));
-        let boxes = [car(1, 0.0), car(2, 30.0)].map(|b| (b.id, b));
-        let frame = Frame::new(BevLayout::over(extent), boxes.into(), grid);
-        let mut scene = Scene::single("clip", frame, Arc::new(SensorRig::default()), 1);
-        let set = Edit::SetMotion {
-            id: (!ego).then_some(BoxId(1)),
-            motion: Some(motion),
-            from_s: None,
-            to_s: None,
-        };
-        set.apply(&mut scene).expect("sound");
-        let of_time = |f: Finding| f.time_s.map(|t| (f.check, (f.text, t)));
-        run_checks(&scene, None).into_iter().filter_map(of_time).collect()
-    }
-
-    fn path(to: [f64; 2], speeds: &[(f64, f64)], rear_first: bool) -> Motion {
-        Motion::Path(Path {
-            points_m: vec![DVec2::ZERO, to.into()],
-            start_m: 0.0,
-            speeds: speeds
-                .iter()
-                .map(|&(time_s, mps)| Speed { time_s, mps })
-                .collect(),
-            rear_first,
-        })
-    }
-
-    #[test]
-    fn what_a_motion_does_wrong_is_found_with_its_time() {
-        // Gently, past the standing car.
-        let fine = found(path([0.0, 15.0], &[(0.0, 0.0), (3.0, 5.0)], false), false);
-        assert_eq!(fine, BTreeMap::new());
-        let ahead = found(path([90.0, 0.0], &[(0.0, 10.0), (8.0, 10.0)], false), false);
-        let (text, time_s) = &ahead[COLLISION];
-        assert!(
-            text.contains("car 1 and car 2 meet at 2.6 s") && (2.5..2.7).contains(time_s),
-            "{text}"
-        );
-        assert!(
-            ahead[THROUGH_WALL].0.contains("drives through manmade at 4.9 s"),
-            "{:?}",
-            ahead[THROUGH_WALL]
-        );
-        let fast = found(path([90.0, 0.0], &[(0.0, 90.0), (0.5, 90.0)], false), false);
-        assert!(fast[TOO_FAST].0.contains("324 km/h"), "{fast:?}");
-        let sudden = found(
-            path(
-                [20.0, 12.0],
-                &[(0.0, 20.0), (0.5, 20.0), (0.7, 0.0), (2.0, 0.0)],
-                false,
-            ),
-            false,
-        );
-        assert!(
-            sudden[TOO_SUDDEN].0.contains("car 1 changes its speed by"),
-            "{sudden:?}"
-        );
-        let back = found(path([-15.0, 4.0], &[(0.0, 2.0), (5.0, 2.0)], true), false);
-        assert!(back[BACKWARDS].0.contains("backwards from 0.0 s on"), "{back:?}");
-        let key = |time_s: f64, x: f64| Key {
-            time_s,
-            at_m: DVec2::new(x, 12.0),
-            yaw_deg: 0.0,
-        };
-        let off = found(Motion::Keys(vec![key(0.0, 0.0), key(6.0, -60.0)]), true);
-        assert!(
-            off[LEAVES_MAP].0.contains("the ego vehicle leaves the map at"),
-            "{off:?}"
-        );
-    }
-}
+#[path = "tests_over_time.rs"]
+mod tests;

@@ -3,9 +3,10 @@
 use glam::DVec2;
 
 use scene::clip::{Path, Speed, Template};
-use scene::{BoxId, Class, Clip, Edit, Motion, Moving, Scene, SceneBox};
+use scene::{BoxId, Class, Clip, Edit, Motion, Moving, Scene, SceneBox, SensorRig, relations};
 
-use super::follow::{self, Driver, Other};
+use super::follow::{Body, Driver, Other, ahead_of, can, follow};
+use super::gap::{ego_box, ego_box_of};
 use super::lane_path::{aside, lane_path, lane_through, smooth};
 use super::turning::{Turning, turning};
 use crate::kerb;
@@ -21,6 +22,8 @@ const STRIDE: f64 = 3.0;
 const LANE_M: f64 = 3.5;
 /// Farthest that a street to turn into is looked for, m.
 const TURN_WITHIN_M: f64 = 150.0;
+/// Whoever is ahead is looked for so far, m.
+const LEADER_WITHIN_M: f64 = 300.0;
 /// Farthest that somebody walks across a road, m.
 const WIDEST_M: f64 = 60.0;
 
@@ -35,6 +38,10 @@ pub struct Wish {
     pub at_s: f64,
     /// How long a change of lanes takes, s.
     pub over_s: f64,
+    /// Who follows keeps so much to the one ahead, bumper to bumper, m; as much as their speed needs if none.
+    pub gap_m: Option<f64>,
+    /// Who follows goes faster than `mps` where the one ahead does.
+    pub keeps_up: bool,
 }
 
 impl Wish {
@@ -45,6 +52,8 @@ impl Wish {
             mps: Template::usual_mps(class),
             at_s: 2.0,
             over_s: 3.0,
+            gap_m: None,
+            keeps_up: true,
         }
     }
 }
@@ -68,16 +77,19 @@ pub fn motion_of(scene: &Scene, id: Option<BoxId>, wish: &Wish) -> Result<Vec<Ed
     } else {
         USUAL_LENGTH_S
     };
-    let (from, half_length_m) = place(scene, id).ok_or_else(|| match id {
+    let (from, body) = place(scene, id).ok_or_else(|| match id {
         Some(id) => format!("box {} does not exist in this frame", id.0),
         None => "there is no ego vehicle".to_owned(),
     })?;
+    if let Some(gap_m) = wish.gap_m.filter(|m| !(0.0..=1000.0).contains(m)) {
+        return Err(format!("gap_m is {gap_m}, expected 0 to 1000 m"));
+    }
     // How far it is turned against us; 0.5 is 60 degrees.
     let along = DVec2::from_angle(from.yaw_rad).dot(DVec2::from_angle(ego(scene).yaw_rad));
     if wish.template == Template::CutIn && along < 0.5 {
         return Err("only an object that goes our way can cut in; this one does not".to_owned());
     }
-    let path = path_of(scene, id, &from, half_length_m, wish, length_s)?;
+    let path = path_of(scene, id, &from, &body, wish, length_s)?;
     let mut edits = Vec::new();
     if clip.length_s == 0.0 {
         edits.push(Edit::SetLength {
@@ -94,15 +106,91 @@ pub fn motion_of(scene: &Scene, id: Option<BoxId>, wish: &Wish) -> Result<Vec<Ed
     Ok(edits)
 }
 
-/// Where it is now, and half of its length, m.
-fn place(scene: &Scene, id: Option<BoxId>) -> Option<(Moving, f64)> {
+/// Where it is now, and its body.
+fn place(scene: &Scene, id: Option<BoxId>) -> Option<(Moving, Body)> {
     match id {
         Some(id) => {
             let b = scene.frame().boxes.get(&id)?;
-            Some((Moving::from(b), b.size_m.x / 2.0))
+            Some((Moving::from(b), body_of(b)))
         }
-        None => Some((ego(scene), scene.rig.ego_size_m[0] / 2.0)),
+        None => Some((ego(scene), body_of_ego(scene))),
     }
+}
+
+/// The body of a box, which is led by its middle.
+pub(crate) fn body_of(b: &SceneBox) -> Body {
+    Body {
+        front_m: b.size_m.x / 2.0,
+        half_width_m: b.size_m.y / 2.0,
+    }
+}
+
+/// The body of the ego vehicle, which is led by its rear axle.
+pub(crate) fn body_of_ego(scene: &Scene) -> Body {
+    Body {
+        front_m: scene.rig.ego_center_m[0] + scene.rig.ego_size_m[0] / 2.0,
+        half_width_m: scene.rig.ego_size_m[1] / 2.0,
+    }
+}
+
+/// How fast whoever is ahead of something on its lane goes at the moment that is shown, m/s; none if nobody is.
+pub(crate) fn leader_mps(scene: &Scene, id: Option<BoxId>) -> Option<f64> {
+    let (from, body) = place(scene, id)?;
+    let points_m = lane_path(&scene.frame().layout, &from, LEADER_WITHIN_M);
+    let (leader, _, way) = ahead_of(&points_m, 0.0, &body, &others(scene, id, scene.time_s()))?;
+    Some(leader.body.velocity_mps.dot(way))
+}
+
+/// Speeds of somebody who follows along a path. Errors in one line, where whoever is ahead gets away.
+fn following(
+    scene: &Scene,
+    id: Option<BoxId>,
+    points_m: &[DVec2],
+    (body, wish, length_s): (&Body, &Wish, f64),
+) -> Result<Vec<Speed>, String> {
+    let class = id.and_then(|id| scene.frame().boxes.get(&id)).map(|b| b.class);
+    let who = id.map_or("the ego vehicle".to_owned(), |id| format!("box {}", id.0));
+    let others = |time_s: f64| others(scene, id, time_s);
+    let (top_mps, acceleration) = can(class);
+    let mut driver = Driver {
+        keeps_m: wish.gap_m,
+        ..Driver::at(wish.mps.max(0.1))
+    };
+    let leader = ahead_of(points_m, 0.0, body, &others(0.0)).map(|(other, ..)| other.id);
+    let mut fastest_mps = 0.0;
+    if let (true, Some(leader)) = (wish.keeps_up, leader) {
+        let speed = |t: f64| {
+            let all = others(t);
+            let found = all.iter().find(|o| o.id == leader);
+            found.map_or(0.0, |o| o.body.velocity_mps.length())
+        };
+        let steps = (length_s / 0.5).ceil().clamp(1.0, 1200.0) as usize;
+        fastest_mps = (0..=steps).map(|i| speed(i as f64 * 0.5)).fold(0.0, f64::max);
+        // (faster than them, or what opened up would never close)
+        driver.catching_up_mps = (fastest_mps * 1.3 + 1.0).min(top_mps);
+        driver.acceleration = acceleration;
+    }
+    if wish.gap_m.is_some() && leader.is_none() {
+        return Err(format!(
+            "{who} keeps no distance: nobody is ahead of it on its way"
+        ));
+    }
+    let found = follow(&driver, points_m, (0.0, wish.mps), body, length_s, others);
+    if let (true, Some([first_m, last_m])) = (wish.keeps_up, found.gap_m) {
+        let most_m = wish.gap_m.map_or(first_m, |gap_m| first_m.max(gap_m));
+        let (needs_m, most_mps) = (
+            driver.headway_s * fastest_mps * 1.5 + driver.gap_m,
+            driver.catching_up_mps,
+        );
+        if last_m > most_m.max(needs_m) + 1.0 && fastest_mps > 0.9 * most_mps {
+            return Err(format!(
+                "{who} cannot follow: whoever is ahead goes up to {:.0} km/h, it at most {:.0} km/h: {first_m:.0} m would become {last_m:.0} m",
+                fastest_mps * 3.6,
+                most_mps * 3.6
+            ));
+        }
+    }
+    Ok(found.speeds)
 }
 
 /// An object, or (`None`) the ego vehicle, as it is at the moment that is shown; `None` if it is not there.
@@ -127,7 +215,7 @@ fn path_of(
     scene: &Scene,
     id: Option<BoxId>,
     from: &Moving,
-    half_length_m: f64,
+    body: &Body,
     wish: &Wish,
     length_s: f64,
 ) -> Result<Path, String> {
@@ -145,11 +233,11 @@ fn path_of(
     Ok(match wish.template {
         Template::Drive => path(lane(), steady),
         Template::Follow => {
-            let points_m = lane();
-            let driver = Driver::at(mps.max(0.1));
-            let others = |time_s: f64| others(scene, id, time_s);
-            let start = (0.0, mps);
-            let speeds = follow::speeds(&driver, &points_m, start, half_length_m, length_s, others);
+            // (as far as it comes if it has to keep up)
+            let class = id.and_then(|id| scene.frame().boxes.get(&id)).map(|b| b.class);
+            let far_m = (can(class).0 * length_s).min(LEADER_WITHIN_M) + wish.mps * length_s;
+            let points_m = lane_path(layout, from, reach_m.max(far_m));
+            let speeds = following(scene, id, &points_m, (body, wish, length_s))?;
             path(points_m, speeds)
         }
         Template::Stop => path(
@@ -229,31 +317,30 @@ fn easing(list: &[(f64, f64)]) -> Vec<Speed> {
 
 /// Who else is on the road at a time.
 pub(crate) fn others(scene: &Scene, own: Option<BoxId>, time_s: f64) -> Vec<Other> {
+    let mut all = everybody_at(scene, time_s);
+    all.retain(|o| o.id != own);
+    all
+}
+
+/// Everybody on the road at a time, the ego vehicle too.
+pub(crate) fn everybody_at(scene: &Scene, time_s: f64) -> Vec<Other> {
     let of = |b: &SceneBox| Other {
-        at_m: b.center_m.truncate(),
-        velocity_mps: b.velocity_mps,
-        half_length_m: b.size_m.x / 2.0,
+        id: Some(b.id),
+        body: *b,
     };
     let canvas = scene.canvas();
-    let standing = canvas
-        .boxes
-        .values()
-        .filter(|b| Some(b.id) != own)
-        .map(|b| Other {
+    let standing = canvas.boxes.values().map(|b| {
+        of(&SceneBox {
             velocity_mps: DVec2::ZERO,
-            ..of(b)
-        });
-    let moving = scene.clip().boxes_at(time_s, canvas);
+            ..*b
+        })
+    });
     let mut out: Vec<Other> = standing.collect();
-    out.extend(moving.iter().filter(|b| Some(b.id) != own).map(of));
-    if own.is_some() {
-        let ego = scene.clip().ego_moving(time_s).unwrap_or_else(|| ego(scene));
-        out.push(Other {
-            at_m: ego.at_m,
-            velocity_mps: ego.velocity_mps,
-            half_length_m: scene.rig.ego_size_m[0] / 2.0,
-        });
-    }
+    out.extend(scene.clip().boxes_at(time_s, canvas).iter().map(of));
+    out.push(Other {
+        id: None,
+        body: ego_box(scene, time_s),
+    });
     out
 }
 
@@ -315,22 +402,14 @@ fn across(scene: &Scene, from: &Moving) -> Vec<DVec2> {
     vec![from.at_m, from.at_m + way * end_m]
 }
 
-/// When the ego vehicle and an object come as near as asked, s: along the line between them, from the front of the one to the
-/// rear of the other or the other way round. `None` if they never do.
-pub fn time_near(
-    clip: &Clip,
-    canvas: &scene::Frame,
-    id: BoxId,
-    gap_m: f64,
-    own_length_m: f64,
-) -> Option<f64> {
+/// When the ego vehicle and an object come as near as asked, s: the free distance between the two, bumper to bumper where one is
+/// behind the other. `None` if they never do.
+pub fn time_near(clip: &Clip, canvas: &scene::Frame, rig: &SensorRig, id: BoxId, gap_m: f64) -> Option<f64> {
     let relief = &canvas.layout.relief;
     let gap_at = |time_s: f64| {
         let standing = canvas.boxes.get(&id).copied();
         let b = clip.box_at(id, time_s, relief).or(standing)?;
-        let ego = clip.ego_at(time_s, &canvas.world_from_ego, relief);
-        let between = b.center_m.truncate().distance(ego.translation_m.truncate());
-        Some(between - b.size_m.x / 2.0 - own_length_m / 2.0)
+        Some(relations::gap_m(&ego_box_of(clip, canvas, rig, time_s), &b))
     };
     let times = (0..=(clip.length_s / 0.05) as usize).map(|i| i as f64 * 0.05);
     times
@@ -339,142 +418,5 @@ pub fn time_near(
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use glam::DVec3;
-    use scene::{BevLayer, BevLayout, Extent, Frame, Polyline, PolylineKind, SensorRig, VoxelGrid};
-
-    use super::*;
-    use crate::Apply;
-
-    /// A road of two lanes along x: ours at y = 0, the one to the left at 3.6; a sidewalk beyond y = -4.
-    fn scene() -> Scene {
-        let extent = Extent::new([-100, -100], [600, 200]).expect("sound");
-        let mut layout = BevLayout::over(extent);
-        for [x, y] in extent.all_columns() {
-            let p = extent.center(x, y, 0);
-            layout.set(BevLayer::DrivableArea, x, y, (-4.0..6.0).contains(&p.y));
-        }
-        let lane = |y: f64| Polyline {
-            kind: PolylineKind::LaneCenter,
-            points_m: vec![DVec2::new(-40.0, y), DVec2::new(200.0, y)],
-        };
-        layout.polylines = Arc::new(vec![lane(0.0), lane(3.6)]);
-        let object = |id: u32, class, x: f64, y: f64, size: [f64; 3]| SceneBox {
-            id: BoxId(id),
-            class,
-            center_m: DVec3::new(x, y, size[2] / 2.0),
-            size_m: size.into(),
-            yaw_rad: 0.0,
-            velocity_mps: DVec2::ZERO,
-            label: Default::default(),
-        };
-        let boxes = [
-            object(1, Class::Car, -10.0, 3.6, [4.5, 1.9, 1.6]),
-            object(2, Class::Car, 40.0, 0.0, [4.5, 1.9, 1.6]),
-            object(3, Class::Pedestrian, 25.0, -6.0, [0.6, 0.6, 1.75]),
-            object(4, Class::Bus, 20.0, -2.6, [11.0, 2.6, 3.2]),
-        ];
-        let frame = Frame::new(layout, boxes.map(|b| (b.id, b)).into(), VoxelGrid::over(extent));
-        Scene::single("road", frame, Arc::new(SensorRig::default()), 1)
-    }
-
-    fn with(scene: &Scene, id: Option<u32>, template: Template, mps: f64) -> Scene {
-        let mut scene = scene.clone();
-        let wish = Wish {
-            mps,
-            ..Wish::usual(template, None)
-        };
-        for edit in motion_of(&scene, id.map(BoxId), &wish).expect("a motion") {
-            edit.apply(&mut scene).expect("sound");
-        }
-        scene
-    }
-
-    fn at(scene: &Scene, id: u32, time_s: f64) -> SceneBox {
-        scene.at(time_s).frame().boxes[&BoxId(id)]
-    }
-
-    #[test]
-    fn every_template_does_what_its_name_says() {
-        let start = scene();
-        let drives = with(&start, Some(1), Template::Drive, 10.0);
-        assert_eq!(drives.clip().length_s, USUAL_LENGTH_S);
-        assert!((at(&drives, 1, 4.0).center_m.truncate() - DVec2::new(30.0, 3.6)).length() < 1e-6);
-        let stops = with(&start, Some(1), Template::Stop, 10.0);
-        // 2 s at 10 m/s, then 5 s of braking: 20 + 25 m.
-        assert!((at(&stops, 1, 8.0).center_m.x - 35.0).abs() < 1e-6);
-        assert_eq!(at(&stops, 1, 7.9).velocity_mps, DVec2::ZERO);
-        let cuts = with(&start, Some(1), Template::CutIn, 12.0);
-        assert!(
-            (at(&cuts, 1, 2.0).center_m.y - 3.6).abs() < 1e-6 && at(&cuts, 1, 5.2).center_m.y.abs() < 1e-6
-        );
-        assert!(at(&cuts, 1, 3.5).yaw_rad < -0.05, "it steers to the right");
-        let mut oncoming = start.clone();
-        oncoming.change_canvas(|f| {
-            f.boxes.get_mut(&BoxId(1)).expect("there").yaw_rad = std::f64::consts::PI;
-        });
-        let wish = Wish::usual(Template::CutIn, Some(Class::Car));
-        let refused = motion_of(&oncoming, Some(BoxId(1)), &wish).expect_err("it comes towards us");
-        assert!(refused.contains("goes our way"), "{refused}");
-        let crosses = with(&start, Some(3), Template::Cross, 1.5);
-        assert!((at(&crosses, 3, 2.0).center_m.y + 6.0).abs() < 1e-6);
-        assert!((at(&crosses, 3, 4.0).center_m.y + 3.375).abs() < 1e-6);
-        assert!((at(&crosses, 3, 4.0).yaw_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-6);
-        let pulls = with(&start, Some(4), Template::PullOut, 8.0);
-        assert!((at(&pulls, 4, 2.0).center_m.truncate() - DVec2::new(20.0, -2.6)).length() < 1e-6);
-        assert!(at(&pulls, 4, 8.0).center_m.y.abs() < 0.4 && at(&pulls, 4, 8.0).center_m.x > 40.0);
-        let parks = with(&start, Some(2), Template::Park, 5.0);
-        let parked = at(&parks, 2, 8.0);
-        assert!(
-            (-3.5..=-2.0).contains(&parked.center_m.y) && parked.velocity_mps == DVec2::ZERO,
-            "{parked:?}"
-        );
-        let ego = with(&start, None, Template::Follow, 14.0);
-        let x = |t: f64| ego.at(t).frame().world_from_ego.translation_m.x;
-        // Car 2 stands 40 m ahead: the vehicle comes to a stop behind it.
-        assert!(x(8.0) > 20.0 && x(8.0) < 40.0 - 2.25 - 2.04, "{}", x(8.0));
-    }
-
-    #[test]
-    fn a_follower_keeps_behind_one_who_stops() {
-        let stops = with(&scene(), Some(2), Template::Stop, 8.0);
-        let both = with(&stops, None, Template::Follow, 14.0);
-        for i in 0..=80 {
-            let view = both.at(f64::from(i) * 0.1);
-            let gap = view.frame().boxes[&BoxId(2)].center_m.x - view.frame().world_from_ego.translation_m.x;
-            assert!(gap > 4.5, "{gap} m at {} s", view.time_s());
-        }
-    }
-
-    #[test]
-    fn the_time_of_an_approach_is_found() {
-        let drives = with(&scene(), None, Template::Drive, 10.0);
-        // Half a bus and half of ourselves are 7.54 m: the middle of the bus is 17.54 m ahead at .25 s.
-        let found = time_near(drives.clip(), drives.canvas(), BoxId(4), 10.0, 4.084);
-        assert!((found.expect("they meet") - 0.25).abs() < 0.2, "{found:?}");
-        assert_eq!(
-            time_near(drives.clip(), drives.canvas(), BoxId(99), 10.0, 4.0),
-            None
-        );
-    }
-
-    #[test]
-    fn what_cannot_be_is_told_in_one_line() {
-        let scene = scene();
-        let wish = Wish::usual(Template::Drive, None);
-        assert_eq!(
-            motion_of(&scene, Some(BoxId(77)), &wish),
-            Err("box 77 does not exist in this frame".to_owned())
-        );
-        for bad in [f64::NAN, -1.0, 1e9] {
-            let wish = Wish { mps: bad, ..wish };
-            let error = motion_of(&scene, None, &wish).expect_err("no speed");
-            assert!(
-                error.contains("at most 100 m/s") && !error.contains('\n'),
-                "{error}"
-            );
-        }
-    }
-}
+#[path = "template_tests.rs"]
+mod tests;

@@ -1,6 +1,6 @@
 //! Readings with motion become clips; the reader network has tests of its own.
 
-use scene::{BoxId, Class, Edit, Key, Motion, Scene};
+use scene::{BoxId, Class, Edit, Key, Motion, Scene, SceneBox};
 use words::describe::describe;
 use words::hear::{By, Heard};
 use words::notation::parse;
@@ -166,4 +166,113 @@ fn what_cannot_be_is_said_and_the_rest_is_done() {
     );
     let (still, _) = made_of("add 1 bus", 1);
     assert!(still.clip().is_still());
+}
+
+fn by_hand(line: &str) -> Heard {
+    Heard {
+        reading: parse(line).expect("notation"),
+        by: By::Hand,
+        other: None,
+        unsure: Vec::new(),
+        missing: Vec::new(),
+        mended: Vec::new(),
+    }
+}
+
+/// "Nobody moves any more" takes motions away and nobody with them; that we go on is said.
+#[test]
+fn what_moves_is_halted_and_stays() {
+    let (scene, _) = made_of(
+        "road straight ; add 1 bus ( ahead ego 20m ) and 2 person ( on sidewalk ) ; go the bus drive",
+        2,
+    );
+    assert!(!scene.clip().stands() && scene.clip().ego.is_some());
+    let boxes = scene.frame().boxes.len();
+    let edited = edited(by_hand("set all thing waiting"), &scene, 1);
+    let mut after = scene.clone();
+    apply_all(&edited.edits(), &mut after).expect("sound");
+    assert_eq!(after.frame().boxes.len(), boxes);
+    assert!(
+        after.clip().tracks.values().all(|t| t.stands()),
+        "{:?}",
+        edited.edits()
+    );
+    let standing = |id: &BoxId| after.at(5.0).frame().boxes[id].center_m;
+    assert!(
+        after
+            .frame()
+            .boxes
+            .iter()
+            .all(|(id, b)| standing(id).distance(b.center_m) < 1e-6)
+    );
+    assert!(
+        edited.answer().contains("we ourselves go on"),
+        "{}",
+        edited.answer()
+    );
+}
+
+/// What collides after words is told in their answer, and what was so before is not.
+#[test]
+fn collisions_are_told_in_the_answer() {
+    let (scene, _) = made_of("road straight ; add 1 bus ( ahead ego 20m )", 2);
+    let mut full = scene.clone();
+    let bus = scene.frame().boxes.values().next().copied().expect("a bus");
+    // We drive into it.
+    let edited = edited(by_hand("go ego drive speed 60kmh"), &full, 1);
+    let answer = edited.answer_on(&full);
+    assert!(
+        answer.contains("But collisions:") && answer.contains("the ego vehicle"),
+        "{answer}"
+    );
+    // Somebody else who stands in it already is not news.
+    let second = SceneBox {
+        id: BoxId(900),
+        ..bus
+    };
+    full.change_canvas(|c| c.boxes.insert(second.id, second));
+    let said = super::edited(by_hand("time night"), &full, 1).answer_on(&full);
+    assert!(!said.contains("collisions"), "{said}");
+}
+
+/// A distance that could not be had is told with its figure.
+#[test]
+fn a_place_elsewhere_than_asked_is_told_with_its_figure() {
+    let description = describe(
+        &parse("road straight ; add 1 bus ( ahead ego 6m ) and 1 car ( ahead ego 8m )").expect("notation"),
+    )
+    .description;
+    let made = make("", &description, 3, &How::default());
+    let map = place::lanes::LaneMap::new(&made.laid.road.layout);
+    let graph = &made.laid.graphed.graph;
+    let off = place::off::off(graph, &map, &made.laid.placement.boxes);
+    for x in &off {
+        let figures = format!("{:.1} m in place of {:.1} m", x.found_m, x.asked_m);
+        assert!(
+            made.laid.notes.iter().any(|n| n.contains(&figures)),
+            "{figures}: {:?}",
+            made.laid.notes
+        );
+    }
+    // (two long vehicles do not fit 2 m apart)
+    assert!(!off.is_empty() || !made.laid.placement.left_out.is_empty());
+    // In a scene that is there, too.
+    let (scene, _) = made_of("road straight ; add 1 bus ( ahead ego 20m )", 2);
+    for metres in [10.0, 19.0, 24.0] {
+        let edited = edited(
+            by_hand(&format!("add 1 truck ( ahead ego {metres}m )")),
+            &scene,
+            1,
+        );
+        let added = edited.outcome.edits.iter().find_map(Edit::added_box);
+        let Some(truck) = added else { continue };
+        let found_m = truck.center_m.x;
+        let told = edited.answer().contains("in place of");
+        assert_eq!(
+            told,
+            (found_m - metres).abs() > 0.5,
+            "{found_m} m: {}",
+            edited.answer()
+        );
+    }
 }

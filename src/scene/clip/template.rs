@@ -139,7 +139,7 @@ pub struct Manoeuvre {
     /// When it begins, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from_s: Option<f64>,
-    /// It begins when so much is between it and the ego vehicle, m.
+    /// It begins when so much is between it and the ego vehicle, m, bumper to bumper; who follows keeps so much to the one ahead.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gap_m: Option<f64>,
     /// Speed, km/h.

@@ -24,7 +24,8 @@ pub struct AddTrack {
     /// When what it is about begins (the cut-in, the crossing, the stop), s; soon if left out.
     #[serde(default)]
     from_s: Option<f64>,
-    /// It begins when so much is left between it and the ego vehicle, m, in place of at a time. Only if the ego vehicle moves.
+    /// It begins when so much is left between it and the ego vehicle, m, in place of at a time (only if the ego vehicle moves); who
+    /// follows keeps so much to the one ahead. Bumper to bumper.
     #[serde(default)]
     gap_m: Option<f64>,
     /// How long the scene lasts from now on, s; as before if left out, or as long as the motion needs if it was one moment.

@@ -431,7 +431,7 @@ impl PromptField {
             None => return,
         };
         let edits = edited.edits();
-        (self.done, self.asks) = (Some(edited.answer()), edited.asks());
+        (self.done, self.asks) = (Some(edited.answer_on(scene)), edited.asks());
         self.notes = doubts(&edited.heard);
         if !edits.is_empty() && !self.asks {
             commands.push(Command::ApplyWords(self.said(), edits));

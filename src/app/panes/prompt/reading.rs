@@ -181,7 +181,7 @@ impl PromptField {
             && read.follow(scene, self.seed)
             && let Ok(edited) = &read.edited
         {
-            (self.asks, self.done) = (edited.asks(), Some(edited.answer()));
+            (self.asks, self.done) = (edited.asks(), Some(edited.answer_on(scene)));
         }
         let Some(Ok(edited)) = self.read.as_ref().map(|r| &r.edited) else {
             return;

@@ -9,6 +9,7 @@ use super::place::Ground;
 use super::targets::{Meant, targets};
 use super::wishes::forms;
 use super::{Amount, Said, Verb, What};
+use place::off::TOLERATED_M;
 use scene::Form;
 use scene::background::STOREY_M;
 use scene::{Background, BevLayout, BoxId, Class, Edit, SceneBox, ThingId};
@@ -91,11 +92,13 @@ pub fn carry_out(said: &[Said], open: &OpenBackground<'_>, seed: u64) -> ThingOu
         let ground = Ground::new(open.layout, open.boxes, &now);
         match one(s, &now, ground, seed.wrapping_add(i as u64)) {
             Ok((edit, n)) => {
+                let off = off(s, &edit, &Ground::new(open.layout, open.boxes, &now));
                 apply(&mut now, &edit, open.things);
                 // (a number that was not said)
                 let counted = n > 1 && s.count.is_none_or(|c| c as usize != n);
                 let n = if counted { format!(" ({n})") } else { String::new() };
-                out.done.push(format!("{}{n}", as_command(s)));
+                let off = off.map(|o| format!(" ({o})")).unwrap_or_default();
+                out.done.push(format!("{}{n}{off}", as_command(s)));
                 out.edits.extend(edit);
             }
             Err(Stopped::Asked(candidates)) => out.questions.push(ThingQuestion {
@@ -112,6 +115,18 @@ pub fn carry_out(said: &[Said], open: &OpenBackground<'_>, seed: u64) -> ThingOu
         }
     }
     out
+}
+
+/// How far ahead the first of new things stands, where that is not as it was said: "9.2 m in place of 12 m".
+fn off(s: &Said, edits: &[Edit], ground: &Ground) -> Option<String> {
+    let asked_m = s.place.distance_m.filter(|_| s.place.near.is_none() && !s.row)?;
+    let first = edits.iter().find_map(|e| match e {
+        Edit::AddThings { forms } => forms.first(),
+        _ => None,
+    })?;
+    let found_m = ground.roads.along_ego_lane(first.middle_m()).x.abs();
+    let is_off = (found_m - asked_m).abs() > TOLERATED_M;
+    is_off.then(|| format!("{found_m:.1} m in place of {asked_m} m"))
 }
 
 /// What a description says is there comes, in a scene that is there.
@@ -237,6 +252,7 @@ fn apply(now: &mut Background, edits: &[Edit], all: &Background) {
                         id,
                         form: form.clone(),
                         look: id.0,
+                        placed: true,
                     });
                 }
             }

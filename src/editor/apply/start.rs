@@ -1,0 +1,164 @@
+//! Lets traffic drive: everything that says how fast it is but stands goes on along its lane, but for what would come into
+//! something; that stays where it is, and is told.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use scene::{BoxId, Clip, Edit, Scene};
+
+use super::forecast::{Goer, forecast, goers, together};
+use super::off_lane::off_lane;
+use crate::checks::{Met, meetings};
+use language::tf;
+
+/// Length of a clip that traffic begins, s.
+const USUAL_LENGTH_S: f64 = 8.0;
+/// After so many looks whoever meets anybody stays, both of two.
+const PATIENCE: usize = 12;
+/// Reasons that are told.
+const MOST_REASONS: usize = 4;
+
+/// Who drives off, and who does not.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Start {
+    /// The edits, to be applied as one step.
+    pub edits: Vec<Edit>,
+    /// Objects that drive off.
+    pub starts: usize,
+    /// Objects that stay where they are, each with what would happen otherwise.
+    pub stays: BTreeMap<BoxId, String>,
+}
+
+impl Start {
+    /// What a person is told of those that stay, in one line; none if nobody does.
+    pub fn said(&self) -> Option<String> {
+        if self.stays.is_empty() {
+            return None;
+        }
+        let mut why: Vec<&str> = Vec::new();
+        for reason in self.stays.values() {
+            if !why.contains(&reason.as_str()) {
+                why.push(reason);
+            }
+        }
+        let more = why.len().saturating_sub(MOST_REASONS);
+        why.truncate(MOST_REASONS);
+        let more = if more > 0 {
+            format!("; +{more}")
+        } else {
+            String::new()
+        };
+        Some(tf!(
+            "{n} of {all} stay where they are; they would come into something: {why}",
+            n = self.stays.len(),
+            all = self.starts + self.stays.len(),
+            why = why.join("; ") + &more
+        ))
+    }
+}
+
+/// Lets everything that is labelled as moving, but has no motion, move from the beginning on, as far as that meets nothing: no
+/// wall, nothing that stands, nobody else and not the ego vehicle, over the whole clip, by the checks of the editor. A scene of
+/// one moment becomes a clip. Errors in one line.
+pub fn traffic_drives(scene: &Scene) -> Result<Start, String> {
+    let mut waiting = goers(scene, 0.0);
+    waiting.retain(|g| g.id.is_some() && g.motion.is_none());
+    let mut first = Vec::new();
+    let mut length_s = scene.clip().length_s;
+    if length_s == 0.0 {
+        length_s = USUAL_LENGTH_S.min(Clip::MAX_LENGTH_S);
+        first.push(Edit::SetLength {
+            length_s,
+            rate_hz: None,
+        });
+    }
+    let mut start = Start::default();
+    for look in 0.. {
+        if waiting.is_empty() {
+            break;
+        }
+        let (motions, later) = together(scene, &waiting, &first, (0.0, length_s))?;
+        let met = meetings(&later);
+        let stays = who_stays(&waiting, &met, look >= PATIENCE);
+        if stays.is_empty() {
+            start.starts = waiting.len();
+            start.edits = first;
+            start.edits.extend(motions);
+            break;
+        }
+        waiting.retain(|g| g.id.is_none_or(|id| !stays.contains_key(&id)));
+        start.stays.extend(stays);
+    }
+    Ok(start)
+}
+
+/// Those of whoever is about to drive off that had better stay, with the reasons; nobody if all is well. `both`: of two that meet
+/// neither goes.
+fn who_stays(waiting: &[Goer], met: &[Met], both: bool) -> BTreeMap<BoxId, String> {
+    let goes: BTreeSet<BoxId> = waiting.iter().filter_map(|g| g.id).collect();
+    let mut out: BTreeMap<BoxId, String> = BTreeMap::new();
+    let mut pairs: Vec<(BoxId, BoxId, &str)> = Vec::new();
+    for m in met {
+        let one = m.id.filter(|id| goes.contains(id));
+        let other = m.other.as_ref().ok().copied().flatten();
+        let other = other.filter(|id| goes.contains(id));
+        match (one, other) {
+            (Some(a), Some(b)) => pairs.push((a, b, &m.text)),
+            (Some(id), None) | (None, Some(id)) => {
+                out.entry(id).or_insert_with(|| m.text.clone());
+            }
+            (None, None) => {}
+        }
+    }
+    // (who stays for another reason may be no trouble any more)
+    pairs.retain(|(a, b, _)| both || !(out.contains_key(a) || out.contains_key(b)));
+    while let Some(&(a, b, text)) = pairs.first() {
+        let count = |id: BoxId| pairs.iter().filter(|(a, b, _)| *a == id || *b == id).count();
+        // Who meets most of the others stays; of two alike the later one.
+        let worst = pairs
+            .iter()
+            .flat_map(|(a, b, _)| [*a, *b])
+            .max_by_key(|id| (count(*id), *id))
+            .unwrap_or(b);
+        let why = |id: BoxId| {
+            let of = pairs.iter().find(|(a, b, _)| *a == id || *b == id);
+            of.map_or(text, |of| of.2).to_owned()
+        };
+        if both {
+            out.entry(a).or_insert_with(|| why(a));
+            out.entry(b).or_insert_with(|| why(b));
+            pairs.remove(0);
+        } else {
+            out.insert(worst, why(worst));
+            pairs.retain(|(a, b, _)| *a != worst && *b != worst);
+        }
+    }
+    out
+}
+
+/// What a person should know of edits that are about to be applied, a line each: who stays where traffic is let drive, what comes
+/// into something where a scene is let go on, and who drives where no lane is.
+pub fn remarks(scene: &Scene, edits: &[Edit]) -> Vec<String> {
+    let mut out = Vec::new();
+    for (i, edit) in edits.iter().enumerate() {
+        if !matches!(
+            edit,
+            Edit::LetTrafficDrive {} | Edit::Forecast { .. } | Edit::LetMove { .. }
+        ) {
+            continue;
+        }
+        let mut before = scene.clone();
+        if super::apply_all(&edits[..i], &mut before).is_err() {
+            break;
+        }
+        out.extend(match edit {
+            Edit::Forecast { seconds } => forecast(&before, *seconds).ok().and_then(|f| f.said()),
+            Edit::LetTrafficDrive {} => traffic_drives(&before).ok().and_then(|start| start.said()),
+            edit => off_lane(&before, edit),
+        });
+    }
+    out
+}
+
+#[cfg(test)]
+#[path = "start_tests.rs"]
+mod tests;
