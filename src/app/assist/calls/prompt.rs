@@ -181,7 +181,7 @@ impl Prompt {
         let scene = desk.scene()?;
         let edited = text::read_edit(&self.text, &scene, self.seed)?;
         let mut edits = edited.edits();
-        let questions = questions(&edited);
+        let (questions, answer) = (questions(&edited), edited.answer_on(&scene));
         let done = match questions.is_empty() && !edits.is_empty() {
             true => {
                 edits.push(Edit::KeepWords {
@@ -191,7 +191,7 @@ impl Prompt {
             }
             false => desk.done(String::new(), &[scene.clone(), scene]),
         };
-        let mut out = heard(done, &self.text, &edited.heard, edited.answer());
+        let mut out = heard(done, &self.text, &edited.heard, answer);
         for (i, phrase) in out.phrases.iter_mut().enumerate() {
             if let Some(of) = edited.outcome.done.get(i) {
                 phrase.added = of.added.iter().map(|id| id.0).collect();
