@@ -140,7 +140,7 @@ fn map(bytes: &[u8], name: &str) -> Result<LaneletMap> {
             });
         }
     }
-    lanelets::link_by_ends(&mut out.lanelets);
+    lanelets::link_by_ends(&mut out.lanelets, &mut out.skipped);
     Ok(out)
 }
 

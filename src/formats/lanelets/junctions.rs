@@ -41,11 +41,17 @@ pub(super) fn find(lanelets: &[Lanelet]) -> Junctions {
     }
     // The least id of the lanelets that a lanelet is joined with.
     let mut joined: BTreeMap<i64, i64> = BTreeMap::new();
-    fn root(joined: &BTreeMap<i64, i64>, mut id: i64) -> i64 {
-        while let Some(up) = joined.get(&id).filter(|up| **up != id) {
-            id = *up;
+    // Those on the way to it are joined with it at once, so that no chain is gone along twice.
+    fn root(joined: &mut BTreeMap<i64, i64>, id: i64) -> i64 {
+        let mut top = id;
+        while let Some(up) = joined.get(&top).filter(|up| **up != top) {
+            top = *up;
         }
-        id
+        let mut at = id;
+        while let Some(up) = joined.get_mut(&at).filter(|up| **up != top) {
+            at = std::mem::replace(up, top);
+        }
+        top
     }
     let shared = traffic
         .values()
@@ -54,18 +60,19 @@ pub(super) fn find(lanelets: &[Lanelet]) -> Junctions {
     for group in shared.filter(|group| group.len() > 1).collect::<Vec<_>>() {
         let least = group
             .iter()
-            .map(|id| root(&joined, *id))
+            .map(|id| root(&mut joined, *id))
             .min()
             .unwrap_or(group[0]);
         for id in group {
-            let top = root(&joined, id);
+            let top = root(&mut joined, id);
             joined.insert(top, least);
             joined.insert(id, least);
         }
     }
-    let junction_of: BTreeMap<i64, String> = joined
-        .keys()
-        .map(|id| (*id, format!("junction {}", root(&joined, *id))))
+    let ids: Vec<i64> = joined.keys().copied().collect();
+    let junction_of: BTreeMap<i64, String> = ids
+        .into_iter()
+        .map(|id| (id, format!("junction {}", root(&mut joined, id))))
         .collect();
     let mut out = Junctions {
         junctions: Vec::new(),

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use crate::opendrive::lanes::{Ground, LaneKind};
+use crate::opendrive::xml::count;
 use crate::opendrive::{Drawn, RoadNetwork, Skipped};
 use scene::{Polyline, PolylineKind, SceneBox};
 
@@ -120,8 +121,12 @@ impl Lanelet {
     }
 }
 
-/// Gives every lanelet the successors that begin where it ends: both bounds go on in the same points.
-pub(crate) fn link_by_ends(lanelets: &mut [Lanelet]) {
+/// Lanelets behind one, at most: the widest junctions have a dozen.
+const MOST_SUCCESSORS: usize = 64;
+
+/// Gives every lanelet the successors that begin where it ends: both bounds go on in the same points. Those beyond
+/// [`MOST_SUCCESSORS`] are left out and counted.
+pub(crate) fn link_by_ends(lanelets: &mut [Lanelet], skipped: &mut Skipped) {
     let key = |p: DVec3| [p.x, p.y].map(|v| (v * 1000.0).round() as i64);
     let mut begins: BTreeMap<[[i64; 2]; 2], Vec<i64>> = BTreeMap::new();
     for l in lanelets.iter() {
@@ -130,7 +135,14 @@ pub(crate) fn link_by_ends(lanelets: &mut [Lanelet]) {
     }
     for l in lanelets {
         let ends = [0, 1].map(|side| key(l.bounds[side][l.bounds[side].len() - 1]));
-        l.successors = begins.get(&ends).cloned().unwrap_or_default();
+        let behind = begins.get(&ends).map_or(&[][..], Vec::as_slice);
+        l.successors = behind.iter().take(MOST_SUCCESSORS).copied().collect();
+        if behind.len() > MOST_SUCCESSORS {
+            count(
+                skipped,
+                format!("lanelet with more than {MOST_SUCCESSORS} behind it"),
+            );
+        }
     }
 }
 

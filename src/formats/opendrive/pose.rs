@@ -1,5 +1,7 @@
 //! Where to look from: a good default place in a network, and the lane nearest to a chosen one.
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 
 use super::lanes::{Lane, LaneKind, LaneSection, Travel};
@@ -41,9 +43,9 @@ impl RoadNetwork {
         }
         let mut junctions: Vec<&Junction> = self.junctions.iter().collect();
         junctions.sort_by_key(|j| std::cmp::Reverse(j.incoming.len())); // stable: file order on a tie
+        let mut leading = self.approaches();
         let near_junction = junctions.iter().find_map(|junction| {
-            let mut approaches: Vec<(&Road, bool)> =
-                self.roads.iter().flat_map(|r| approaches(r, junction)).collect();
+            let mut approaches = leading.remove(junction.id.as_str()).unwrap_or_default();
             approaches.sort_by(|a, b| b.0.length_m().total_cmp(&a.0.length_m()));
             approaches.into_iter().find_map(|(road, at_end)| {
                 let back = BEFORE_JUNCTION_M.min(road.length_m() / 2.0);
@@ -72,6 +74,19 @@ impl RoadNetwork {
                 Some((middle.position_m, middle.heading_rad))
             })
             .unwrap_or((DVec2::ZERO, 0.0))
+    }
+
+    /// By junction, the ends at which roads lead into it; true for a road's end, false for its start.
+    fn approaches(&self) -> BTreeMap<&str, Vec<(&Road, bool)>> {
+        let mut out: BTreeMap<&str, Vec<(&Road, bool)>> = BTreeMap::new();
+        for road in self.roads.iter().filter(|road| road.junction.is_none()) {
+            for (end, is_end) in [(&road.successor, true), (&road.predecessor, false)] {
+                if let Some(RoadEnd::Junction(id)) = end {
+                    out.entry(id).or_default().push((road, is_end));
+                }
+            }
+        }
+        out
     }
 
     /// Corners of the rectangle around all reference lines, file frame, m; both the origin if there is no road.
@@ -138,15 +153,6 @@ impl RoadNetwork {
         }
         best
     }
-}
-
-/// The ends at which a road leads into a junction; true for its end, false for its start.
-fn approaches<'a>(road: &'a Road, junction: &Junction) -> impl Iterator<Item = (&'a Road, bool)> {
-    let leads = |end: &Option<RoadEnd>| matches!(end, Some(RoadEnd::Junction(id)) if *id == junction.id);
-    let ends = [(leads(&road.successor), true), (leads(&road.predecessor), false)];
-    ends.into_iter()
-        .filter(move |(leads, _)| *leads && road.junction.is_none())
-        .map(move |(_, at_end)| (road, at_end))
 }
 
 /// The traffic lane farthest from the centre line that runs the given way (any way for `None`).
