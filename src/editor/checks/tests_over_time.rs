@@ -28,7 +28,9 @@ fn found(motion: Motion, ego: bool) -> BTreeMap<&'static str, (String, f64)> {
     let [x, _] = extent.column_at(50.0, 0.0).expect("inside");
     (0..100).for_each(|y| (0..9).for_each(|z| grid.set(x, y, z, Class::Manmade.id())));
     let boxes = [car(1, 0.0), car(2, 30.0)].map(|b| (b.id, b));
-    let frame = Frame::new(BevLayout::over(extent), boxes.into(), grid);
+    let mut frame = Frame::new(BevLayout::over(extent), boxes.into(), grid);
+    // Where nothing of this comes.
+    frame.world_from_ego = scene::Pose::planar(-15.0, -15.0, 0.0);
     let mut scene = Scene::single("clip", frame, Arc::new(SensorRig::default()), 1);
     let set = Edit::SetMotion {
         id: (!ego).then_some(BoxId(1)),
@@ -94,5 +96,16 @@ fn what_a_motion_does_wrong_is_found_with_its_time() {
     assert!(
         off[LEAVES_MAP].0.contains("the ego vehicle leaves the map at"),
         "{off:?}"
+    );
+}
+
+/// Who drives through the ego vehicle is found, although it has no motion of its own.
+#[test]
+fn an_ego_vehicle_that_stands_is_met() {
+    let through = path([-15.0, -15.0], &[(0.0, 4.0), (8.0, 4.0)], false);
+    let (text, time_s) = &found(through, false)[COLLISION];
+    assert!(
+        text.contains("car 1 and the ego vehicle meet") && *time_s > 3.0,
+        "{text}"
     );
 }

@@ -46,6 +46,15 @@ fn find(tokens: &[Token]) -> Option<Halt> {
             .iter()
             .find(|words| words.iter().enumerate().all(|(k, w)| word(i + k) == *w));
         let (who, end) = match nobody {
+            // ("none of the cars moves")
+            Some(words) if word(i + words.len()) == "of" => {
+                let from = i + words.len() + 1;
+                let from = from + usize::from(matches!(word(from), "the" | "these" | "those"));
+                match noun_at(tokens, from) {
+                    Some((noun, end)) => (Some(noun), end),
+                    None => (None, from),
+                }
+            }
             Some(words) => (None, i + words.len()),
             None if word(i) == "no" => {
                 let (noun, end) = noun_at(tokens, i + 1)?;
@@ -143,6 +152,11 @@ mod tests {
             ("no one is driving now", "", "set all thing waiting"),
             ("nothing moves", "no thing", "set all thing waiting"),
             ("no cars move any longer", "no car", "set all car waiting"),
+            (
+                "none of the cars is moving",
+                "remove all car",
+                "set all car waiting",
+            ),
             (
                 "remove the bus, and nobody moves",
                 "remove the bus ; no person",
