@@ -186,7 +186,7 @@ def main():
     p.add_argument("--few", type=int, default=32, help="worlds, a multiple of 8")
     p.add_argument("--variants", type=int, default=3, help="generated and edited scenes of each of them, up to 5")
     p.add_argument("--held-out", type=int, default=64)
-    p.add_argument("--quality", default="draft", help="of generation: draft, balanced, accurate")
+    p.add_argument("--quality", default="draft", help="of generation: draft, balanced, careful")
     p.add_argument("--seeds", type=int, default=5)
     p.add_argument("--first-seed", type=int, default=0, help="so that several processes can share the seeds")
     p.add_argument("--steps", type=int, default=3000)

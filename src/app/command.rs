@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 
 use editor::Edit;
+use editor::checks::Finding;
 use scene::{BoxId, Class, SceneRev};
 use sensors::cameras::ViewId;
 use viewport::ViewPreset;
@@ -131,6 +132,23 @@ pub enum ViewCommand {
     FocusPrompt,
 }
 
+/// Repairs of what the checks found: they are planned in the background, listed, and then done or not.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RepairCommand {
+    /// Plans repairs of all findings, and of what these leave.
+    PlanAll,
+    /// Plans repairs of these findings alone.
+    PlanThese(Vec<Finding>),
+    /// Plans what was planned before, for the scene as it is now.
+    Again,
+    /// Ends the planning; what is planned by then is listed.
+    Stop,
+    /// Does what is listed, as one undo step.
+    Apply,
+    /// Forgets the plan.
+    Close,
+}
+
 /// What the worker does, and what becomes of its results.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GenerationCommand {
@@ -231,7 +249,7 @@ pub enum Command {
     /// Gives all painted voxels back to generation.
     ClearPaint,
     /// Repairs all findings of the checks that can be repaired.
-    FixAll,
+    Repair(RepairCommand),
     /// What the tools are asked for.
     Tools(super::tools::ToolCommand),
     /// Chooses a box, or none.

@@ -66,7 +66,7 @@ impl Product for Perceiver {
             },
             Request::Look(scene, Sensor::Cameras) => {
                 let placed = scene.with_rig_in_world();
-                match perceived::report(placed.frame(), &placed.rig, &placed.conditions) {
+                match perceived::report(&placed) {
                     Ok(report) => News::Looked(scene.rev, report),
                     Err(error) => News::Failed(error.to_string()),
                 }
@@ -111,6 +111,8 @@ impl Product for Perceiver {
 pub struct Perceiving {
     worker: Worker<Request, News>,
     asked: Option<(SceneRev, Sensor)>,
+    /// News of this job and those before it is of a scene that was forgotten.
+    forgotten: u64,
     /// The newest job of each kind; news of others is old.
     look: Option<JobId>,
     search: Option<JobId>,
@@ -134,6 +136,7 @@ impl Perceiving {
         Ok(Self {
             worker: Worker::start("perception", || Perceiver, wake)?,
             asked: None,
+            forgotten: 0,
             look: None,
             search: None,
             seen: None,
@@ -148,7 +151,8 @@ impl Perceiving {
     /// Takes in what has arrived, and has a scene looked at by a sensor that did not yet, unless a search runs.
     pub fn update(&mut self, scene: &Arc<Scene>, by: Sensor) {
         let news: Vec<_> = self.worker.updates().try_iter().collect();
-        for Event { id, update } in news {
+        let forgotten = self.forgotten;
+        for Event { id, update } in news.into_iter().filter(|e| e.id.0 > forgotten) {
             let (of_look, of_search) = (self.look == Some(id), self.search == Some(id));
             match update {
                 News::Looked(rev, report) => (self.seen, self.problem) = (Some((rev, report)), None),
@@ -193,10 +197,9 @@ impl Perceiving {
         self.found.clear();
         (self.asked, self.problem) = (None, None);
         self.look = None;
-        if self.searching.is_some() {
-            self.end_search();
-            self.stop();
-        }
+        self.end_search();
+        self.stop();
+        self.forgotten = self.worker.newest().0;
     }
 
     /// Searches for a change of a scene after which a box is missed. What was found before stays until this is over.

@@ -26,6 +26,7 @@ use sensors::learned::Drops;
 use sensors::learned_caster::{LearnedCaster, Sampled};
 use sensors::lidar::EgoBox;
 use sensors::rolling;
+use sensors::shaped::onto_shapes;
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
 pub use painting::PaintStage;
@@ -61,6 +62,8 @@ pub struct Sensing {
     cameras: Option<(SceneRev, Wanted, Arc<Vec<CameraView>>)>,
     others: Vec<(SceneRev, SourceId, Arc<Vec<CameraView>>)>,
     version: u64,
+    /// News of these jobs and those before them is of a scene that was forgotten: sensed, painted.
+    forgotten: [u64; 2],
     problem: Option<String>,
     painting: Worker<painting::Request, painting::News>,
     paint: Arc<PaintWish>,
@@ -98,6 +101,7 @@ impl Sensing {
             cameras: None,
             others: Vec::new(),
             version: 0,
+            forgotten: [0; 2],
             problem: None,
             paint: Arc::default(),
             painted: None,
@@ -117,6 +121,18 @@ impl Sensing {
                 *rev = SceneRev::fresh();
             }
         }
+    }
+
+    /// Forgets all that was sensed, and what is still on its way: another scene is shown.
+    pub fn forget(&mut self) {
+        self.stop_painting();
+        self.worker.cancel();
+        self.painting.cancel();
+        self.forgotten = [self.worker.newest().0, self.painting.newest().0];
+        (self.asked, self.lidar, self.sampled) = (None, None, None);
+        (self.cameras, self.painted, self.stage) = (None, None, None);
+        self.others.clear();
+        self.version += 1;
     }
 
     /// How far the pictures are that are being painted.
@@ -176,7 +192,13 @@ impl Sensing {
     /// Takes in what has arrived.
     pub fn drain(&mut self) {
         self.drain_painting();
-        for news in self.worker.updates().try_iter().map(|event| event.update) {
+        let events: Vec<_> = self.worker.updates().try_iter().collect();
+        let forgotten = self.forgotten[0];
+        for news in events
+            .into_iter()
+            .filter(|e| e.id.0 > forgotten)
+            .map(|e| e.update)
+        {
             match news {
                 News::Lidar(rev, sweep, sampled) => {
                     self.lidar = Some((rev, Arc::new(sweep)));
@@ -330,8 +352,9 @@ impl Kept {
             return self.rolling(scene, wanted);
         }
         if wanted.lidar == LidarModel::Learned
-            && let Some(sweep) = self.learned(scene, wanted.lost_echoes)
+            && let Some(mut sweep) = self.learned(scene, wanted.lost_echoes)
         {
+            onto_shapes(&mut sweep, scene.frame(), &scene.rig, scene.seed);
             return sweep;
         }
         let (frame, rig) = (scene.frame(), &scene.rig);
@@ -345,7 +368,7 @@ impl Kept {
         }
         self.lidar
             .as_ref()
-            .map(|(_, caster)| caster.sweep())
+            .map(|(_, caster)| caster.shaped(frame, rig, scene.seed))
             .unwrap_or_default()
     }
 

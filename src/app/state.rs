@@ -53,22 +53,27 @@ pub struct UiState {
 impl UiState {
     /// The edits as they are; or as corrections while the user corrects what was inferred.
     pub fn as_meant(&self, edits: Vec<Edit>) -> Vec<Edit> {
-        let authored = |edit: &Edit| {
-            matches!(
-                edit,
-                Edit::AddBox { .. }
-                    | Edit::RemoveBox { .. }
-                    | Edit::MoveBox { .. }
-                    | Edit::SetBoxClass { .. }
-                    | Edit::PaintBev { .. }
-            )
-        };
-        let meant = |edit: Edit| match self.correcting && authored(&edit) {
-            true => Edit::Correct { edit: Box::new(edit) },
-            false => edit,
-        };
-        edits.into_iter().map(meant).collect()
+        corrected(self.correcting, edits)
     }
+}
+
+/// The edits as they are; or, if that is asked for, those of boxes and layers as corrections of what was inferred.
+pub(crate) fn corrected(correcting: bool, edits: Vec<Edit>) -> Vec<Edit> {
+    let authored = |edit: &Edit| {
+        matches!(
+            edit,
+            Edit::AddBox { .. }
+                | Edit::RemoveBox { .. }
+                | Edit::MoveBox { .. }
+                | Edit::SetBoxClass { .. }
+                | Edit::PaintBev { .. }
+        )
+    };
+    let meant = |edit: Edit| match correcting && authored(&edit) {
+        true => Edit::Correct { edit: Box::new(edit) },
+        false => edit,
+    };
+    edits.into_iter().map(meant).collect()
 }
 
 impl Deref for UiState {

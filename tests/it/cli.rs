@@ -505,7 +505,7 @@ fn folders_and_presets_that_no_edit_can_be_judged_on_are_named() {
     }
     std::fs::write(Path::new(&bad).join("labels.npz"), "PK broken").expect("writable");
     let of = |more: &[&str], needles: &[&str]| refused(&[&["eval", "editing"], more].concat(), needles);
-    of(&["--presets", "best"], &["--presets best", "draft", "accurate"]);
+    of(&["--presets", "best"], &["--presets best", "draft", "careful"]);
     of(&["--vehicles", "0"], &["--vehicles is 0"]);
     of(&["--frames", "0"], &["--frames is 0"]);
     of(&["--data", &dir.path("none")], &["none"]);

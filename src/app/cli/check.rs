@@ -12,6 +12,7 @@ use app::findings;
 use app::open;
 use app::panes;
 use editor::checks::{self, Counts, Finding, waive};
+use editor::fix::{self, Repair};
 use formats::loom;
 use scene::Scene;
 
@@ -23,7 +24,8 @@ pub struct Check {
     /// Leave out the two checks that need cameras and LiDAR.
     #[arg(long)]
     no_sensors: bool,
-    /// Apply the first fix of every finding that has one, and check again.
+    /// Apply the first repair of every finding that has one and is better for it, and check again. No repair is done
+    /// that brings something as bad, or that makes the map larger.
     #[arg(long, requires = "output")]
     fix: bool,
     /// Scene to write with --fix.
@@ -49,6 +51,15 @@ fn report_of(scene: &Scene, finding: &Finding) -> Value {
     })
 }
 
+fn repair_of(repair: &Repair) -> Value {
+    json!({
+        "check": repair.finding.check,
+        "box": repair.finding.box_id,
+        "text": repair.finding.text,
+        "does": repair.label,
+    })
+}
+
 impl Check {
     fn findings(&self, scene: &Scene) -> Vec<Finding> {
         match self.no_sensors {
@@ -64,18 +75,14 @@ impl Check {
         let mut scene = self.moment.of(open::scene(&self.scene)?)?;
         let start = Instant::now();
         let mut findings = self.findings(&scene);
-        let (mut fixed, mut files) = (0, Vec::new());
+        let (mut repairs, mut files) = (Vec::new(), Vec::new());
         if let Some(path) = &self.output {
-            let before = findings.len();
-            let mut apply = || -> anyhow::Result<()> {
-                let edits = editor::fix::fix_all(&scene, &findings);
-                editor::apply_all(&edits, &mut scene).context("a fix does not apply")
-            };
-            apply()?;
+            let plan = fix::plan_at_once(&scene, &findings);
+            editor::apply_all(&plan.edits(), &mut scene).context("a fix does not apply")?;
             findings = self.findings(&scene);
-            fixed = before.saturating_sub(findings.len());
             loom::save(path, &scene)?;
             files.push(path);
+            repairs = plan.repairs;
         }
         let wall_s = start.elapsed().as_secs_f64();
         let open: Vec<Finding> = waive::open(scene.frame(), &findings).cloned().collect();
@@ -89,7 +96,8 @@ impl Check {
             "infos": counts.infos,
             "kinds": kinds,
             "waived": findings.len() - open.len(),
-            "fixed": fixed,
+            "fixed": repairs.len(),
+            "repairs": repairs.iter().map(repair_of).collect::<Vec<_>>(),
             "files": files,
             "wall_s": wall_s,
         });

@@ -4,6 +4,7 @@ use egui::Ui;
 
 use scene::Scene;
 
+use super::camera_header::light_menu;
 use super::camera_strip::CameraStrip;
 use super::cameras::{Strips, compared};
 use super::conditions::conditions;
@@ -17,8 +18,13 @@ use widgets::icons::{self, Icon};
 
 /// A pane that was not drawn for so many frames is not rendered for.
 const FRAMES: u8 = 3;
-/// So much room words need, points.
+/// So much room the light's menu needs with its name, points.
 const LIGHT_POINTS: f32 = 72.0;
+/// So much an icon takes with its distance to the next, points.
+const ICON_POINTS: f32 = 32.0;
+/// So much the list of what the camera shows takes, and what it can be read in, points.
+const MODES_POINTS: f32 = 124.0;
+const LEAST_MODES_POINTS: f32 = 56.0;
 
 /// The camera of this index, unless another was taken in its pane.
 pub struct Camera {
@@ -80,56 +86,62 @@ impl Pane for Camera {
             .cameras
             .get(camera)
             .map_or(String::new(), |c| camera_label(&c.name));
-        if icons::button(
-            ui,
-            Icon::Camera,
-            t("Save picture"),
-            t("as it is shown, beside the scene; File > Pictures… has other sizes"),
-            false,
-            count > 0,
-        )
-        .clicked()
+        let source = cameras::source_of(view, cx.state.cameras.source);
+        let lit = source.about().needs.conditions;
+        // The title comes first: what has no room beside it is left out, what can be done elsewhere before the rest.
+        let mut room = ui.available_width() - MODES_POINTS - if lit { ICON_POINTS } else { 0.0 };
+        let mut fits = |n: f32| {
+            room -= n * ICON_POINTS;
+            room >= 0.0
+        };
+        let [steps, legend, save] = [fits(2.0), fits(1.0), fits(1.0)];
+        if save
+            && icons::button(
+                ui,
+                Icon::Camera,
+                t("Save picture"),
+                t("as it is shown, beside the scene; File > Pictures… has other sizes"),
+                false,
+                count > 0,
+            )
+            .clicked()
         {
             commands.push(Command::File(FileCommand::SavePicture(camera, view)));
         }
-        let legend = icons::button(
-            ui,
-            Icon::List,
-            t("Legend"),
-            t("what the colours mean"),
-            own.legend,
-            true,
-        );
-        if legend.clicked() {
-            own.legend = !own.legend;
+        if legend {
+            let (name, hint) = (t("Legend"), t("what the colours mean"));
+            if icons::button(ui, Icon::List, name, hint, own.legend, true).clicked() {
+                own.legend = !own.legend;
+            }
         }
-        if icons::button(ui, Icon::StepForward, t("Next camera"), &name, false, count > 1).clicked() {
-            own.on_by = step(own.on_by, count, true);
+        if steps {
+            if icons::button(ui, Icon::StepForward, t("Next camera"), &name, false, count > 1).clicked() {
+                own.on_by = step(own.on_by, count, true);
+            }
+            if icons::button(ui, Icon::StepBack, t("Previous camera"), &name, false, count > 1).clicked() {
+                own.on_by = step(own.on_by, count, false);
+            }
         }
-        if icons::button(ui, Icon::StepBack, t("Previous camera"), &name, false, count > 1).clicked() {
-            own.on_by = step(own.on_by, count, false);
+        let left = ui.available_width() - if lit { ICON_POINTS } else { 0.0 };
+        if left >= LEAST_MODES_POINTS {
+            egui::ComboBox::from_id_salt(("camera mode", self.index))
+                .selected_text(selected)
+                .width((left - 8.0).min(112.0))
+                .truncate()
+                .show_ui(ui, |ui| {
+                    ui.selectable_value(&mut own.view, None, t("As in the strip"))
+                        .on_hover_text(t("What all cameras show"));
+                    for view in &views {
+                        ui.selectable_value(&mut own.view, Some(view.id), t(view.title))
+                            .on_hover_text(t(view.hint));
+                    }
+                })
+                .response
+                .accessible_name(t("Camera picture"));
         }
-        egui::ComboBox::from_id_salt(("camera mode", self.index))
-            .selected_text(selected)
-            .width(112.0)
-            .show_ui(ui, |ui| {
-                ui.selectable_value(&mut own.view, None, t("As in the strip"))
-                    .on_hover_text(t("What all cameras show"));
-                for view in &views {
-                    ui.selectable_value(&mut own.view, Some(view.id), t(view.title))
-                        .on_hover_text(t(view.hint));
-                }
-            })
-            .response
-            .accessible_name(t("Camera picture"));
-        let source = cameras::source_of(view, cx.state.cameras.source);
-        if source.about().needs.conditions {
-            // Where there is no room the title of the pane comes first.
+        if lit {
             let short = ui.available_width() < LIGHT_POINTS;
-            let name = if short { "☀" } else { t("Light…") };
-            widgets::menu::with_fields(ui, name, |ui| conditions(ui, cx.scene, commands))
-                .on_hover_text(t("Time of day and weather of the scene"))
-                .accessible_name(t("Light…"));
+            light_menu(ui, short, |ui| conditions(ui, cx.scene, commands));
         }
     }
 

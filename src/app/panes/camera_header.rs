@@ -7,7 +7,7 @@ use crate::command::{Command, ViewCommand, Window};
 use crate::sensing::PaintStage;
 use language::{t, tf};
 use sensors::cameras::{self, Knob, ViewId, learned};
-use widgets::icons;
+use widgets::icons::{self, Icon};
 use widgets::theme;
 
 use super::camera_strip::{CamerasInput, thousands};
@@ -53,6 +53,18 @@ pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec
         if stop.on_hover_text(hint).clicked() {
             commands.push(Command::View(ViewCommand::StopPainting));
         }
+    }
+}
+
+/// The menu with time of day and weather; short: its sign in place of its name.
+pub(super) fn light_menu(ui: &mut Ui, short: bool, content: impl FnOnce(&mut Ui)) {
+    let (name, hint) = (t("Light…"), t("Time of day and weather of the scene"));
+    if short {
+        widgets::menu::of_icon(ui, Icon::Sun, name, hint, content);
+    } else {
+        widgets::menu::with_fields(ui, name, content)
+            .on_hover_text(hint)
+            .accessible_name(name);
     }
 }
 
@@ -116,15 +128,9 @@ pub fn header(
             icons::choice(ui, &mut shown.source, &choices, t("From"));
         }
         if lit {
-            let menu = |name: &str, ui: &mut Ui, commands: &mut Vec<Command>| {
-                widgets::menu::with_fields(ui, name, |ui| conditions(ui, input.scene, commands))
-                    .on_hover_text(t("Time of day and weather of the scene"))
-                    .accessible_name(t("Light…"));
-            };
             match room.light {
                 0 => conditions(ui, input.scene, commands),
-                1 => menu(t("Light…"), ui, commands),
-                _ => menu("☀", ui, commands),
+                short => light_menu(ui, short > 1, |ui| conditions(ui, input.scene, commands)),
             }
         }
         match views.iter().find(|v| v.id == shown.view).and_then(|v| v.knob) {

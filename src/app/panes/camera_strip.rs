@@ -233,7 +233,11 @@ impl CameraStrip {
     }
 
     fn refresh(&mut self, ui: &Ui, input: &CamerasInput<'_>) {
-        let Some(views) = input.views else { return };
+        let Some(views) = input.views else {
+            // What was drawn is of another scene.
+            (self.made_from, self.textures) = (None, Vec::new());
+            return;
+        };
         let (view, plane_m) = (input.view, input.plane_m);
         if self
             .made_from

@@ -117,7 +117,7 @@ pub(super) fn compared(
         (_, other) => {
             strip.wipe(None);
             draw(ui, area, strip, &now, cx.state);
-            if differs && other.is_some() {
+            if differs && other.is_some_and(|o| o.views.is_some()) {
                 let name = cx.state.compare.names()[0];
                 let text = tf!("in colour: differs from “{other}”  ·  grey: alike", other = name);
                 tag(ui, area.left_bottom() + egui::vec2(4.0, -22.0), &text, false);

@@ -11,11 +11,10 @@ use egui::{Ui, WidgetInfo, vec2};
 
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
-use crate::command::Command;
+use crate::command::{Command, RepairCommand};
 use crate::finding_marks::FindingMarks;
 use crate::state::called;
 use editor::checks::{Counts, Finding, Severity, waive};
-use editor::fix::fix_these;
 use language::{t, tf};
 use row::{key, row, sign};
 use scene::{BoxId, Frame, Scene};
@@ -124,6 +123,12 @@ pub(super) struct Pointed {
     hovered: Option<FindingMarks>,
 }
 
+/// Forgets which finding was clicked and what was begun with one: another scene is shown.
+pub(crate) fn forget(ctx: &egui::Context) {
+    ctx.data_mut(|d| d.remove_temp::<Option<String>>(clicked_id()));
+    waived::forget(ctx);
+}
+
 fn clicked_id() -> egui::Id {
     egui::Id::unique("finding clicked last")
 }
@@ -213,15 +218,15 @@ fn bar(
         if input.stale {
             ui.spinner();
         }
-        let fixable = open.iter().filter(|f| !f.fixes.is_empty()).count();
+        let fixable = open.iter().filter(|f| f.first_fix().is_some()).count();
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let button = egui::Button::new(tf!("Fix all ({n})", n = fixable));
+            let button = egui::Button::new(tf!("Fix all ({n})…", n = fixable));
             let response = ui.add_enabled(fixable > 0 && !input.stale, button);
             if response
-                .on_hover_text(t("Repairs all that can be repaired, as one step to undo"))
+                .on_hover_text(t("Lists first what would be repaired, and how"))
                 .clicked()
             {
-                commands.push(Command::FixAll);
+                commands.push(Command::Repair(RepairCommand::PlanAll));
             }
             let field = egui::TextEdit::singleline(&mut triage.words)
                 .id(egui::Id::unique("filter of the findings"))
@@ -279,26 +284,23 @@ fn group_row(
     let fixable: Vec<usize> = of
         .iter()
         .copied()
-        .filter(|i| !open[*i].fixes.is_empty())
+        .filter(|i| open[*i].first_fix().is_some())
         .collect();
     ui.allocate_ui_with_layout(
         vec2(ui.available_width(), theme::ROW),
         egui::Layout::right_to_left(egui::Align::Center),
         |ui| {
             if fixable.len() > 1 {
-                let button = egui::Button::new(tf!("Fix {n}", n = fixable.len())).small();
+                let button = egui::Button::new(tf!("Fix {n}…", n = fixable.len())).small();
                 let response = ui.add_enabled(!input.stale, button);
                 let name = tf!("Fix {n}: {what}", n = fixable.len(), what = t(title));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                 if response
-                    .on_hover_text(t("Repairs these, as one step to undo"))
+                    .on_hover_text(t("Lists first what would be repaired, and how"))
                     .clicked()
                 {
                     let these: Vec<Finding> = fixable.iter().map(|i| open[*i].clone()).collect();
-                    let edits = fix_these(input.scene, &these);
-                    if !edits.is_empty() {
-                        commands.push(Command::Apply("Fix findings of a kind", edits));
-                    }
+                    commands.push(Command::Repair(RepairCommand::PlanThese(these)));
                 }
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {

@@ -113,6 +113,8 @@ pub struct Compare {
     pub(crate) strip: CameraStrip,
     pub(crate) sweep: SweepPicture,
     pub(crate) sensing: Option<Sensing>,
+    /// The state whose sensors were asked last.
+    sensed: Option<SceneRev>,
     difference: Option<(SceneRev, SceneRev, Difference, egui::TextureHandle)>,
 }
 
@@ -142,9 +144,22 @@ impl Compare {
             self.sensing = Sensing::spawn(std::time::Duration::ZERO, wake).ok();
         }
         if let Some(sensing) = &mut self.sensing {
+            // Pictures of one version are none of another: until they are there, there are none.
+            if self.sensed.replace(scene.rev) != Some(scene.rev) {
+                sensing.forget();
+            }
             sensing.paint_with(painting);
             sensing.ask(scene, wanted, false);
             sensing.drain();
+        }
+    }
+
+    /// Lets go of what was compared with and of what its sensors returned: another scene is opened.
+    pub(crate) fn forget(&mut self) {
+        (self.chosen, self.before, self.sensed) = (None, None, None);
+        (self.strip, self.sweep, self.difference) = Default::default();
+        if let Some(sensing) = &mut self.sensing {
+            sensing.forget();
         }
     }
 
@@ -267,6 +282,44 @@ pub(crate) fn tag(ui: &Ui, at: egui::Pos2, text: &str, from_right: bool) {
 mod tests {
     use super::*;
     use scene::Class;
+
+    /// Pictures and sweep of the state compared with are of no other, however long theirs take.
+    #[test]
+    fn another_state_has_no_pictures_of_the_one_before() {
+        use crate::open;
+        use std::time::{Duration, Instant};
+
+        let scenes = ["straight", "t-junction"]
+            .map(|name| Arc::new(open::from_template(name, 3).expect("a template")));
+        let mut compare = Compare::default();
+        let wanted = Wanted::default();
+        let prepare = |compare: &mut Compare, scene: &Arc<Scene>| {
+            compare.prepare(Some(scene.clone()), wanted, true, &PaintWish::default(), || {});
+        };
+        let sensed = |compare: &Compare, rev: SceneRev| {
+            let sensing = compare.sensing.as_ref().expect("a thread");
+            !sensing.cameras_stale(rev) && !sensing.lidar_stale(rev)
+        };
+        let start = Instant::now();
+        while !(compare.sensing.is_some() && sensed(&compare, scenes[0].rev)) {
+            prepare(&mut compare, &scenes[0]);
+            assert!(start.elapsed() < Duration::from_secs(120), "no pictures");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        loop {
+            prepare(&mut compare, &scenes[1]);
+            let sensing = compare.sensing.as_ref().expect("a thread");
+            assert!(sensing.cameras().is_none() || !sensing.cameras_stale(scenes[1].rev));
+            assert!(sensing.lidar().is_none() || !sensing.lidar_stale(scenes[1].rev));
+            if sensed(&compare, scenes[1].rev) {
+                break;
+            }
+            assert!(start.elapsed() < Duration::from_secs(240), "no pictures");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        compare.forget();
+        assert!(compare.before.is_none() && compare.sensing.is_some_and(|s| s.cameras().is_none()));
+    }
 
     #[test]
     fn differences_are_counted_by_kind() {

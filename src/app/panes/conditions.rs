@@ -1,5 +1,6 @@
 //! The fields for light and air of the scene: time of day, weather, wetness, visibility, sun and seed.
 
+use egui::containers::menu::is_in_menu;
 use egui::{DragValue, Ui};
 
 use crate::command::Command;
@@ -16,12 +17,45 @@ const STEP: &str = "Change weather";
 pub fn conditions(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
     let now = scene.conditions;
     let (mut time, mut weather) = (now.time, now.weather);
+    if is_in_menu(ui) {
+        listed(ui, &mut time, &mut weather);
+    } else {
+        dropped_down(ui, &mut time, &mut weather);
+    }
+    if (time, weather) != (now.time, now.weather) {
+        commands.push(becomes(scene, time, weather));
+    }
+    widgets::menu::with_fields(ui, t("Air and sun…"), |ui| air_and_sun(ui, now, commands))
+        .on_hover_text(t("Wet ground, visibility, sun and seed of the pictures"));
+}
+
+/// Every time of day and every weather, each a click away. In a menu no list can drop down: only one of both is open at a time.
+fn listed(ui: &mut Ui, time: &mut TimeOfDay, weather: &mut Weather) {
+    ui.horizontal_top(|ui| {
+        ui.vertical(|ui| {
+            ui.label(egui::RichText::new(t("Time of day")).color(theme::text_weak()));
+            for value in TimeOfDay::ALL {
+                ui.selectable_value(time, value, theme::sentence(t(value.name())));
+            }
+        });
+        ui.separator();
+        ui.vertical(|ui| {
+            ui.label(egui::RichText::new(t("Weather")).color(theme::text_weak()));
+            for value in Weather::ALL {
+                ui.selectable_value(weather, value, theme::sentence(t(value.name())));
+            }
+        });
+    });
+    ui.separator();
+}
+
+fn dropped_down(ui: &mut Ui, time: &mut TimeOfDay, weather: &mut Weather) {
     egui::ComboBox::from_id_salt("time of day")
         .width(80.0)
         .selected_text(theme::sentence(t(time.name())))
         .show_ui(ui, |ui| {
             for value in TimeOfDay::ALL {
-                ui.selectable_value(&mut time, value, theme::sentence(t(value.name())));
+                ui.selectable_value(time, value, theme::sentence(t(value.name())));
             }
         });
     egui::ComboBox::from_id_salt("weather")
@@ -29,14 +63,9 @@ pub fn conditions(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         .selected_text(theme::sentence(t(weather.name())))
         .show_ui(ui, |ui| {
             for value in Weather::ALL {
-                ui.selectable_value(&mut weather, value, theme::sentence(t(value.name())));
+                ui.selectable_value(weather, value, theme::sentence(t(value.name())));
             }
         });
-    if (time, weather) != (now.time, now.weather) {
-        commands.push(becomes(scene, time, weather));
-    }
-    widgets::menu::with_fields(ui, t("Air and sun…"), |ui| air_and_sun(ui, now, commands))
-        .on_hover_text(t("Wet ground, visibility, sun and seed of the pictures"));
 }
 
 /// What gives a scene another time of day and weather, the words of its style with them.

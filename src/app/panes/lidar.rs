@@ -72,6 +72,11 @@ impl Pane for Lidar {
             })
             .response
             .accessible_name(t("LiDAR colour"));
+        let stale = cx.sensing.lidar_stale(cx.document.scene().rev);
+        if stale && cx.sensing.lidar().is_some() && !cx.state.playback.playing {
+            let spinner = egui::Spinner::new().size(12.0).color(theme::text_weak());
+            ui.add(spinner).on_hover_text(t("updating"));
+        }
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {

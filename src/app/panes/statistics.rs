@@ -96,7 +96,12 @@ impl Pane for Statistics {
                 &self.counted.insert((cx.scene.clone(), counts)).1
             }
         };
-        let points = cx.sensing.lidar().map(|sweep| sweep.points.len());
+        let current = !cx.sensing.lidar_stale(cx.document.scene().rev);
+        let points = cx
+            .sensing
+            .lidar()
+            .filter(|_| current)
+            .map(|sweep| sweep.points.len());
         theme::panel_frame().show(ui, |ui| {
             let area = egui::ScrollArea::vertical()
                 .id_salt("statistics")

@@ -105,7 +105,10 @@ impl SweepPicture {
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("LiDAR sweep")));
         ui.painter().rect_filled(rect, 0.0, theme::well());
         let (Some(sweep), Some(lidar)) = (sweep, scene.rig.lidars.first()) else {
-            let text = t("This vehicle has no LiDAR. Sensors… adds one.");
+            let text = match scene.rig.lidars.is_empty() {
+                true => t("This vehicle has no LiDAR. Sensors… adds one."),
+                false => t("rendering…"),
+            };
             let font = egui::TextStyle::Body.resolve(ui.style());
             let painter = ui.painter();
             painter.text(

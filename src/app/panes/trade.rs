@@ -104,7 +104,7 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
     let mut at = current.unwrap_or(0);
     ui.horizontal(|ui| {
         ui.label(RichText::new(t("Fast")).color(theme::text_weak()));
-        ui.spacing_mut().slider_width = (ui.available_width() - 70.0).max(60.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - 130.0).max(60.0);
         let slider = Slider::new(&mut at, 0..=presets.len() - 1).show_value(false);
         let response = ui
             .add(slider)
@@ -118,13 +118,14 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
         if response.changed() && Some(at) != current {
             commands.push(Command::Generation(GenerationCommand::Quality(at)));
         }
-        ui.label(RichText::new(t("Exact")).color(theme::text_weak()));
+        ui.label(RichText::new(t("Like the reference")).color(theme::text_weak()));
     });
     let tokens = tuning.tokens_of_next();
     match current {
         Some(i) => {
             ui.label(RichText::new(theme::sentence(t(&presets[i].name))).strong());
-            let predicted = predicted(&presets[i], tuning.predicted_s(&presets[i], tokens));
+            let wall_s = tuning.predicted_s(&presets[i], tokens);
+            let predicted = predicted(&presets[i], wall_s, tuning.times_of());
             let text = if tuning.last.is_some() {
                 tf!("An edit as large as the last one: {cost}", cost = predicted)
             } else {
@@ -251,7 +252,7 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
             Some(s) => tf!(
                 "{took}, predicted {predicted}; on screen after {settled}",
                 took = took,
-                predicted = seconds(s),
+                predicted = last.predicted_of.told(s),
                 settled = settled
             ),
             None => tf!(

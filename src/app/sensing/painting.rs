@@ -85,7 +85,8 @@ impl Sensing {
 
     /// Takes in what has been painted.
     pub(super) fn drain_painting(&mut self) {
-        let news: Vec<_> = self.painting.updates().try_iter().collect();
+        let news = self.painting.updates().try_iter();
+        let news: Vec<_> = news.filter(|event| event.id.0 > self.forgotten[1]).collect();
         for news in news.into_iter().map(|event| event.update) {
             let wanted = self.asked.map(|(_, wanted, _)| wanted);
             match news {

@@ -22,6 +22,7 @@ use super::generation::Generation;
 use super::guests::Guests;
 use super::live::Live;
 use super::perf::Perf;
+use super::planning::Planning;
 use super::preferences::Preferences;
 use super::settings::{QUALITY, Settings};
 use super::toasts::{Level, Toasts};
@@ -82,6 +83,8 @@ pub struct SceneThreads {
     pub(crate) sensing: Sensing,
     /// Findings of the quality checks.
     pub checking: Checking,
+    /// Repairs of them that are planned.
+    pub planning: Planning,
 }
 
 /// Windows over the panes that have a state while they are open.
@@ -172,6 +175,7 @@ impl SceneloomApp {
             versions: kept,
             damaged,
             made,
+            notes: _,
         } = match &config.picture {
             Some(picture) => Opened::of(config.scene).told_by(picture),
             None => Opened::of(config.scene),
@@ -219,6 +223,7 @@ impl SceneloomApp {
             threads: SceneThreads {
                 checking: Checking::spawn(wake.clone())?,
                 sensing: Sensing::spawn(sensing_grace, wake)?,
+                planning: Planning::default(),
             },
             overlays: Overlays::default(),
             preferences: Preferences::new(config.settings_file, settings),

@@ -18,6 +18,8 @@ pub struct Checking {
     changed: Option<(SceneRev, f64)>,
     asked: Option<SceneRev>,
     last: Option<(SceneRev, Arc<Vec<Finding>>)>,
+    /// Findings of this job and those before it are of a scene that was forgotten.
+    forgotten: u64,
     problem: Option<String>,
 }
 
@@ -59,6 +61,7 @@ impl Checking {
     pub fn spawn(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
         Ok(Self {
             worker: Worker::start("checks", || Checker, Arc::new(wake))?,
+            forgotten: 0,
             problem: None,
             changed: None,
             asked: None,
@@ -69,7 +72,9 @@ impl Checking {
     /// Takes in what has arrived, and has the scene checked once it has rested. Call it every frame; the answer is
     /// after how many seconds it wants to be called again, if nothing else happens. `now_s` never runs backward.
     pub fn update(&mut self, scene: &Arc<Scene>, dragging: bool, now_s: f64) -> Option<f64> {
-        for checked in self.worker.updates().try_iter().map(|event| event.update) {
+        let forgotten = self.forgotten;
+        let events = self.worker.updates().try_iter();
+        for checked in events.filter(|e| e.id.0 > forgotten).map(|e| e.update) {
             match checked {
                 Checked::Found(rev, findings) => self.last = Some((rev, Arc::new(findings))),
                 Checked::GivenUp => {}
@@ -89,6 +94,13 @@ impl Checking {
         self.asked = Some(scene.rev);
         self.worker.submit(scene.clone());
         None
+    }
+
+    /// Forgets the findings, and those that are still on their way: another scene is shown.
+    pub fn forget(&mut self) {
+        self.worker.cancel();
+        self.forgotten = self.worker.newest().0;
+        (self.last, self.asked) = (None, None);
     }
 
     /// Why a scene could not be checked, told once. Later scenes are checked again.

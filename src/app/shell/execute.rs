@@ -2,16 +2,16 @@
 
 use egui::Context;
 
-use editor::Edit;
+use authoring::new_ground::with_scenery;
 use editor::document::Label;
 use editor::tools::{add_box, select};
+use editor::{Edit, left_standing, off_lane};
 use language::{t, tf};
 use scene::SceneBox;
 
 use super::app::SceneloomApp;
 use super::toasts::Level;
 use crate::command::Command;
-use crate::map_edges::with_scenery;
 use crate::panes::objects::neighbour;
 use crate::tools::{Choose, ToolState};
 use crate::windows::tour::Tour;
@@ -38,9 +38,7 @@ impl SceneloomApp {
                 self.note_correction();
             }
             Command::CancelDrag => self.document.cancel_drag(),
-            Command::Undo => {
-                self.document.undo();
-            }
+            Command::Undo => self.undo(),
             Command::Redo => {
                 self.document.redo();
             }
@@ -67,7 +65,7 @@ impl SceneloomApp {
                 self.apply("Confirm what was inferred", &[Edit::ConfirmInferred {}]);
             }
             Command::ClearPaint => self.apply("Unlock painted voxels", &[Edit::ClearPaint {}]),
-            Command::FixAll => self.fix_all(ctx),
+            Command::Repair(command) => self.repair(command, ctx),
             Command::OpenSettings => self.state.windows.settings = true,
             Command::BeginTour => self.state.windows.tour = Some(Tour::begin(&self.document)),
             Command::PlaceClass(class) => {
@@ -113,8 +111,18 @@ impl SceneloomApp {
         }
         let label = self.meant_label(label.into(), &open);
         let edits = self.meant(with_scenery(self.document.scene(), open));
-        if let Err(error) = self.document.apply_all(label, &edits) {
-            self.fail(error.to_string());
+        let said: Vec<String> = edits
+            .iter()
+            .filter_map(|edit| off_lane(self.document.scene(), edit))
+            .chain(left_standing(self.document.scene(), &edits))
+            .collect();
+        match self.document.apply_all(label, &edits) {
+            Err(error) => self.fail(error.to_string()),
+            Ok(()) => {
+                let now_s = self.now_s();
+                said.into_iter()
+                    .for_each(|line| self.toasts.push(Level::Info, line, now_s));
+            }
         }
         self.note_correction();
     }

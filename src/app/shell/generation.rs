@@ -98,6 +98,7 @@ impl Generation {
         self.worker.cancel();
         self.live.reset();
         (self.receipt, self.finished, self.preview) = (None, None, None);
+        (self.words, self.drawn_first, self.drawing) = (None, None, None);
         self.tuning.reset();
     }
 

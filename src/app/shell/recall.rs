@@ -44,8 +44,7 @@ impl SceneloomApp {
             RegionMode::Full => {
                 self.generation.live.full_params = params;
                 // Its quality is that of edits, too.
-                let mut presets = self.generation.tuning.presets.all.iter();
-                if let Some(preset) = presets.position(|p| p.name == made.preset) {
+                if let Some(preset) = self.generation.tuning.presets.index_named(&made.preset) {
                     self.set_quality(preset);
                 }
             }

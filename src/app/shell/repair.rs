@@ -1,9 +1,13 @@
-//! What the window does about the findings of the checks: asks for them, repairs them, goes there.
+//! What the window does about the findings of the checks: asks for them, plans and does repairs, goes there.
+
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
 use super::app::SceneloomApp;
-use crate::command::Command;
+use super::planning::{Request, Shown};
+use crate::command::RepairCommand;
+use editor::checks::Finding;
 use language::tf;
 use scene::{BoxId, BoxLabel, Class, SceneBox};
 
@@ -22,23 +26,66 @@ impl SceneloomApp {
         if let Some(problem) = self.threads.checking.take_problem() {
             self.fail(tf!("The scene was not checked: {problem}", problem = problem));
         }
+        if let Some(problem) = self.threads.planning.update() {
+            self.fail(tf!("No repairs can be planned: {error}", error = problem));
+        }
     }
 
-    /// Repairs all that can be repaired, as one undo step.
-    pub(crate) fn fix_all(&mut self, ctx: &egui::Context) {
-        let scene = self.document.settled_scene();
-        let Some(findings) = self
+    /// Carries out a command about repairs.
+    pub(crate) fn repair(&mut self, command: RepairCommand, ctx: &egui::Context) {
+        match command {
+            RepairCommand::PlanAll => {
+                let rev = self.document.settled_scene().rev;
+                let current = !self.threads.checking.is_stale(rev);
+                if let Some(findings) = self.threads.checking.findings().filter(|_| current) {
+                    self.plan_repairs(findings.to_vec(), [true, false], ctx);
+                }
+            }
+            RepairCommand::PlanThese(findings) => self.plan_repairs(findings, [false; 2], ctx),
+            RepairCommand::Again => {
+                if let Some((findings, all)) = self.threads.planning.about.take() {
+                    self.plan_repairs(findings, [all, true], ctx);
+                }
+            }
+            RepairCommand::Stop => self.threads.planning.stop(),
+            RepairCommand::Apply => self.do_repairs(),
+            RepairCommand::Close => self.threads.planning.close(),
+        }
+    }
+
+    fn plan_repairs(&mut self, findings: Vec<Finding>, [all, again]: [bool; 2], ctx: &egui::Context) {
+        let wake = ctx.clone();
+        let request = Request {
+            scene: self.document.settled_scene().clone(),
+            findings,
+            again,
+            all,
+            meaning: Box::new(self.meaning()),
+        };
+        let begun = self
             .threads
-            .checking
-            .findings()
-            .filter(|_| !self.threads.checking.is_stale(scene.rev))
-        else {
+            .planning
+            .begin(request, Arc::new(move || wake.request_repaint()));
+        if let Err(error) = begun {
+            self.fail(tf!("No repairs can be planned: {error}", error = error));
+        }
+    }
+
+    /// Does what the window lists, if it lists what is planned for the present state.
+    fn do_repairs(&mut self) {
+        let now = self.document.settled_scene().rev;
+        let Some(Shown::Planned(plan)) = self.threads.planning.shown() else {
             return;
         };
-        let edits = editor::fix::fix_all(scene, findings);
-        if !edits.is_empty() {
-            self.execute(Command::Apply("Fix all findings", edits), ctx);
+        let plan = plan.clone();
+        if plan.of != now || self.document.is_dragging() {
+            return;
         }
+        self.threads.planning.close();
+        if let Err(error) = self.document.apply_all("Repair findings", &plan.edits()) {
+            self.fail(error.to_string());
+        }
+        self.note_correction();
     }
 
     /// Brings a place into the middle of both large views.

@@ -1,7 +1,6 @@
 //! What is kept between sessions: theme, keys, panes, recent files. Never part of a scene.
 
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -65,7 +64,7 @@ pub struct Settings {
 }
 
 /// The preset that the window begins with: the fastest one whose inverted noise is like a draw.
-pub const QUALITY: &str = "accurate";
+pub const QUALITY: &str = "careful";
 
 impl Default for Settings {
     fn default() -> Self {
@@ -126,11 +125,7 @@ impl Settings {
         let folder = path.parent().unwrap_or(Path::new("."));
         let write = || -> anyhow::Result<()> {
             std::fs::create_dir_all(folder)?;
-            let mut file = tempfile::NamedTempFile::new_in(folder)?;
-            serde_json::to_writer_pretty(&mut file, self)?;
-            file.flush()?;
-            file.persist(path)?;
-            Ok(())
+            Ok(formats::atomic::write(path, &serde_json::to_vec_pretty(self)?)?)
         };
         write().with_context(|| format!("settings {}", path.display()))
     }

@@ -97,7 +97,14 @@ impl SceneloomApp {
             }
             TimeCommand::Traffic => {
                 match traffic_drives(&scene) {
-                    Ok(edits) => self.apply("Let traffic drive", &edits),
+                    Ok(start) => {
+                        if !start.edits.is_empty() {
+                            self.apply("Let traffic drive", &start.edits);
+                        }
+                        if let Some(said) = start.said() {
+                            self.note(&said);
+                        }
+                    }
                     Err(problem) => self.fail(problem),
                 }
                 None
@@ -151,6 +158,9 @@ impl SceneloomApp {
         );
         self.generation.versions.push("Forecast".to_owned(), note, after);
         self.stage_forecast(before, found.objects);
+        if let Some(said) = found.said() {
+            self.note(&said);
+        }
         self.show_time(from_s);
         self.state.playback.playing = true;
     }
@@ -244,27 +254,37 @@ impl SceneloomApp {
 
     /// The edits as they are meant: of one moment, or from here on, where the timeline says so.
     pub(crate) fn meant(&self, edits: Vec<Edit>) -> Vec<Edit> {
-        let scope = self.state.playback.scope;
-        let edits = self.state.as_meant(edits);
-        if scope == Scope::WholeTrack || self.document.scene().clip().length_s == 0.0 {
-            return edits;
-        }
-        let of_a_moment = |edit: &Edit| {
-            matches!(
-                edit,
-                Edit::AddBox { .. } | Edit::RemoveBox { .. } | Edit::MoveBox { .. }
-            )
-        };
-        let meant = |edit: Edit| match of_a_moment(&edit) {
-            true => Edit::At {
-                frame: None,
-                time_s: None,
-                track: None,
-                scope: Some(scope),
-                edit: Box::new(edit),
-            },
-            false => edit,
-        };
-        edits.into_iter().map(meant).collect()
+        (self.meaning())(edits)
     }
+
+    /// The same as a value that another thread may have: of the choices of this moment.
+    pub(crate) fn meaning(&self) -> impl Fn(Vec<Edit>) -> Vec<Edit> + Send + use<> {
+        let (scope, correcting) = (self.state.playback.scope, self.state.correcting);
+        let lasts = self.document.scene().clip().length_s != 0.0;
+        move |edits| of_moments(crate::state::corrected(correcting, edits), scope, lasts)
+    }
+}
+
+/// Edits of boxes for the moments that are chosen.
+fn of_moments(edits: Vec<Edit>, scope: Scope, lasts: bool) -> Vec<Edit> {
+    if scope == Scope::WholeTrack || !lasts {
+        return edits;
+    }
+    let of_a_moment = |edit: &Edit| {
+        matches!(
+            edit,
+            Edit::AddBox { .. } | Edit::RemoveBox { .. } | Edit::MoveBox { .. }
+        )
+    };
+    let meant = |edit: Edit| match of_a_moment(&edit) {
+        true => Edit::At {
+            frame: None,
+            time_s: None,
+            track: None,
+            scope: Some(scope),
+            edit: Box::new(edit),
+        },
+        false => edit,
+    };
+    edits.into_iter().map(meant).collect()
 }

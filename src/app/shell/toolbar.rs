@@ -365,8 +365,10 @@ fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
     menu.response
         .widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
     let cost = current.map_or(String::new(), |(_, predicted)| format!("\n{predicted}"));
-    menu.response
-        .on_hover_text(format!("{}{cost}", t("How exactly edits are generated")));
+    menu.response.on_hover_text(format!(
+        "{}{cost}",
+        t("How edits are generated: fast, or like the reference")
+    ));
 }
 
 /// A button with an icon and, if `named`, a name beside it; of one height with the others.

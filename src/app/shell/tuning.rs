@@ -23,9 +23,32 @@ const REMEMBERED: usize = 9;
 /// Tokens of an edit of one vehicle.
 const TYPICAL_TOKENS: f64 = 36.0;
 
+/// Whose times predictions are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TimesOf {
+    /// This machine's: it was calibrated, or has made edits since the window opened.
+    ThisMachine,
+    /// Those of another machine with the same processor, in quiet.
+    OneLikeIt,
+    /// Those of another machine.
+    Another,
+}
+
+impl TimesOf {
+    /// A time, with whose it is unless it is this machine's.
+    pub fn told(self, s: f64) -> String {
+        let time = seconds(s);
+        match self {
+            Self::ThisMachine => time,
+            Self::OneLikeIt => tf!("{time} on another machine like this", time = time),
+            Self::Another => tf!("{time} on another machine", time = time),
+        }
+    }
+}
+
 /// One line: what a preset is predicted to take, to miss and to invent.
-pub fn predicted(preset: &Preset, wall_s: f64) -> String {
-    let time = seconds(wall_s);
+pub fn predicted(preset: &Preset, wall_s: f64, of: TimesOf) -> String {
+    let time = of.told(wall_s);
     if preset.error.high == 0.0 {
         return format!("{time}  ·  {}", t("what the others are measured against"));
     }
@@ -41,6 +64,12 @@ pub fn predicted(preset: &Preset, wall_s: f64) -> String {
         low = t(&low),
         high = t(&high),
     );
+    // Most of a region is air, in which nothing can differ that is seen.
+    let occupied = preset.error_of_occupied.map_or(String::new(), |of_occupied| {
+        let share = percent(of_occupied.median);
+        format!(", {}", tf!("{share} of the occupied ones", share = t(&share)))
+    });
+    let differ = format!("{differ}{occupied}");
     format!("{time}  ·  {differ}{invented}")
 }
 
@@ -56,6 +85,8 @@ pub struct LastEdit {
     pub local_tokens: usize,
     /// Predicted wall time of the generation, s.
     pub predicted_s: Option<f64>,
+    /// Whose times that was predicted from.
+    pub predicted_of: TimesOf,
     /// Predicted share of voxels that differ from the reference: the middle, and what nine of ten edits lie between.
     pub predicted_error: Option<[f64; 3]>,
     /// The same, measured.
@@ -110,6 +141,8 @@ pub struct Tuning {
     pub message: Option<String>,
     /// How many times longer than in quiet the last edits took: the window draws on the same cores.
     slower: VecDeque<f64>,
+    /// The presets were measured on the processor that this machine has.
+    is_like_this: bool,
     running: Option<(Measuring, Measurement, (usize, usize))>,
     file: Option<PathBuf>,
 }
@@ -126,6 +159,7 @@ impl Tuning {
             .and_then(|f| input::read_text(f, input::LARGEST_TEXT).ok());
         let kept = text.and_then(|t| Presets::parse(&t, shipped.weights).ok());
         let ours = kept.filter(|s| s.machine == machine() && s.build == build());
+        let is_like_this = shipped.machine == machine();
         Self {
             calibrated: ours.is_some(),
             presets: ours.unwrap_or(shipped),
@@ -134,6 +168,7 @@ impl Tuning {
             show_modelled: false,
             message: None,
             slower: VecDeque::new(),
+            is_like_this,
             running: None,
             file,
         }
@@ -238,6 +273,15 @@ impl Tuning {
         median(&known).clamp(0.25, 20.0)
     }
 
+    /// Whose times predictions are made of now. What this window's own edits took is of this machine.
+    pub fn times_of(&self) -> TimesOf {
+        match (self.calibrated || !self.slower.is_empty(), self.is_like_this) {
+            (true, _) => TimesOf::ThisMachine,
+            (false, true) => TimesOf::OneLikeIt,
+            (false, false) => TimesOf::Another,
+        }
+    }
+
     /// Wall time that an edit of so many tokens is predicted to take in this window, s.
     pub fn predicted_s(&self, preset: &Preset, tokens: f64) -> f64 {
         preset.cost.wall_s(tokens) * self.window_factor()
@@ -259,7 +303,8 @@ impl Tuning {
     /// Name of each preset, and what it is predicted to cost.
     pub fn predicted(&self) -> Vec<(String, String)> {
         let tokens = self.tokens_of_next();
-        let of = |s: &Preset| (s.name.clone(), predicted(s, self.predicted_s(s, tokens)));
+        let line = |s: &Preset| predicted(s, self.predicted_s(s, tokens), self.times_of());
+        let of = |s: &Preset| (s.name.clone(), line(s));
         self.presets.all.iter().map(of).collect()
     }
 
@@ -271,6 +316,7 @@ impl Tuning {
     /// Notes what became of an edit. `edited` is the scene with the edit, before its result came.
     pub fn note(&mut self, edited: Arc<Scene>, result: Arc<GenResult>, settled_s: f64) {
         let (params, report) = (result.key.params.clone(), result.report.clone());
+        let predicted_of = self.times_of();
         self.stability.runs += 1;
         self.stability.fallbacks += usize::from(!report.notes.is_empty());
         self.stability.untouched_changed += report.untouched_voxels_changed;
@@ -318,6 +364,7 @@ impl Tuning {
         self.last = Some(LastEdit {
             local_tokens,
             predicted_s,
+            predicted_of,
             predicted_error: preset.map(|s| [s.error.median, s.error_of_one[0], s.error_of_one[1]]),
             measured_error: None,
             bricks: edited.frame().source.occupancy.changed_bricks(&result.occupancy),

@@ -21,6 +21,7 @@ use crate::state::UiState;
 use crate::windows::capture::capture_ui;
 use crate::windows::palette::Known;
 use crate::windows::performance::performance_ui;
+use crate::windows::repairs::repairs_ui;
 use crate::windows::sensors::sensors_ui;
 use crate::windows::settings::{Choices, settings_ui};
 use crate::windows::start::start_ui;
@@ -111,7 +112,7 @@ impl SceneloomApp {
             name: &self.files.called(&scene.name),
             dirty: self.document.is_dirty(),
             recent: &self.preferences.settings.recent,
-            undo: self.document.undo_label(),
+            undo: self.undo_step(),
             redo: self.document.redo_label(),
             live: self.generation.live.on,
             busy: self.generation.live.running.is_some(),
@@ -244,6 +245,9 @@ impl SceneloomApp {
         if self.state.windows.sensors {
             let UiState { windows, cameras, .. } = &mut self.state;
             sensors_ui(ui, &scene.rig, windows, cameras, commands);
+        }
+        if let Some(shown) = self.threads.planning.shown() {
+            repairs_ui(ui, shown, self.document.settled_scene().rev, commands);
         }
         crate::windows::row::show(ui, scene, &mut self.state.tools, commands);
         let known = Known {

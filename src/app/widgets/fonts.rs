@@ -105,4 +105,40 @@ mod tests {
             assert_eq!(lacks, "", "{}", language.code);
         }
     }
+
+    /// A sign in the program that no font has is drawn as an empty square: an icon is what it should be.
+    #[test]
+    fn every_sign_that_is_drawn_has_a_shape() {
+        let ctx = Context::default();
+        ctx.set_fonts(definitions("en", false));
+        let _ = ctx.run_ui(Default::default(), |_| {});
+        let app = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let mut signs = std::collections::BTreeMap::<char, PathBuf>::new();
+        for file in rust_files(&app) {
+            let text = std::fs::read_to_string(&file).expect("source");
+            let program = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or("");
+            let lines = program.lines().filter(|l| !l.trim_start().starts_with("//"));
+            // Those of other scripts are words that are understood, or names of fonts.
+            let drawn = lines
+                .flat_map(str::chars)
+                .filter(|c| !c.is_ascii() && *c < '\u{2e80}');
+            for c in drawn {
+                signs.entry(c).or_insert_with(|| file.clone());
+            }
+        }
+        assert!(signs.contains_key(&'…'), "{signs:?}");
+        let font = FontId::proportional(14.0);
+        ctx.fonts_mut(|fonts| signs.retain(|c, _| !fonts.has_glyph(&font, *c)));
+        assert!(signs.is_empty(), "{signs:?}");
+    }
+
+    fn rust_files(folder: &Path) -> Vec<PathBuf> {
+        let entries = std::fs::read_dir(folder).expect("a folder").flatten();
+        let of = |path: PathBuf| match path.is_dir() {
+            true => rust_files(&path),
+            false => vec![path],
+        };
+        let all = entries.flat_map(|e| of(e.path()));
+        all.filter(|p| p.extension().is_some_and(|e| e == "rs")).collect()
+    }
 }

@@ -85,6 +85,8 @@ pub enum Icon {
     List,
     /// Ticked box.
     Tick,
+    /// Sun with rays.
+    Sun,
     /// Bars of a chart.
     Bars,
     /// Circle with its middle.
@@ -157,6 +159,7 @@ impl Icon {
             Icon::Stack => shapes::STACK,
             Icon::List => shapes::LIST,
             Icon::Tick => shapes::TICK,
+            Icon::Sun => shapes::SUN,
             Icon::Bars => shapes::BARS,
             Icon::Circle => shapes::CIRCLE,
             Icon::Road => shapes::ROAD,

@@ -10,6 +10,7 @@ pub mod palette;
 pub mod performance;
 pub mod place_picker;
 pub mod recovery;
+pub mod repairs;
 pub mod row;
 pub mod sensors;
 pub mod settings;

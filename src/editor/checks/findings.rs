@@ -1,17 +1,60 @@
-//! What the checks found, with a bound for each of them: a scene of noise has more findings than anybody reads.
+//! What the checks found, with a bound for each of them: a scene of noise has more findings than anybody reads. All of
+//! them are counted.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::{Finding, Severity};
+use super::{Counts, Finding, Severity};
 use language::tf;
+use scene::grid::NOT_PAINTED;
+use scene::{BoxId, Recorded, Scene, VoxelPaint};
 
 /// Findings of one check that are listed; the others are counted in one more.
 pub const MOST: usize = 200;
 
+/// What kind of finding it is: how bad, of which check, about which box.
+pub(crate) type Kind = (Severity, &'static str, Option<BoxId>);
+
+/// How many findings there are of each kind, whether they are listed or not.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Tally(BTreeMap<Kind, usize>);
+
+impl Tally {
+    /// Findings of one kind.
+    pub fn of(&self, kind: Kind) -> usize {
+        self.0.get(&kind).copied().unwrap_or(0)
+    }
+
+    /// Kinds that there are, and how many of each.
+    pub fn iter(&self) -> impl Iterator<Item = (Kind, usize)> + '_ {
+        self.0.iter().map(|(kind, n)| (*kind, *n))
+    }
+
+    /// How many there are of each severity.
+    pub fn counts(&self) -> Counts {
+        let mut out = Counts::default();
+        for ((severity, ..), n) in self.iter() {
+            *out.of_mut(severity) += n;
+        }
+        out
+    }
+
+    fn add(&mut self, kind: Kind, n: usize) {
+        *self.0.entry(kind).or_default() += n;
+    }
+}
+
 /// Collects findings check by check.
-#[derive(Default)]
 pub(super) struct Findings {
     list: Vec<Finding>,
+    tally: Tally,
+    /// Findings of each check that are listed at most.
+    most: usize,
+    /// Boxes that are as a recording has them: what is odd about them is worth knowing and nobody's mistake.
+    recorded: BTreeSet<BoxId>,
+    /// Where somebody painted voxels of a recording: findings about all others of its voxels are nobody's mistake either.
+    painted: Option<VoxelPaint>,
     /// Where the findings of the check that runs begin.
     from: usize,
     /// Findings of that check beyond those that are listed: how many, the worst of them, and where the first is.
@@ -19,23 +62,88 @@ pub(super) struct Findings {
 }
 
 impl Findings {
+    /// Lists so many of each check and counts the others.
+    pub fn listing(most: usize) -> Self {
+        Self {
+            list: Vec::new(),
+            tally: Tally::default(),
+            most,
+            recorded: BTreeSet::new(),
+            painted: None,
+            from: 0,
+            more: None,
+        }
+    }
+
+    /// The same of a scene: what its recording shows is worth knowing, and no more.
+    pub fn of(scene: &Scene, most: usize) -> Self {
+        Self {
+            recorded: Recorded::boxes_in(scene),
+            painted: Recorded::painted_in(scene),
+            ..Self::listing(most)
+        }
+    }
+
     /// True once the check that runs has as many findings as are listed: then [`Self::count`] is enough.
     pub fn is_full(&self) -> bool {
-        self.list.len() - self.from >= MOST
+        self.list.len() - self.from >= self.most
     }
 
     /// Takes a finding in, or counts it.
     pub fn push(&mut self, finding: Finding) {
+        self.push_all(finding, 1);
+    }
+
+    /// Takes one finding in that stands for so many, or counts them.
+    pub fn push_all(&mut self, mut finding: Finding, n: usize) {
+        let is_measured = |painted: &VoxelPaint| {
+            let mut cells = finding.cells.iter();
+            !finding.cells.is_empty() && cells.all(|&[x, y, z]| painted.get(x, y, z) == NOT_PAINTED)
+        };
+        let is_recorded = match finding.box_id {
+            Some(id) => self.is_recorded(id),
+            None => self.painted.as_ref().is_some_and(is_measured),
+        };
+        if is_recorded {
+            finding.severity = Severity::Info;
+        }
+        self.take(finding, n);
+    }
+
+    /// Takes a finding in about a recorded box and something that somebody made: it is as bad as it is.
+    pub fn push_made(&mut self, finding: Finding) {
+        self.take(finding, 1);
+    }
+
+    fn take(&mut self, finding: Finding, n: usize) {
+        let kind = (finding.severity, finding.check, finding.box_id);
         match self.is_full() {
-            true => self.count(finding.severity, finding.where_m),
-            false => self.list.push(finding),
+            true => (0..n).for_each(|_| self.count_as(kind, finding.where_m)),
+            false => {
+                self.tally.add(kind, n);
+                self.list.push(finding);
+            }
         }
     }
 
     /// Counts a finding that is not listed.
-    pub fn count(&mut self, severity: Severity, where_m: DVec3) {
+    pub fn count(&mut self, (severity, check, box_id): Kind, where_m: DVec3) {
+        // Of voxels that are only counted it is not known which were painted.
+        let is_recorded = box_id.map_or(self.painted.is_some(), |id| self.is_recorded(id));
+        let severity = if is_recorded { Severity::Info } else { severity };
+        self.count_as((severity, check, box_id), where_m);
+    }
+
+    fn count_as(&mut self, kind: Kind, where_m: DVec3) {
+        self.tally.add(kind, 1);
+        let severity = kind.0;
         let (n, worst, first_m) = self.more.unwrap_or((0, severity, where_m));
         self.more = Some((n + 1, worst.max(severity), first_m));
+    }
+
+    /// True for a box that is as a recording has it.
+    pub fn is_recorded(&self, id: BoxId) -> bool {
+        self.recorded.contains(&id)
     }
 
     /// Ends a check: what was only counted becomes its last finding.
@@ -55,9 +163,9 @@ impl Findings {
         self.from = self.list.len();
     }
 
-    /// All of them, errors first.
-    pub fn done(mut self) -> Vec<Finding> {
+    /// Those that are listed, errors first, and how many there are of all.
+    pub fn done(mut self) -> (Vec<Finding>, Tally) {
         self.list.sort_by_key(|f| std::cmp::Reverse(f.severity));
-        self.list
+        (self.list, self.tally)
     }
 }

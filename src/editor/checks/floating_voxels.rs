@@ -66,7 +66,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         let where_m = middle(extent, first);
         let count = rest.len();
         let cells: Vec<_> = rest.into_iter().flatten().collect();
-        out.push(Finding {
+        let finding = Finding {
             check: NAME,
             severity: Severity::Warning,
             where_m,
@@ -79,7 +79,8 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
                 voxels = cells.len()
             ),
             fixes: vec![remove(cells)],
-        });
+        };
+        out.push_all(finding, count);
     }
 }
 

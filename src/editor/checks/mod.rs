@@ -25,7 +25,9 @@ use glam::DVec3;
 use super::Edit;
 use findings::Findings;
 pub use findings::MOST;
+pub(crate) use findings::{Kind, Tally};
 use language::{t, tf};
+pub(crate) use over_time::{Met, meetings};
 use scene::draft::{ground_bin, ground_class};
 use scene::{BoxId, Class, Extent, Frame, Scene, SceneBox, support};
 
@@ -63,6 +65,13 @@ pub struct Fix {
     pub edits: Vec<Edit>,
 }
 
+impl Fix {
+    /// True if it makes the map larger: that is done only where it is asked for by name, never together with others.
+    pub fn enlarges_the_map(&self) -> bool {
+        self.edits.iter().any(|e| matches!(e, Edit::ExtendMap { .. }))
+    }
+}
+
 /// Something that a check found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
@@ -84,6 +93,15 @@ pub struct Finding {
     pub fixes: Vec<Fix>,
 }
 
+impl Finding {
+    /// The repair that is tried where all are asked for: the best, unless that has to be asked for by name. None of what is
+    /// worth knowing and no mistake.
+    pub fn first_fix(&self) -> Option<&Fix> {
+        let fix = self.fixes.first()?;
+        (self.severity > Severity::Info && !fix.enlarges_the_map()).then_some(fix)
+    }
+}
+
 /// How many findings there are of each severity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -100,13 +118,17 @@ impl Counts {
     pub fn of<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> Self {
         let mut out = Self::default();
         for finding in findings {
-            match finding.severity {
-                Severity::Error => out.errors += 1,
-                Severity::Warning => out.warnings += 1,
-                Severity::Info => out.infos += 1,
-            }
+            *out.of_mut(finding.severity) += 1;
         }
         out
+    }
+
+    pub(crate) fn of_mut(&mut self, severity: Severity) -> &mut usize {
+        match severity {
+            Severity::Error => &mut self.errors,
+            Severity::Warning => &mut self.warnings,
+            Severity::Info => &mut self.infos,
+        }
     }
 
     /// Of one severity.
@@ -212,19 +234,31 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// Runs every check on the frame being edited; errors first, else in the order of [`names`]. Without `seen` the two
 /// checks that need sensors are left out. Of each check at most [`MOST`] findings are listed; one more counts the rest.
 pub fn run_checks(scene: &Scene, seen: Option<&Seen>) -> Vec<Finding> {
-    run(scene, seen, &CHECKS)
+    run(scene, seen, &CHECKS, MOST).0
 }
 
 /// The overlapping boxes alone.
 pub(crate) fn overlaps(scene: &Scene) -> Vec<Finding> {
-    run(
-        scene,
-        None,
-        &[(overlapping_boxes::NAME, overlapping_boxes::check)],
-    )
+    let overlapping: (_, Check) = (overlapping_boxes::NAME, overlapping_boxes::check);
+    run(scene, None, &[overlapping], MOST).0
 }
 
-fn run(scene: &Scene, seen: Option<&Seen>, checks: &[(&'static str, Check)]) -> Vec<Finding> {
+/// What every check finds that needs no sensor, and how much of each kind there is.
+pub(crate) fn run_counted(scene: &Scene) -> (Vec<Finding>, Tally) {
+    run(scene, None, &CHECKS, MOST)
+}
+
+/// How much the checks find that need no sensor, without a list of it: several times faster where there is much.
+pub(crate) fn tally(scene: &Scene) -> Tally {
+    run(scene, None, &CHECKS, 0).1
+}
+
+fn run(
+    scene: &Scene,
+    seen: Option<&Seen>,
+    checks: &[(&'static str, Check)],
+    most: usize,
+) -> (Vec<Finding>, Tally) {
     let frame = scene.frame();
     let highest = |boxes: &BTreeMap<BoxId, SceneBox>| boxes.keys().next_back().map_or(0, |id| id.0);
     let context = Context {
@@ -244,7 +278,7 @@ fn run(scene: &Scene, seen: Option<&Seen>, checks: &[(&'static str, Check)]) -> 
             .saturating_add(1)
             .into(),
     };
-    let mut findings = Findings::default();
+    let mut findings = Findings::of(scene, most);
     for (name, check) in checks {
         check(&context, &mut findings);
         findings.end(name);
@@ -309,6 +343,8 @@ fn middle(extent: Extent, cells: &[[usize; 3]]) -> DVec3 {
 
 #[cfg(test)]
 #[path = "tests.rs"]
-mod tests;
+pub(crate) mod tests;
 #[cfg(test)]
-mod tests_noise;
+pub(crate) mod tests_noise;
+#[cfg(test)]
+mod tests_recorded;

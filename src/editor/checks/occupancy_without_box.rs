@@ -43,7 +43,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     }
     for (class, group) in groups {
         if out.is_full() {
-            out.count(Severity::Warning, middle(extent, &group));
+            out.count((Severity::Warning, NAME, None), middle(extent, &group));
             continue;
         }
         out.push(Finding {

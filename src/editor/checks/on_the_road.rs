@@ -60,8 +60,8 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     groups.retain(|g| g.iter().filter(is_low).count() >= LEAST_VOXELS);
     groups.sort_by_key(|g| std::cmp::Reverse(g.len()));
     let rest = groups.split_off(groups.len().min(LISTED));
-    let mut report = |text: String, where_m: glam::DVec3, cells: Vec<[usize; 3]>| {
-        out.push(Finding {
+    let mut report = |text: String, where_m: glam::DVec3, cells: Vec<[usize; 3]>, n: usize| {
+        let finding = Finding {
             check: NAME,
             severity: Severity::Warning,
             where_m,
@@ -73,7 +73,8 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             }],
             time_s: None,
             cells,
-        });
+        };
+        out.push_all(finding, n);
     };
     for group in groups {
         let class = main_class(grid, &group).label();
@@ -82,7 +83,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             n = group.len(),
             class = t(&class)
         );
-        report(text, middle(extent, &group), group);
+        report(text, middle(extent, &group), group, 1);
     }
     if let Some(first) = rest.first() {
         let (where_m, count) = (middle(extent, first), rest.len());
@@ -92,7 +93,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             n = count,
             voxels = cells.len()
         );
-        report(text, where_m, cells);
+        report(text, where_m, cells, count);
     }
 }
 

@@ -10,7 +10,7 @@ use crate::{Document, EditError};
 use scene::draft::draft;
 use scene::{BevLayer, BevLayout, Polyline, PolylineKind, SensorRig};
 
-fn object(id: u32, class: Class, x: f64, y: f64, yaw_deg: f64) -> SceneBox {
+pub(crate) fn object(id: u32, class: Class, x: f64, y: f64, yaw_deg: f64) -> SceneBox {
     let size_m = DVec3::from_array(class.typical_size_m().expect("an object"));
     SceneBox {
         id: BoxId(id),
@@ -24,7 +24,7 @@ fn object(id: u32, class: Class, x: f64, y: f64, yaw_deg: f64) -> SceneBox {
 }
 
 /// A road along x, 14 m wide, with a lane each way; two cars, a truck, a pedestrian beside it.
-fn street(objects: &[SceneBox]) -> Scene {
+pub(crate) fn street(objects: &[SceneBox]) -> Scene {
     let lane = |points: [(f64, f64); 2]| Polyline {
         kind: PolylineKind::LaneCenter,
         points_m: points.map(|(x, y)| DVec2::new(x, y)).to_vec(),
@@ -49,7 +49,7 @@ fn street(objects: &[SceneBox]) -> Scene {
     )
 }
 
-fn traffic() -> Vec<SceneBox> {
+pub(crate) fn traffic() -> Vec<SceneBox> {
     vec![
         object(1, Class::Car, 10.0, -1.7, 1.0),
         object(2, Class::Car, 20.0, 1.8, 178.0),
@@ -156,7 +156,7 @@ fn many_floating_groups_are_one_line_more() {
     let findings = run_checks(&scene, None);
     assert_eq!(findings.len(), 41);
     assert_eq!(findings[40].text, "10 smaller groups float, 10 voxels");
-    let edits = crate::fix::fix_all(&scene, &findings);
+    let edits = crate::fix::plan_at_once(&scene, &findings).edits();
     edits.iter().for_each(|e| e.apply(&mut scene).expect("sound"));
     assert_eq!(run_checks(&scene, None), []);
 }
@@ -248,7 +248,7 @@ fn three_in_one_place_are_fixed_at_once() {
     let mut scene = street(&objects);
     let findings = run_checks(&scene, None);
     assert_eq!(checks(&findings), ["overlapping_boxes"; 3]);
-    let edits = crate::fix::fix_all(&scene, &findings);
+    let edits = crate::fix::plan_at_once(&scene, &findings).edits();
     assert!(
         edits.iter().all(|e| matches!(e, Edit::MoveBox { .. })),
         "nothing is taken away unasked: {edits:?}"
@@ -423,7 +423,7 @@ fn what_is_not_sound_is_named_and_stops_no_other_check() {
     ]) {
         assert!(finding.text.starts_with(text), "{} is not {text}", finding.text);
     }
-    let fixed = crate::fix::fix_all(&scene, &findings);
+    let fixed = crate::fix::plan_at_once(&scene, &findings).edits();
     fixed.iter().for_each(|e| e.apply(&mut scene).expect("sound"));
     let boxes: Vec<u32> = scene.frame().boxes.keys().map(|id| id.0).collect();
     assert_eq!(
@@ -460,7 +460,7 @@ fn waived_findings_stay_until_they_are_taken_back() {
     let findings = run_checks(&scene, None);
     let open = |scene: &Scene| waive::open(scene.frame(), &run_checks(scene, None)).count();
     assert!(!findings.is_empty() && open(&scene) == findings.len());
-    assert!(!crate::fix::fix_all(&scene, &findings).is_empty());
+    assert!(!crate::fix::plan_at_once(&scene, &findings).repairs.is_empty());
     let waive_edit = |f: &Finding, reason: &str| Edit::Waive {
         check: f.check.into(),
         box_id: f.box_id,
@@ -472,7 +472,7 @@ fn waived_findings_stay_until_they_are_taken_back() {
     }
     assert_eq!((open(&scene), scene.frame().waivers.len()), (0, findings.len()));
     assert!(
-        crate::fix::fix_all(&scene, &findings).is_empty(),
+        crate::fix::plan_at_once(&scene, &findings).repairs.is_empty(),
         "what is waived is not repaired"
     );
     // A new reason takes the place of the old one.

@@ -1,4 +1,4 @@
-//! Scenes of noise: as many findings as are listed, in bounded time, and repairs that end.
+//! Scenes of noise: as many findings as are listed, in bounded time.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use super::*;
 use scene::{BevLayout, SensorRig, VoxelGrid, infer};
 
 /// Random numbers from a counter (SplitMix64).
-fn random(seed: u64) -> impl FnMut(u64) -> u64 {
+pub(crate) fn random(seed: u64) -> impl FnMut(u64) -> u64 {
     let mut state = seed;
     move |below| {
         state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -18,7 +18,7 @@ fn random(seed: u64) -> impl FnMut(u64) -> u64 {
 }
 
 /// A random label in a share of the voxels, a random layout, and the boxes that an import would see in them.
-fn noise(seed: u64, percent: u64) -> Scene {
+pub(crate) fn noise(seed: u64, percent: u64) -> Scene {
     let mut next = random(seed);
     let mut grid = VoxelGrid::new();
     for x in 0..Extent::WINDOW.nx() {
@@ -40,9 +40,9 @@ fn noise(seed: u64, percent: u64) -> Scene {
 }
 
 #[test]
-fn noise_is_checked_and_repaired_in_bounds() {
+fn noise_is_checked_in_bounds() {
     for (seed, percent) in [(1, 100), (2, 8)] {
-        let mut scene = noise(seed, percent);
+        let scene = noise(seed, percent);
         assert!(scene.frame().boxes.len() <= Frame::MAX_BOXES);
         let start = Instant::now();
         let findings = run_checks(&scene, Some(&Seen::default()));
@@ -68,23 +68,7 @@ fn noise_is_checked_and_repaired_in_bounds() {
             cells <= 8 * Extent::WINDOW.columns() * Extent::NZ,
             "{cells} cells in findings"
         );
-        let start = Instant::now();
-        let edits = crate::fix::fix_all(&scene, &findings);
-        let fixed_in = start.elapsed();
-        assert!(!edits.is_empty());
-        let most = MOST * names().count() * 64 + MOST * crate::fix::MOST_ROUNDS;
-        assert!(edits.len() <= most, "{} edits", edits.len());
-        crate::apply_all(&edits, &mut scene).expect("fixes apply");
-        println!(
-            "{percent} %: {checked_in:?} for {}, {fixed_in:?} for {}",
-            findings.len(),
-            edits.len()
-        );
-        let generous = Duration::from_secs(300);
-        assert!(
-            checked_in < generous && fixed_in < generous,
-            "{checked_in:?}, {fixed_in:?}"
-        );
+        assert!(checked_in < Duration::from_secs(300), "{checked_in:?}");
     }
 }
 
@@ -101,7 +85,7 @@ fn what_is_not_listed_is_counted() {
         text: "off".into(),
         fixes: Vec::new(),
     };
-    let mut all = Findings::default();
+    let mut all = Findings::listing(MOST);
     for i in 0..MOST + 3 {
         let severity = match i == MOST + 1 {
             true => Severity::Error,
@@ -112,7 +96,8 @@ fn what_is_not_listed_is_counted() {
     all.end("off_road");
     all.push(finding(Severity::Warning, 7.0));
     all.end("other");
-    let all = all.done();
+    let (all, tally) = all.done();
+    assert_eq!((tally.counts().errors, tally.counts().warnings), (1, MOST + 3));
     assert_eq!(all.len(), MOST + 2);
     assert_eq!(
         (all[0].severity, all[0].where_m.x),

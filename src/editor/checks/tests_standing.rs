@@ -33,7 +33,7 @@ fn trees_poles_and_walls_on_the_road_are_found() {
         paint(&mut scene, Class::Manmade, cells.clone());
         let finding = only(&scene, "on_the_road", None);
         assert_eq!(finding.cells.len(), cells.len(), "{}", finding.text);
-        let fixed = crate::fix::fix_all(&scene, std::slice::from_ref(&finding));
+        let fixed = crate::fix::plan_at_once(&scene, std::slice::from_ref(&finding)).edits();
         fixed.iter().for_each(|e| apply(&mut scene, e.clone()));
         assert_eq!(
             scene.frame().occupancy.get(60, 100, 0),
@@ -101,7 +101,7 @@ fn many_things_on_the_road_are_one_line_more() {
     let findings = run_checks(&scene, None);
     assert_eq!(findings.len(), 41);
     assert_eq!(findings[40].text, "5 smaller things stand on the road, 20 voxels");
-    let edits = crate::fix::fix_all(&scene, &findings);
+    let edits = crate::fix::plan_at_once(&scene, &findings).edits();
     edits.iter().for_each(|e| apply(&mut scene, e.clone()));
     assert_eq!(run_checks(&scene, None), []);
 }

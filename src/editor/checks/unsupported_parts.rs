@@ -11,7 +11,7 @@ use scene::support::{CROWN, bins_set, ground, groups, is_known_to_float, neighbo
 pub const NAME: &str = "unsupported_parts";
 /// Smaller parts are noise of labels, voxels.
 const LEAST_VOXELS: usize = 8;
-/// Parts that are listed one by one, the largest.
+/// Parts that are listed one by one, the largest; the others are counted.
 const LISTED: usize = 40;
 
 pub fn check(context: &Context<'_>, out: &mut Findings) {
@@ -43,8 +43,11 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         parts.extend(known.map(|g| (*class, g)));
     }
     parts.sort_by_key(|(_, g)| std::cmp::Reverse(g.len()));
-    parts.truncate(LISTED);
-    for (class, part) in parts {
+    for (i, (class, part)) in parts.into_iter().enumerate() {
+        if i >= LISTED || out.is_full() {
+            out.count((Severity::Warning, NAME, None), middle(extent, &part));
+            continue;
+        }
         let paint = |label: &'static str, cells: Vec<[usize; 3]>, class: Class| Fix {
             label,
             edits: vec![Edit::PaintVoxels { cells, class }],

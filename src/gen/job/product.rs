@@ -149,6 +149,11 @@ impl<R: Send + 'static, U: Send + 'static> Worker<R, U> {
         self.orders.cancelled.fetch_max(newest, Ordering::AcqRel);
     }
 
+    /// The job that was submitted last; 0 before the first.
+    pub fn newest(&self) -> JobId {
+        JobId(self.orders.newest.load(Ordering::Acquire))
+    }
+
     /// All updates, oldest first. Call `try_iter` once per frame; all clones share one stream.
     pub fn updates(&self) -> &Receiver<Event<U>> {
         &self.updates

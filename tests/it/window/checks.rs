@@ -1,15 +1,18 @@
 //! The list of what the quality checks found: beside what it speaks of, and marking it.
 
-use app::command::{Command, ViewCommand};
+use app::command::{Command, FileCommand, RepairCommand, ViewCommand};
 use app::dock::Dock;
 use app::panes::id::PaneId;
 use app::settings::Settings;
+use app::shell::planning::Shown;
 use editor::Edit;
+use editor::checks::{Counts, run_checks};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
+use formats::loom;
 use scene::{BoxId, Class, Window};
 
-use super::bench::Bench;
+use super::bench::{Bench, car};
 
 impl Bench {
     fn command(&mut self, command: Command) {
@@ -148,4 +151,136 @@ fn the_statistics_open_from_the_view_menu_and_follow_the_scene() {
     bench.steps(3);
     assert_eq!(cars(&bench), before + 2);
     assert!(bench.shows(&format!("Car: {} voxels", before + 2)));
+}
+
+/// A second car half in the first: an error that moving it repairs.
+fn crash(bench: &mut Bench) {
+    let other = Edit::AddBox {
+        class: Class::Car,
+        center_m: car().center_m + glam::DVec3::new(1.0, 0.3, 0.0),
+        size_m: car().size_m,
+        yaw_deg: 0.0,
+        velocity_mps: None,
+        id: Some(BoxId(8)),
+        label: Default::default(),
+    };
+    bench.command(Command::Apply("Add a box", vec![other]));
+    bench.all_checked();
+}
+
+fn errors(bench: &Bench) -> usize {
+    let scene = bench.harness.state().document.scene().clone();
+    Counts::of(&run_checks(&scene, None)).errors
+}
+
+impl Bench {
+    fn planned(&mut self) {
+        self.wait_until("the plan", |b| {
+            matches!(b.app().threads.planning.shown(), Some(Shown::Planned(_)))
+        });
+        self.steps(3);
+    }
+
+    fn press(&mut self, label: &str) {
+        self.harness.get_by_label_contains(label).click();
+        self.steps(3);
+    }
+}
+
+#[test]
+fn what_would_be_repaired_is_listed_first_and_done_as_one_step() {
+    let mut bench = Bench::new();
+    bench.off();
+    crash(&mut bench);
+    assert!(errors(&bench) > 0);
+    bench.command(Command::View(ViewCommand::ShowPane(PaneId::CHECKS)));
+    let before = bench.app().document.scene().rev;
+    let steps = bench.history().len();
+    bench.press("Fix all (");
+    bench.planned();
+    assert!(bench.shows("Repairs"), "the window");
+    assert!(
+        bench.shows("Move apart: car 7 and car 8 overlap"),
+        "a line of the list"
+    );
+    assert!(bench.shows("Now: 1 error"));
+    assert_eq!(bench.app().document.scene().rev, before, "nothing is done yet");
+    bench.click("Close");
+    assert!(!bench.shows("Move apart: car 7") && bench.history().len() == steps);
+    bench.press("Fix all (");
+    bench.planned();
+    bench.press("Repair ");
+    let now = bench.history();
+    assert_eq!(
+        (now.len(), now.last().map(String::as_str)),
+        (steps + 1, Some("Repair findings"))
+    );
+    assert_eq!(errors(&bench), 0);
+    assert_eq!(bench.frame().boxes.len(), 2, "nothing is taken away");
+    bench.key(Modifiers::CTRL, Key::Z);
+    assert_eq!(bench.app().document.scene().rev, before);
+}
+
+#[test]
+fn a_plan_is_made_beside_the_window_and_is_of_one_state() {
+    let mut bench = Bench::new();
+    bench.off();
+    crash(&mut bench);
+    let ctx = bench.harness.ctx.clone();
+    bench.app().execute(Command::Repair(RepairCommand::PlanAll), &ctx);
+    // The command has returned, and the plan is still to come.
+    assert!(matches!(
+        bench.app().threads.planning.shown(),
+        Some(Shown::Planning(None))
+    ));
+    bench.planned();
+    assert!(bench.shows("Move apart: "));
+    // Edited meanwhile, it is a plan for another state: it is not done, but made again.
+    bench.command(Command::Apply(
+        "Remove box",
+        vec![Edit::RemoveBox { id: BoxId(8) }],
+    ));
+    let removed = bench.app().document.scene().rev;
+    assert!(bench.shows("The scene has changed since") && !bench.shows("Repair "));
+    bench.command(Command::Repair(RepairCommand::Apply));
+    assert_eq!(bench.app().document.scene().rev, removed);
+    bench.click("Look again");
+    bench.planned();
+    assert!(!bench.shows("Move apart: ") && !bench.shows("The scene has changed since"));
+    // Stopped, what there is by then is listed, and the window can be closed.
+    bench.command(Command::Repair(RepairCommand::PlanThese(Vec::new())));
+    bench.command(Command::Repair(RepairCommand::Stop));
+    bench.planned();
+    assert!(bench.shows("No repair makes the scene better."));
+    bench.click("Close");
+    assert!(bench.app().threads.planning.shown().is_none());
+}
+
+#[test]
+fn nothing_of_the_scene_before_is_shown_of_a_new_one() {
+    let mut bench = Bench::new();
+    bench.off();
+    crash(&mut bench);
+    bench.command(Command::View(ViewCommand::ShowPane(PaneId::CHECKS)));
+    bench.press("Error: car 7 and car 8 overlap");
+    bench.wait_until("sensors", |b| b.app().sensors_are_current());
+    bench.press("Fix all (");
+    bench.planned();
+    let path = bench.open_path();
+    loom::save(&path, &super::bench::scene()).expect("saved");
+    bench.app().document.mark_saved();
+    bench.command(Command::File(FileCommand::OpenPath(path.clone())));
+    bench.wait_until("the scene", |b| b.app().path() == Some(&*path));
+    // In the first frame that shows it: what there is, is of it.
+    let app = bench.app();
+    let rev = app.document.scene().rev;
+    assert!(app.threads.checking.findings().is_none() || !app.threads.checking.is_stale(rev));
+    assert!(app.sensing().cameras().is_none() || !app.sensing().cameras_stale(rev));
+    assert!(app.sensing().lidar().is_none() || !app.sensing().lidar_stale(rev));
+    assert!(app.threads.planning.shown().is_none());
+    assert!(app.state.shown.finding_marks.is_none());
+    // What was on its way for the scene before does not come after all.
+    bench.all_checked();
+    bench.wait_until("sensors", |b| b.app().sensors_are_current());
+    assert!(!bench.shows("car 7 and car 8 overlap"));
 }

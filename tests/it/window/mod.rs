@@ -9,6 +9,7 @@ mod desk;
 mod editing;
 mod files;
 mod guests;
+mod light;
 mod linked;
 mod objects;
 mod overdraw;

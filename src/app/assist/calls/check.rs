@@ -7,7 +7,7 @@ use crate::call::Operation;
 use crate::desk::{Desk, Done};
 use app::findings;
 use editor::checks::{self, Counts, Finding, waive};
-use editor::fix::fix_all;
+use editor::fix::plan_at_once;
 use scene::Scene;
 
 /// Findings that a receipt lists at most.
@@ -20,7 +20,7 @@ pub struct Check {
     /// Also look with cameras and LiDAR, which takes a few seconds.
     #[serde(default = "yes")]
     sensors: bool,
-    /// Apply the first repair of each finding that has one, as one undo step, and check again.
+    /// Apply the first repair of each finding that has one and is better for it, as one undo step, and check again. No repair is done that brings something as bad, or that makes the map larger.
     #[serde(default)]
     fix: bool,
 }
@@ -100,7 +100,7 @@ impl Operation for Check {
         let mut findings = look(&scene);
         let mut fixed = None;
         if self.fix {
-            let edits = fix_all(&scene, &findings);
+            let edits = plan_at_once(&scene, &findings).edits();
             if !edits.is_empty() {
                 fixed = Some(desk.apply("Repair what the checks found".into(), edits)?);
                 scene = desk.scene()?;

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::names;
 use crate::call::Operation;
 use crate::desk::{Desk, Done};
-use authoring::scenery::SceneryWish;
+use authoring::whole::scenery_first;
 use editor::Document;
 use job::{GenParams, Job, JobCtx, Pipeline};
 use scene::Scene;
@@ -24,7 +24,7 @@ pub struct Generate {
     #[serde(default)]
     #[schemars(schema_with = "names::preset")]
     quality: Option<String>,
-    /// Sampling steps instead of the preset's: more are slower and more accurate.
+    /// Sampling steps instead of the preset's: more are slower and nearer to the reference, which is not less invented.
     #[serde(default)]
     #[schemars(range(min = 1, max = 1000))]
     steps: Option<u32>,
@@ -95,10 +95,7 @@ impl Operation for Generate {
         let from = scene.content();
         // On a copy: scenery and voxels become one step of the document together.
         let mut copy = Document::new(Scene::clone(&scene));
-        let nothing_known = scene.background.is_empty() && !scene.frame().inferred.background;
-        if self.whole && nothing_known {
-            copy.apply_all("Draw scenery", &SceneryWish::of_seed(self.seed).edits(&scene)?)?;
-        }
+        copy.apply_all("Draw scenery", &scenery_first(&scene, &params)?)?;
         let job = Job {
             scene: copy.scene().clone(),
             params,

@@ -43,7 +43,12 @@ pub(super) fn row(
                         WidgetInfo::labeled(Role::Button, true, tf!("Ways to fix: {finding}", finding = says))
                     });
                 }
-                let fix = ui.add(egui::Button::new(t("Fix")).small());
+                // What makes the map larger is done only by its name.
+                let name = match first.enlarges_the_map() {
+                    true => t(first.label),
+                    false => t("Fix"),
+                };
+                let fix = ui.add(egui::Button::new(name).small());
                 fix.widget_info(|| {
                     WidgetInfo::labeled(Role::Button, true, format!("{}: {says}", t(first.label)))
                 });

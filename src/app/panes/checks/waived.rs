@@ -38,6 +38,14 @@ fn asked() -> egui::Id {
 
 type Typing = Option<(String, String)>;
 
+/// Forgets a waiver that was begun.
+pub(super) fn forget(ctx: &egui::Context) {
+    ctx.data_mut(|d| {
+        d.remove_temp::<Typing>(typing());
+        d.remove_temp::<String>(asked());
+    });
+}
+
 /// The button that begins a waiver.
 pub(super) fn waive_button(ui: &mut Ui, finding: &Finding) {
     let button = ui.add(egui::Button::new(t("Waive")).small());

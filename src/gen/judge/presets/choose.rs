@@ -13,7 +13,7 @@ use job::GenParams;
 use metrics::stats::mean_ci95;
 use nets::OccModels;
 use numeric::quantile::{median, quantile};
-use trade::{Cost, Interval, Preset, PresetKnobs, Presets, TradePoint, front, knee};
+use trade::{Cost, Interval, Preset, PresetKnobs, Presets, TradePoint, bootstrap_median, front, knee};
 
 /// Presets from the front: the fastest, the knee, the most exact, and those between them that lie well apart, and the reference.
 pub fn presets_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Presets {
@@ -75,7 +75,6 @@ fn names(kept: &[TradePoint]) -> Vec<String> {
     };
     let name = |k: usize| match k {
         0 => "draft".to_owned(),
-        k if k == last => "accurate".into(),
         k if k == middle => "balanced".into(),
         k if k < middle => numbered("quick", k - 1),
         k => numbered("careful", k - middle - 1),
@@ -91,6 +90,7 @@ fn preset(name: String, row: &Row, point: TradePoint) -> Option<Preset> {
         name,
         knobs: PresetKnobs::of(&row.setting.params),
         error: point.error,
+        error_of_occupied: Some(bootstrap_median(&row.all(|o| o.error_of_occupied), 3)),
         error_of_one: [quantile(&errors, 0.05), quantile(&errors, 0.95)],
         invented: Some(mean_ci95(&row.all(|o| o.invented)).0),
         cost: row.cost()?,
@@ -122,6 +122,7 @@ fn reference_preset(rows: &[&Row], reference: GenParams) -> Option<Preset> {
         name: "reference".into(),
         knobs: PresetKnobs::of(&reference),
         error: none,
+        error_of_occupied: None,
         error_of_one: [0.0, 0.0],
         invented: None,
         cost: Cost {
