@@ -3,6 +3,7 @@
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -14,9 +15,11 @@ use super::picture::{ShotOptions, View3d};
 use crate::findings;
 use crate::truth;
 use formats::export::{Exporter, Observed, OutFile, Picture, Product, Products, Seen, Span};
+use formats::out_folder::OutFolder;
 use formats::recipe::Recipe;
 use formats::{FormatError, atomic};
 use nets::lidar::LidarNet;
+use scene::plain_name;
 use scene::{CameraMaps, CameraTruth, GaussianScene, LidarSweep, Pose, Scene, SensorRig};
 use sensors::appearance::Quality;
 use sensors::bake::{self, BakeOptions};
@@ -171,7 +174,7 @@ pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
 /// Writes the current frame. One format goes to `path`: the file, or a folder for the format's usual name; formats that
 /// fill a folder make it. More go into the folder `path`. Returns the files and their sizes in bytes. Errors in one line;
 /// each file is written whole or not at all, and none before all are ready: an export that is cancelled leaves nothing
-/// behind.
+/// behind. In a folder nothing outside it is written, and no file of this export over another.
 pub fn export_all(
     scene: &Scene,
     formats: &[Format],
@@ -179,7 +182,6 @@ pub fn export_all(
     path: &Path,
     progress: &ExportProgress,
 ) -> anyhow::Result<Vec<(PathBuf, u64)>> {
-    let fills_a_folder = formats.len() > 1;
     let mut ready = Vec::new();
     progress.begin(formats, &scene.rig);
     let (recipe, gaussians) = (OnceCell::new(), OnceCell::new());
@@ -199,37 +201,54 @@ pub fn export_all(
         };
         let files = (format.write)(&of_file, &mut making)?;
         progress.go_on()?;
-        let place = |file: OutFile| (place_of(format, &file, path, fills_a_folder), file.bytes);
-        ready.extend(files.into_iter().map(place));
+        ready.extend(files);
     }
     progress.go_on()?;
-    write(path, ready)
-}
-
-/// Where a file of a format goes: the one file of a format to the path itself, unless that is a folder.
-fn place_of(format: Format, file: &OutFile, path: &Path, fills_a_folder: bool) -> PathBuf {
-    let is_folder = format.file_name.is_none()
-        || fills_a_folder
-        || path.is_dir()
-        || path.as_os_str().to_string_lossy().ends_with(['/', '\\']);
-    match is_folder {
-        true => path.join(&file.name),
-        false => path.to_path_buf(),
+    match fills_a_folder(formats, path) {
+        true => write_into(path, &ready),
+        false => write_one(path, &ready),
     }
 }
 
-/// Writes what is ready; makes the folder where it is missing, but no folder above the one that was named.
-fn write(named: &Path, ready: Vec<(PathBuf, Vec<u8>)>) -> anyhow::Result<Vec<(PathBuf, u64)>> {
-    let mut written = Vec::new();
-    for (path, bytes) in ready {
-        let folder = path.parent().filter(|_| path != named);
-        if let Some(folder) = folder {
-            std::fs::create_dir_all(folder).with_context(|| format!("create {}", folder.display()))?;
+/// True unless there is one format of one file, and the path is no folder.
+fn fills_a_folder(formats: &[Format], path: &Path) -> bool {
+    match formats {
+        [format] if format.file_name.is_some() => {
+            path.is_dir() || path.as_os_str().to_string_lossy().ends_with(['/', '\\'])
         }
-        atomic::write(&path, &bytes).with_context(|| format!("write {}", path.display()))?;
-        written.push((path, bytes.len() as u64));
+        _ => true,
     }
-    Ok(written)
+}
+
+/// Writes the file of a format; no folder is made.
+fn write_one(path: &Path, ready: &[OutFile]) -> anyhow::Result<Vec<(PathBuf, u64)>> {
+    let one = |file: &OutFile| {
+        atomic::write(path, &file.bytes).with_context(|| format!("write {}", path.display()))?;
+        Ok((path.to_path_buf(), file.bytes.len() as u64))
+    };
+    ready.iter().map(one).collect()
+}
+
+/// Writes files into a folder, which is made; none before it is known that all of them may be written.
+fn write_into(path: &Path, ready: &[OutFile]) -> anyhow::Result<Vec<(PathBuf, u64)>> {
+    let mut known: BTreeMap<String, &OutFile> = BTreeMap::new();
+    for file in ready {
+        let first = known.entry(plain_name::folded(&file.name)).or_insert(file);
+        if first.bytes != file.bytes {
+            bail!(
+                "{}: two different files would be called {} (sensors of like names, or formats that need folders of their own)",
+                path.display(),
+                file.name
+            );
+        }
+    }
+    let mut folder = OutFolder::make(path)?;
+    ready.iter().try_for_each(|file| folder.check(&file.name))?;
+    let mut one = |file: &OutFile| {
+        let written = folder.write(&file.name, &file.bytes)?;
+        Ok((written, file.bytes.len() as u64))
+    };
+    ready.iter().map(&mut one).collect()
 }
 
 /// Makes the products of a scene for the formats that ask for them.

@@ -1,24 +1,34 @@
-//! Writing files whole or not at all: beside the final name, flushed to disk, then renamed.
+//! Writing files whole or not at all: beside the final name, flushed to disk, then renamed. What is no file (a pipe, a device) is
+//! written to as what it is.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use super::target::Target;
+
+pub use super::target::stdout_holds_a_file;
+
 /// Replaces the file at `path` by `bytes`. Whatever happens, the path holds either the old file or
-/// the new one, whole. A symbolic link is followed; an existing file's permissions are kept.
+/// the new one, whole. A symbolic link is followed and stays; an existing file's permissions are kept. Into a pipe, `/dev/null`,
+/// `/dev/stdout` and their like the bytes are written; a pipe is waited for. Errors for folders, disks and sockets.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    // A rename would replace a link instead of what it points to.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    if target.is_dir() {
-        return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a directory"));
+    match Target::of(path)? {
+        Target::File(file) => replace(&file, bytes),
+        Target::Stream(path) => Target::stream(None, &path, bytes),
+        Target::Open(number, path) => Target::stream(Some(number), &path, bytes),
     }
+}
+
+/// Puts a file in place of what has the name: an old file or nothing.
+fn replace(target: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = match target.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
         _ => PathBuf::from("."),
     };
     let mut builder = tempfile::Builder::new();
     builder.prefix(".sceneloom-").suffix(".tmp");
-    let old = fs::metadata(&target).ok().map(|m| m.permissions());
+    let old = fs::metadata(target).ok().map(|m| m.permissions());
     if let Some(permissions) = old {
         builder.permissions(permissions);
     } else {
@@ -27,7 +37,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = builder.tempfile_in(&folder)?;
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
-    file.persist(&target).map_err(|e| e.error)?;
+    file.persist(target).map_err(|e| e.error)?;
     sync_folder(&folder)
 }
 
@@ -88,5 +98,55 @@ mod tests {
         assert_eq!(fs::read(&real).expect("there"), b"new");
         let mode = fs::metadata(&real).expect("there").permissions().mode();
         assert_eq!(mode & 0o777, 0o640);
+        // A link to nothing yet makes what it names.
+        let dangling = folder.path().join("dangling");
+        std::os::unix::fs::symlink("made", &dangling).expect("linked");
+        write(&dangling, b"first").expect("written");
+        assert!(fs::symlink_metadata(&dangling).expect("there").is_symlink());
+        assert_eq!(fs::read(folder.path().join("made")).expect("there"), b"first");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn pipes_and_devices_are_written_to_and_stay() {
+        use std::os::unix::fs::FileTypeExt;
+        use std::process::Command;
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (pipe, link) = (folder.path().join("pipe"), folder.path().join("link"));
+        assert!(
+            Command::new("mkfifo")
+                .arg(&pipe)
+                .status()
+                .expect("mkfifo")
+                .success()
+        );
+        std::os::unix::fs::symlink(&pipe, &link).expect("linked");
+        let long = vec![7; 1 << 20];
+        for path in [&pipe, &link] {
+            let reader = {
+                let pipe = pipe.clone();
+                std::thread::spawn(move || fs::read(pipe))
+            };
+            write(path, &long).expect("written");
+            assert!(reader.join().expect("no panic").expect("read") == long);
+            assert!(fs::symlink_metadata(&pipe).expect("there").file_type().is_fifo());
+        }
+        // A device of its own, as the machine's must not be tried on.
+        let null = folder.path().join("null");
+        let made = Command::new("mknod").arg(&null).args(["c", "1", "3"]).output();
+        match made.is_ok_and(|m| m.status.success()) && File::options().write(true).open(&null).is_ok() {
+            true => {
+                write(&null, b"gone").expect("written");
+                assert!(
+                    fs::symlink_metadata(&null)
+                        .expect("there")
+                        .file_type()
+                        .is_char_device()
+                );
+            }
+            false => println!("no device can be made here"),
+        }
+        let left = fs::read_dir(folder.path()).expect("there").count();
+        assert!(left <= 3, "{left} names, nothing beside");
     }
 }

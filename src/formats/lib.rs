@@ -28,7 +28,8 @@ pub mod nuscenes;
 pub mod occ3d;
 pub mod opendrive;
 pub mod openscenario;
-mod physical;
+pub mod out_folder;
+pub mod physical;
 pub mod png;
 #[cfg(test)]
 mod points_tests;
@@ -39,6 +40,7 @@ mod sparse_npy;
 pub mod table;
 #[cfg(test)]
 mod table_tests;
+mod target;
 pub mod video;
 mod vox;
 mod voxels;

@@ -1,20 +1,36 @@
 //! What sensors are called in files: names that folders and topics may have, and none twice.
 
 use scene::SensorRig;
+use scene::plain_name::folded;
+
+use crate::export::OutFile;
 
 /// What the LiDAR is called.
 pub const LIDAR: &str = "LIDAR_TOP";
 
 /// Names of the rig's cameras in its order: letters, digits, `-` and `_`; what was not free gets a number.
 pub fn cameras(rig: &SensorRig) -> Vec<String> {
+    none_twice(rig.cameras.iter().map(|c| tidy(&c.name, "CAM")), &[LIDAR])
+}
+
+/// What the files of a rig's camera begin with: its name in letters and digits of any language, `-`, `_` and `.`; what another
+/// camera before it is called too gets a number.
+pub fn of_file(rig: &SensorRig, camera: &str) -> String {
+    let tidy = |name: &str| OutFile::new(name, Vec::new()).name;
+    let place = rig.cameras.iter().position(|c| c.name == camera);
+    let mut all = none_twice(rig.cameras.iter().map(|c| tidy(&c.name)), &[]);
+    place.map_or_else(|| tidy(camera), |i| all.swap_remove(i))
+}
+
+/// Adds numbers to names that are there already, the case of letters aside.
+fn none_twice(names: impl Iterator<Item = String>, taken: &[&str]) -> Vec<String> {
     let mut out: Vec<String> = Vec::new();
-    for camera in &rig.cameras {
-        let tidy = tidy(&camera.name, "CAM");
+    for tidy in names {
         let mut name = tidy.clone();
         let mut number = 2;
         let is_taken = |name: &str| {
-            let mut taken = out.iter().map(String::as_str).chain([LIDAR]);
-            taken.any(|taken| taken.eq_ignore_ascii_case(name))
+            let mut taken = out.iter().map(String::as_str).chain(taken.iter().copied());
+            taken.any(|taken| folded(taken) == folded(name))
         };
         while is_taken(&name) {
             name = format!("{tidy}_{number}");
@@ -51,5 +67,15 @@ mod tests {
         };
         let expected = ["CAM_FRONT", "a_b", "a_b_2", "CAM", "cam_front_2", "LIDAR_TOP_2"];
         assert_eq!(cameras(&rig), expected);
+        let files: Vec<String> = rig.cameras.iter().map(|c| of_file(&rig, &c.name)).collect();
+        assert_eq!(files, ["CAM_FRONT", "a_b", "a.b", "", "cam_front_2", "LIDAR_TOP"]);
+        let rig = SensorRig {
+            cameras: ["a b", "a_b", "前"].map(|name| Camera::new(name, 90.0)).to_vec(),
+            ..SensorRig::default()
+        };
+        assert_eq!(
+            ["a b", "a_b", "前", "x y"].map(|name| of_file(&rig, name)),
+            ["a_b", "a_b_2", "前", "x_y"]
+        );
     }
 }

@@ -6,6 +6,17 @@ use std::fmt::Display;
 /// Characters of the longest message.
 pub const LONGEST: usize = 300;
 
+/// True for a character that says nothing by itself and changes what is around it: control characters, separators of lines, and
+/// those that turn the direction of text. Terminals and names get none of them.
+pub fn is_hidden(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
+}
+
+/// A text of lines for a terminal: what is hidden in it becomes blanks, except the ends of its lines.
+pub fn of_lines(text: &str) -> String {
+    text.replace(|c| c != '\n' && is_hidden(c), " ")
+}
+
 /// A message as one line of at most [`LONGEST`] characters. Lines are joined by `; `, control characters become spaces.
 pub fn one_line(message: &(impl Display + ?Sized)) -> String {
     shortened(&joined(&message.to_string()), LONGEST)
@@ -31,7 +42,7 @@ pub fn of_error(error: &(dyn Error + 'static)) -> String {
 /// A piece of a file, made safe to quote: control characters become spaces, and what is longer than `most` characters
 /// ends in `…`.
 pub fn quoted(text: &str, most: usize) -> String {
-    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    let plain = |c: char| if is_hidden(c) { ' ' } else { c };
     let mut out: String = text.chars().take(most).map(plain).collect();
     if text.chars().nth(most).is_some() {
         out.push('…');
@@ -57,8 +68,8 @@ pub fn shortened(line: &str, most: usize) -> String {
 fn joined(text: &str) -> String {
     let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
     let line = lines.collect::<Vec<_>>().join("; ");
-    match line.contains(char::is_control) {
-        true => line.replace(char::is_control, " "),
+    match line.contains(is_hidden) {
+        true => line.replace(is_hidden, " "),
         false => line,
     }
 }
@@ -94,6 +105,8 @@ mod tests {
         assert_eq!(one_line(&fits), fits);
         assert_eq!(shortened("abc", 2), " … ");
         assert_eq!(quoted("ab\ncd", 4), "ab c…");
+        assert_eq!(one_line("a\u{1b}[2J\u{9b}b\u{202e}c"), "a [2J b c");
+        assert_eq!(of_lines("a\u{1b}b\r\nc\td\u{2066}"), "a b \nc d ");
     }
 
     #[test]

@@ -313,11 +313,19 @@ pub struct SensorRig {
 }
 
 impl SensorRig {
-    /// The same sensors on a vehicle at a pose of another frame, their poses given in that frame.
-    pub fn placed(&self, outer_from_ego: &Pose) -> SensorRig {
+    /// The same sensors with their vehicle at a pose, wherever it stood before; their poses are given in the frame of that
+    /// pose. Asked for twice it is the same: no rig is placed on top of a place.
+    pub fn standing_at(&self, vehicle: &Pose) -> SensorRig {
         let mut out = self.clone();
+        if self.vehicle == *vehicle {
+            return out;
+        }
+        let moved = match self.vehicle == Pose::IDENTITY {
+            true => *vehicle,
+            false => *vehicle * self.vehicle.inverse(),
+        };
         let place = |rotation_wxyz: &mut [f64; 4], translation_m: &mut [f64; 3]| {
-            let pose = *outer_from_ego * Pose::from_wxyz(*rotation_wxyz, *translation_m);
+            let pose = moved * Pose::from_wxyz(*rotation_wxyz, *translation_m);
             let q = pose.rotation;
             (*rotation_wxyz, *translation_m) = ([q.w, q.x, q.y, q.z], pose.translation_m.to_array());
         };
@@ -327,7 +335,7 @@ impl SensorRig {
         for lidar in &mut out.lidars {
             place(&mut lidar.rotation_wxyz, &mut lidar.translation_m);
         }
-        out.vehicle = *outer_from_ego * self.vehicle;
+        out.vehicle = *vehicle;
         out
     }
 
@@ -358,7 +366,7 @@ impl SensorRig {
     /// Most rays of a LiDAR: several times those of the densest there are.
     pub const MOST_RAYS: usize = 4 << 20;
 
-    /// What is wrong with this rig, if anything: finite numbers, sizes, focal lengths, angles, how many sensors and rays.
+    /// What is wrong with this rig, if anything: names, finite numbers, sizes, focal lengths, angles, how many sensors and rays.
     pub fn problem(&self) -> Option<String> {
         if self.cameras.len().max(self.lidars.len()) > Self::MOST_SENSORS {
             return Some(format!(
@@ -367,6 +375,9 @@ impl SensorRig {
                 self.lidars.len(),
                 Self::MOST_SENSORS
             ));
+        }
+        if let Some(problem) = self.names_problem() {
+            return Some(problem);
         }
         for c in &self.cameras {
             let numbers = [&c.focal_px[..], &c.center_px, &c.rotation_wxyz, &c.translation_m].concat();

@@ -11,6 +11,7 @@ use serde::Serialize;
 use tempfile::TempDir;
 
 use scene::message::quoted;
+use scene::plain_name::check_file;
 
 /// Longest name, bytes.
 const LONGEST_NAME: usize = 240;
@@ -71,12 +72,12 @@ impl Folder {
     /// Checks that a file of that name may be written, and makes nothing. Errors for a name that is refused, that leads out of
     /// the folder or is a link or folder, and, unless `replace`, for one that is there.
     pub fn may_write(&self, name: &str, replace: bool) -> anyhow::Result<()> {
-        self.place(&parts(name)?, name, replace, false).map(drop)
+        self.place(&parts_of_new(name)?, name, replace, false).map(drop)
     }
 
     /// The path of a file that is to be written now: as [`Self::may_write`], and folders above it are made.
     pub fn target(&self, name: &str, replace: bool) -> anyhow::Result<PathBuf> {
-        self.place(&parts(name)?, name, replace, true)
+        self.place(&parts_of_new(name)?, name, replace, true)
     }
 
     /// Checks each folder above the file; makes those that are missing, if it may.
@@ -104,6 +105,7 @@ impl Folder {
         match look(&at, name)? {
             Some(is) if is.is_symlink() => bail!("{name}: is a link, and links are not written through"),
             Some(is) if is.is_dir() => bail!("{name}: is a folder, expected a file"),
+            Some(is) if !is.is_file() => bail!("{name}: is a pipe or a device, expected a file"),
             Some(_) if !replace => bail!("{name}: is there already; \"replace\": true writes over it"),
             _ => Ok(at),
         }
@@ -158,7 +160,7 @@ impl Folder {
         (name, main): (&str, Option<&str>),
         replace: bool,
     ) -> anyhow::Result<Vec<FileEntry>> {
-        let mut above = parts(name)?;
+        let mut above = parts_of_new(name)?;
         if main.is_some() {
             above.pop();
         }
@@ -241,6 +243,13 @@ fn parts(name: &str) -> anyhow::Result<Vec<&str>> {
     }
 }
 
+/// The parts of the name of a file that is made: what other systems refuse is refused here too.
+fn parts_of_new(name: &str) -> anyhow::Result<Vec<&str>> {
+    let parts = parts(name)?;
+    parts.iter().try_for_each(|part| check_file(part))?;
+    Ok(parts)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -284,6 +293,9 @@ mod tests {
             assert!(write.lines().count() == 1 && write.len() < 300, "{write}");
         }
         assert_eq!(fs::read_dir(folder.root()).expect("a folder").count(), 0);
+        for name in ["NUL.loom", "a/con/b.loom", "a*.loom", "a./b.loom"] {
+            assert!(folder.target(name, true).is_err(), "{name}");
+        }
         assert!(folder.target("a/b/c.loom", false).is_ok());
         assert!(folder.existing("a/b").is_ok());
     }

@@ -7,16 +7,29 @@ use anyhow::Context;
 use serde_json::Value;
 
 use super::Common;
-use formats::png;
+use formats::{atomic, png};
 pub use judge::machine::peak_rss_mb;
+use scene::message;
 
-/// Prints the report: as JSON if asked, else the given text.
+/// Prints the report: as JSON if asked, else the given text; of that, names of a file may move no cursor and set no title.
 pub fn report(common: &Common, json: &Value, text: impl FnOnce() -> String) {
-    if common.json {
-        say(&json.to_string());
-    } else {
-        say(&text());
+    match common.json {
+        true => say(&escaped(&json.to_string())),
+        false => say(&message::of_lines(&text())),
     }
+}
+
+/// JSON in which characters that are hidden are escaped; strings alone hold such.
+fn escaped(json: &str) -> String {
+    let mut out = String::with_capacity(json.len());
+    for c in json.chars() {
+        match message::is_hidden(c) && c != '\n' {
+            // (all of them have one unit of UTF-16)
+            true => out.push_str(&format!("\\u{:04x}", u32::from(c))),
+            false => out.push(c),
+        }
+    }
+    out
 }
 
 /// An error with its causes on one line, see [`scene::message::of_error`].
@@ -24,20 +37,9 @@ pub fn one_line(error: &anyhow::Error) -> String {
     scene::message::of_error(error.as_ref())
 }
 
-/// Writes a file beside its final name and renames it: an interrupted command leaves the old file whole.
+/// Writes a file that the user named, see [`atomic::write`]: an interrupted command leaves the old file whole.
 pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    let dir = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let write = || -> std::io::Result<()> {
-        let mut file = tempfile::NamedTempFile::new_in(dir)?;
-        file.write_all(bytes)?;
-        file.as_file().sync_all()?;
-        file.persist(path)?;
-        Ok(())
-    };
-    write().with_context(|| format!("write {}", path.display()))
+    atomic::write(path, bytes).with_context(|| format!("write {}", path.display()))
 }
 
 /// Writes an RGBA8 picture as PNG.
@@ -47,7 +49,24 @@ pub fn write_png(path: &Path, width: usize, height: usize, rgba: &[u8]) -> anyho
     write_file(path, &bytes)
 }
 
-/// A line on stdout. Nobody is left to be told if its reader has closed it (`| head`).
+/// A line on stdout, or on stderr where a file went to stdout. Nobody is left to be told if its reader has closed it (`| head`).
 fn say(line: &str) {
-    let _ = writeln!(std::io::stdout(), "{line}");
+    let _ = match atomic::stdout_holds_a_file() {
+        true => writeln!(std::io::stderr(), "{line}"),
+        false => writeln!(std::io::stdout(), "{line}"),
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_cannot_speak_to_the_terminal() {
+        let name = "a\u{1b}[2J\u{9b}31m\u{202e}b\n\u{7f}c";
+        let text = escaped(&serde_json::json!({ "name": name }).to_string());
+        assert!(!text.contains(message::is_hidden), "{text}");
+        let back: Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(back["name"], name);
+    }
 }

@@ -137,6 +137,8 @@ impl Asked {
             });
         }
         let mut camera = lens::camera_of(spec, size)?;
+        // (nothing is called by what a client calls it)
+        camera.name = "CAM".into();
         let pose = self.sensor.at(share);
         let q = pose.rotation;
         camera.rotation_wxyz = [q.w, q.x, q.y, q.z];

@@ -3,7 +3,7 @@
 use scene::sensor_data::depth_mm;
 
 use super::{Exporter, OutFile, Product, Span};
-use crate::{FormatError, Holds, calibration, png};
+use crate::{FormatError, Holds, calibration, png, sensor_names};
 
 /// `CAMERA_depth_mm.png` for each camera: millimetres along the optical axis, 0 where there is no depth.
 pub const EXPORTER: Exporter = Exporter {
@@ -21,7 +21,7 @@ pub const EXPORTER: Exporter = Exporter {
             size = Some([m.width as u32, m.height as u32]);
             let mm = depth_mm(&m.depth_m);
             let bytes = recipe.in_png(false, |text| png::grey16(m.width, m.height, &mm, text));
-            let name = format!("{}_depth_mm.png", m.camera);
+            let name = format!("{}_depth_mm.png", sensor_names::of_file(&scene.rig, &m.camera));
             files.push(OutFile::new(&name, bytes.map_err(FormatError::new)?));
             Ok(())
         })?;

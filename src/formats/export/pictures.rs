@@ -1,7 +1,7 @@
 //! Pictures that the cameras take.
 
 use super::{Exporter, OutFile, Product, Span};
-use crate::{FormatError, Holds, calibration, png};
+use crate::{FormatError, Holds, calibration, png, sensor_names};
 
 /// `CAMERA.png` for each camera.
 pub const EXPORTER: Exporter = Exporter {
@@ -18,7 +18,7 @@ pub const EXPORTER: Exporter = Exporter {
         products.pictures(&mut |p| {
             size = Some([p.width as u32, p.height as u32]);
             let bytes = recipe.in_png(true, |text| png::rgba(p.width, p.height, &p.rgba, text));
-            let name = format!("{}.png", p.camera);
+            let name = format!("{}.png", sensor_names::of_file(&scene.rig, &p.camera));
             files.push(OutFile::new(&name, bytes.map_err(FormatError::new)?));
             Ok(())
         })?;

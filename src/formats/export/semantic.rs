@@ -5,7 +5,7 @@ use scene::{CameraMaps, Class};
 use serde_json::json;
 
 use super::{Exporter, OutFile, Product, Span};
-use crate::{FormatError, Holds, calibration, png};
+use crate::{FormatError, Holds, calibration, png, sensor_names};
 
 /// `CAMERA_semantic.png` for each camera, and `classes.json`.
 pub const EXPORTER: Exporter = Exporter {
@@ -25,7 +25,7 @@ pub const EXPORTER: Exporter = Exporter {
             let bytes = recipe.in_png(false, |text| {
                 png::indexed(m.width, m.height, &labels, &palette(), text)
             });
-            let name = format!("{}_semantic.png", m.camera);
+            let name = format!("{}_semantic.png", sensor_names::of_file(&scene.rig, &m.camera));
             files.push(OutFile::new(&name, bytes.map_err(FormatError::new)?));
             Ok(())
         })?;

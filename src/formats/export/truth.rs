@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::{Exporter, OutFile, Picture, Product, Span};
 use crate::npz::{self, Array, Values};
 use crate::recipe::{self, Recipe};
-use crate::{FormatError, Holds, calibration, png};
+use crate::{FormatError, Holds, calibration, png, sensor_names};
 
 /// For each camera `CAMERA.png`, `CAMERA_class.png`, `CAMERA_instance.png`, `CAMERA_depth_mm.png`, `CAMERA_normal.png` and
 /// `CAMERA_truth.npz`; for all `truth.json` (boxes and classes) and `calibration.json`.
@@ -24,7 +24,8 @@ pub const EXPORTER: Exporter = Exporter {
         let (mut files, mut cameras, mut size) = (Vec::new(), Vec::new(), None);
         products.truth(&mut |picture, truth| {
             size = Some([truth.width as u32, truth.height as u32]);
-            files.extend(of_camera(&recipe, &picture, &truth)?);
+            let name = sensor_names::of_file(&scene.rig, &truth.camera.name);
+            files.extend(of_camera(&recipe, &name, &picture, &truth)?);
             cameras.push(boxes(&truth));
             Ok(())
         })?;
@@ -36,13 +37,14 @@ pub const EXPORTER: Exporter = Exporter {
     },
 };
 
-/// The files of one camera. Errors if a picture has no pixel.
+/// The files of one camera, which begin with a name (see [`sensor_names::of_file`]). Errors if a picture has no pixel.
 pub fn of_camera(
     recipe: &Recipe,
+    name: &str,
     picture: &Picture,
     truth: &CameraTruth,
 ) -> Result<Vec<OutFile>, FormatError> {
-    let (name, w, h) = (&truth.camera.name, truth.width, truth.height);
+    let (w, h) = (truth.width, truth.height);
     let mut files = Vec::new();
     let mut add = |ending: &str, bytes: Result<Vec<u8>, png::PngError>| -> Result<(), FormatError> {
         let bytes = bytes.map_err(FormatError::new)?;

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use scene::Scene;
 use scene::kept::{Kept, KeptVersion};
+use scene::message::{of_lines, quoted};
 
 use super::archive::{MAX_JSON, Reader, Writer, parse, within};
 use super::{LARGEST_FILE, ProjectError};
@@ -78,9 +80,9 @@ pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<Kept, Project
     check(header.versions.len(), header.typed.len())?;
     let version = |(i, v): (usize, VersionHeader)| {
         Ok(KeptVersion {
-            name: v.name,
-            label: v.label,
-            note: v.note,
+            name: quoted(&v.name, Scene::LONGEST_NAME),
+            label: quoted(&v.label, Scene::LONGEST_NAME),
+            note: of_lines(&v.note),
             starred: v.starred,
             loom: Arc::new(file.bytes(&entry(i), LARGEST_FILE)?),
         })

@@ -7,12 +7,19 @@ use super::write::Writer;
 use app::truth;
 use formats::export::truth as files;
 use formats::export::{OutFile, Picture};
+use formats::sensor_names;
 use scene::Scene;
 use sensors::appearance::Quality;
 
 impl Rendering {
-    /// Renders and writes every camera of a scene whose sensors are in the world. Returns the seconds that rendering took.
-    pub fn truth(&self, scene: &Scene, writer: &mut Writer) -> anyhow::Result<f64> {
+    /// Renders and writes every camera of a scene whose sensors are in the world; `made` is called for each. Returns the seconds
+    /// that rendering took.
+    pub fn truth(
+        &self,
+        scene: &Scene,
+        writer: &mut Writer,
+        made: &mut dyn FnMut() -> anyhow::Result<()>,
+    ) -> anyhow::Result<f64> {
         let quality = if self.preview {
             Quality::Preview
         } else {
@@ -35,8 +42,10 @@ impl Rendering {
                     height: image.height,
                     rgba: image.rgba,
                 };
-                writer.out_files(files::of_camera(writer.recipe(), &picture, &truth)?)?;
+                let name = sensor_names::of_file(&scene.rig, &truth.camera.name);
+                writer.out_files(files::of_camera(writer.recipe(), &name, &picture, &truth)?)?;
                 boxes.push(files::boxes(&truth));
+                made()?;
                 start = Instant::now();
                 Ok(())
             },

@@ -7,8 +7,9 @@ use anyhow::Context;
 use app::picture::{self, Picture, SHEET_COLOR};
 use formats::export::{OutFile, ply};
 use formats::npz::{self, Array, Values};
+use formats::out_folder::OutFolder;
 use formats::recipe::Recipe;
-use formats::{atomic, calibration, multi_plane, png};
+use formats::{calibration, multi_plane, png};
 use scene::{CameraMaps, Extent, LidarSweep, MultiPlaneImage, PerspectiveMap, Pose, Scene};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, View, ViewId};
@@ -16,7 +17,7 @@ use sensors::color;
 
 /// A folder, and what was written into it.
 pub struct Writer {
-    dir: PathBuf,
+    folder: OutFolder,
     recipe: Recipe,
     /// Paths of the files.
     pub files: Vec<PathBuf>,
@@ -47,9 +48,8 @@ pub fn sheet_bytes(size: [u32; 2], count: usize) -> u64 {
 impl Writer {
     /// Makes the folder; `recipe` goes into the pictures.
     pub fn new(dir: &Path, recipe: Recipe) -> anyhow::Result<Self> {
-        std::fs::create_dir_all(dir).with_context(|| format!("create {}", dir.display()))?;
         Ok(Self {
-            dir: dir.into(),
+            folder: OutFolder::make(dir)?,
             recipe,
             files: Vec::new(),
             first: None,
@@ -58,9 +58,7 @@ impl Writer {
     }
 
     fn bytes(&mut self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
-        let path = self.dir.join(name);
-        atomic::write(&path, bytes).with_context(|| format!("write {}", path.display()))?;
-        self.files.push(path);
+        self.files.push(self.folder.write(name, bytes)?);
         Ok(())
     }
 

@@ -65,7 +65,11 @@ fn camera(name: &str, calibrated: &CalibratedSensor, row: &SampleData) -> Option
         ..Camera::new(name, 90.0)
     };
     let alone = SensorRig {
-        cameras: vec![camera.clone()],
+        // (names are looked at where the whole rig is known)
+        cameras: vec![Camera {
+            name: "CAM".into(),
+            ..camera.clone()
+        }],
         ..SensorRig::default()
     };
     alone.problem().is_none().then_some(camera)

@@ -1,0 +1,83 @@
+//! What sensors may be called: files of cameras have their names.
+
+use std::collections::BTreeMap;
+
+use crate::SensorRig;
+use crate::message::{is_hidden, quoted};
+use crate::plain_name::{check, folded};
+
+impl SensorRig {
+    /// Longest name of a rig, bytes of UTF-8.
+    pub const LONGEST_NAME: usize = 200;
+
+    /// What is wrong with the names of the rig and its sensors, if anything: sensors are called by plain names (see
+    /// [`crate::plain_name`]), and no two cameras by one, the case of letters aside.
+    pub(crate) fn names_problem(&self) -> Option<String> {
+        if self.name.len() > Self::LONGEST_NAME || self.name.contains(is_hidden) {
+            return Some(format!(
+                "the rig is called {:?}, expected at most {} bytes without control characters",
+                quoted(&self.name, 60),
+                Self::LONGEST_NAME
+            ));
+        }
+        let cameras = self.cameras.iter().map(|c| ("camera", &c.name)).enumerate();
+        let lidars = self.lidars.iter().map(|l| ("lidar", &l.name)).enumerate();
+        for (i, (kind, name)) in cameras.chain(lidars) {
+            if let Err(problem) = check(name) {
+                return Some(format!("{kind} {i}: {problem}"));
+            }
+        }
+        let mut known = BTreeMap::new();
+        for (i, camera) in self.cameras.iter().enumerate() {
+            if let Some(first) = known.insert(folded(&camera.name), i) {
+                let [a, b] = [first, i].map(|i| quoted(&self.cameras[i].name, 60));
+                return Some(format!(
+                    "cameras {first} and {i} are called {a:?} and {b:?}, expected names that differ in more than the case of letters"
+                ));
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(names: [&str; 6]) -> SensorRig {
+        let mut rig = SensorRig::default();
+        for (camera, name) in rig.cameras.iter_mut().zip(names) {
+            camera.name = name.into();
+        }
+        rig
+    }
+
+    #[test]
+    fn sensors_have_plain_names_of_their_own() {
+        assert_eq!(
+            named(["a", "b", "前", "front left", "a.b", "a_b"]).problem(),
+            None
+        );
+        let problem = |names| named(names).problem().unwrap_or_default();
+        assert!(
+            problem(["a", "../../x", "c", "d", "e", "f"])
+                .starts_with("camera 1: the name \"../../x\" holds '/'")
+        );
+        let twice = problem(["a", "b", "CAM", "d", "Cam", "f"]);
+        assert!(
+            twice.starts_with("cameras 2 and 4 are called \"CAM\" and \"Cam\""),
+            "{twice}"
+        );
+        let mut rig = SensorRig::default();
+        rig.lidars[0].name = "/elsewhere/x".into();
+        assert!(rig.problem().is_some_and(|p| p.starts_with("lidar 0:")));
+        let rig = SensorRig {
+            name: "\u{1b}]0;x\u{7}".into(),
+            ..SensorRig::default()
+        };
+        assert!(
+            rig.problem()
+                .is_some_and(|p| p.starts_with("the rig is called") && !p.contains('\u{1b}'))
+        );
+    }
+}
