@@ -1,12 +1,13 @@
 //! `sceneloom dataset`: training and evaluation data from procedural worlds or a folder of labels.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::{Context, bail};
-use serde_json::{Map, Value, json};
+use serde_json::json;
 
+use super::dataset_recipe::{Made, Recipe};
 use super::dataset_recorded::Pairs;
 use super::progress::Progress;
 use super::render::size;
@@ -22,6 +23,7 @@ use dataset::pictures::picture_frame;
 use dataset::text::text_frame;
 use dataset::{self, DatasetReport, OccupancyFrame, occupancy_frame};
 use formats::occ3d;
+use formats::out_folder::OutFolder;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -61,10 +63,9 @@ impl Dataset {
     pub(super) fn run(self) -> Outcome {
         let progress = Progress::new(&self.common);
         let start = Instant::now();
-        let recipe = self.recipe();
         if let (Some(from), "pictures") = (&self.from, self.kind.as_str()) {
             let pairs = Pairs::open(from, (self.drives.clone(), self.frames), self.size_px())?;
-            dataset_recipe::claim(&self.output, &recipe)?;
+            dataset_recipe::claim(&self.output, &self.recipe()?)?;
             let step = |done| {
                 progress.at(&self.kind, done, pairs.count());
                 true
@@ -92,7 +93,7 @@ impl Dataset {
             None => Roads::default(),
         };
         if self.kind != "memory" {
-            dataset_recipe::claim(&self.output, &recipe)?;
+            dataset_recipe::claim(&self.output, &self.recipe()?)?;
         }
         let make = |i: usize| -> anyhow::Result<OccupancyFrame> {
             Ok(match files.get(i) {
@@ -162,21 +163,30 @@ impl Dataset {
     }
 
     /// All arguments that its data depend on; more frames of the same are no others.
-    fn recipe(&self) -> Map<String, Value> {
+    fn recipe(&self) -> anyhow::Result<Recipe> {
         let size = (self.kind == "pictures").then(|| self.size_px());
         let drives = self.drives.as_ref().map(|d| [d.start, d.end]);
-        let recipe = [
+        let arguments = [
             ("kind", json!(self.kind)),
             ("seed", json!(self.seed)),
-            ("from", json!(whole(self.from.as_deref()))),
-            ("roads", json!(whole(self.roads.as_deref()))),
             ("drives", json!(drives)),
             ("size", json!(size)),
         ];
-        recipe
-            .map(|(what, value)| (what.to_owned(), value))
-            .into_iter()
-            .collect()
+        let (tables, labels) = (("json", "nuScenes tables"), ("npz", "Occ3D frames"));
+        let (extension, what) = if self.kind == "pictures" { tables } else { labels };
+        let made = |dir: &Option<PathBuf>, extension, what| {
+            dir.as_ref().map(|dir| Made::of(dir, extension, what)).transpose()
+        };
+        Ok(Recipe {
+            arguments: arguments
+                .map(|(what, value)| (what.to_owned(), value))
+                .into_iter()
+                .collect(),
+            folders: vec![
+                ("from", made(&self.from, extension, what)?),
+                ("roads", made(&self.roads, "xodr", "OpenDRIVE roads")?),
+            ],
+        })
     }
 
     /// Errors: what is named by --from or --drives is nothing for this kind.
@@ -220,19 +230,13 @@ impl Dataset {
     fn memory(&self, frames: usize) -> anyhow::Result<DatasetReport> {
         let bank = memory::make_bank(frames, self.seed)?;
         let text = serde_json::to_string(&bank)?;
-        std::fs::create_dir_all(&self.output)?;
-        std::fs::write(self.output.join("bank.json"), &text)?;
+        OutFolder::make(&self.output)?.write("bank.json", text.as_bytes())?;
         Ok(DatasetReport {
             frames: bank.entries.len(),
             bytes: text.len() as u64,
             resumed_shards: 0,
         })
     }
-}
-
-/// A folder's whole path, where there is one.
-fn whole(dir: Option<&Path>) -> Option<PathBuf> {
-    dir.map(|d| d.canonicalize().unwrap_or_else(|_| d.into()))
 }
 
 /// `A..B`.

@@ -3,12 +3,11 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-use anyhow::Context;
 use rayon::prelude::*;
 
-use super::output;
 use dataset::{DatasetReport, world_of};
 use formats::occ3d::{self, Occ3dFrame};
+use formats::out_folder::OutFolder;
 use scene::{BevLayout, SensorRig};
 use world::voxelize::{Drive, Vertical, labelled};
 
@@ -45,16 +44,14 @@ pub fn write(
     for some in all.chunks(CHUNK) {
         progress(some[0]);
         some.par_iter().try_for_each(|i| -> anyhow::Result<()> {
-            let folder = dir.join(format!("{i:05}"));
-            let file = folder.join("labels.npz");
-            if file.exists() {
+            if dir.join(format!("{i:05}/labels.npz")).exists() {
                 kept.fetch_add(1, Ordering::Relaxed);
                 return Ok(());
             }
-            std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
             let found = occ3d::frame_to_bytes(&frame(seed, *i as u64, &roads));
             bytes.fetch_add(found.len() as u64, Ordering::Relaxed);
-            output::write_file(&file, &found)
+            OutFolder::make(dir)?.write(&format!("{i:05}/labels.npz"), &found)?;
+            Ok(())
         })?;
     }
     Ok(DatasetReport {

@@ -1,36 +1,173 @@
 //! What a folder of training data was made of, so that a run that goes on does not mix two.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
-use super::output;
+use app::open;
+use formats::input;
+use formats::out_folder::OutFolder;
+use formats::recipe::hex_of;
 
 /// The file of it.
 const FILE: &str = "recipe.json";
 
-/// Notes the arguments in a folder. Errors if data that were made with others are there.
-pub(super) fn claim(dir: &Path, recipe: &Map<String, Value>) -> anyhow::Result<()> {
-    let file = dir.join(FILE);
-    let before = match std::fs::read(&file) {
-        Ok(bytes) => bytes,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            std::fs::create_dir_all(dir).with_context(|| dir.display().to_string())?;
-            return output::write_file(&file, &serde_json::to_vec_pretty(recipe)?);
+/// A folder that data are made of, as the recipe notes it: its own name, and what tells its files from those of another folder. Where it
+/// lies on this machine is nobody's business.
+pub(super) struct Made {
+    /// Without links and dots: older programs noted it.
+    place: PathBuf,
+    name: String,
+    files: usize,
+    /// Of the names below the folder and the sizes of its files, SHA-256, hexadecimal.
+    sha256: String,
+}
+
+impl Made {
+    /// Of the files of an extension below a folder, but for recipes of what was made into it. Errors if there is none.
+    pub(super) fn of(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Self> {
+        let place = dir.canonicalize().unwrap_or_else(|_| dir.into());
+        let mut files = open::files_below(&place, extension, what)?;
+        files.retain(|file| !file.ends_with(FILE));
+        let mut told = String::new();
+        for file in &files {
+            let size = file.metadata().with_context(|| file.display().to_string())?.len();
+            let below = file.strip_prefix(&place).unwrap_or(file);
+            let parts: Vec<_> = below.iter().map(|part| part.to_string_lossy()).collect();
+            told += &format!("{} {size}\n", parts.join("/"));
         }
-        Err(error) => return Err(error).with_context(|| file.display().to_string()),
+        Ok(Self {
+            name: place
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
+            files: files.len(),
+            sha256: hex_of(told.as_bytes()),
+            place,
+        })
+    }
+
+    /// As the recipe holds it.
+    pub(super) fn to_json(&self) -> Value {
+        json!({ "name": self.name, "files": self.files, "names_and_sizes_sha256": self.sha256 })
+    }
+
+    /// True if a recipe means this folder: by its files, whatever it is called now, or by its path in those of older programs.
+    fn is_meant_by(&self, noted: &Value) -> bool {
+        match noted.as_str() {
+            Some(path) => Path::new(path) == self.place,
+            None => noted["names_and_sizes_sha256"] == *self.sha256,
+        }
+    }
+}
+
+/// All that the data of a folder depend on.
+pub(super) struct Recipe {
+    /// Arguments by name.
+    pub(super) arguments: Map<String, Value>,
+    /// Folders that they are made of, by the name of the argument.
+    pub(super) folders: Vec<(&'static str, Option<Made>)>,
+}
+
+impl Recipe {
+    fn to_json(&self) -> Map<String, Value> {
+        let of = |(what, made): &(&str, Option<Made>)| {
+            (
+                (*what).to_owned(),
+                made.as_ref().map_or(Value::Null, Made::to_json),
+            )
+        };
+        let folders = self.folders.iter().map(of);
+        self.arguments.clone().into_iter().chain(folders).collect()
+    }
+
+    /// The first argument of which a recipe says something else.
+    fn differs_from(&self, before: &Map<String, Value>) -> Option<String> {
+        let noted = |what: &str| before.get(what).unwrap_or(&Value::Null).clone();
+        let argument = self.arguments.iter().find(|(what, here)| noted(what) != **here);
+        let folder = self.folders.iter().find(|(what, made)| match made {
+            Some(made) => !made.is_meant_by(&noted(what)),
+            None => !noted(what).is_null(),
+        });
+        argument
+            .map(|(what, _)| what.clone())
+            .or(folder.map(|(what, _)| (*what).to_owned()))
+    }
+}
+
+/// Notes the recipe in a folder. Errors if data that were made with another are there.
+pub(super) fn claim(dir: &Path, recipe: &Recipe) -> anyhow::Result<()> {
+    let file = dir.join(FILE);
+    let before = match input::read(&file, input::LARGEST_TEXT) {
+        Ok(bytes) => bytes,
+        Err(error) if error.is_not_found() => {
+            OutFolder::make(dir)?.write(FILE, &serde_json::to_vec_pretty(&recipe.to_json())?)?;
+            return Ok(());
+        }
+        Err(error) => return Err(error.into()),
     };
     let before: Map<String, Value> =
         serde_json::from_slice(&before).with_context(|| file.display().to_string())?;
-    for (what, here) in recipe {
-        let there = before.get(what).unwrap_or(&Value::Null);
-        if there != here {
-            bail!(
-                "{}: its data were made with {what} {there}, found {here}; expected the same, or another folder",
-                dir.display()
-            );
-        }
+    if let Some(what) = recipe.differs_from(&before) {
+        let (there, here) = (
+            before.get(&what).unwrap_or(&Value::Null),
+            &recipe.to_json()[&what],
+        );
+        bail!(
+            "{}: its data were made with {what} {there}, found {here}; expected the same, or another folder",
+            dir.display()
+        );
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recipe(from: &Path) -> Recipe {
+        let arguments = Map::from_iter([("seed".to_owned(), json!(3))]);
+        let made = Made::of(from, "npz", "labels").expect("files");
+        Recipe {
+            arguments,
+            folders: vec![("from", Some(made)), ("roads", None)],
+        }
+    }
+
+    #[test]
+    fn a_recipe_tells_folders_apart_and_not_where_they_lie() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let at = |name: &str| dir.path().join(name);
+        for name in ["a", "b", "c"] {
+            std::fs::create_dir_all(at(name).join("deep")).expect("made");
+            std::fs::write(at(name).join("deep/1.npz"), "labels").expect("written");
+        }
+        std::fs::write(at("c").join("2.npz"), "more").expect("written");
+        claim(&at("out"), &recipe(&at("a"))).expect("noted");
+        let text = std::fs::read_to_string(at("out").join(FILE)).expect("there");
+        let place = dir.path().canonicalize().expect("there");
+        assert!(
+            !text.contains(&*place.to_string_lossy()) && !text.contains('/'),
+            "{text}"
+        );
+        claim(&at("out"), &recipe(&at("b"))).expect("the same files elsewhere");
+        let line = claim(&at("out"), &recipe(&at("c")))
+            .expect_err("others")
+            .to_string();
+        assert!(
+            line.contains("made with from") && line.contains("another folder"),
+            "{line}"
+        );
+        let mut other = recipe(&at("a"));
+        other.arguments.insert("seed".into(), json!(4));
+        let line = claim(&at("out"), &other).expect_err("another seed").to_string();
+        assert!(line.contains("made with seed 3, found 4"), "{line}");
+        // Recipes of older programs hold the path.
+        let old = json!({ "seed": 3, "from": at("a").canonicalize().expect("there"), "roads": null });
+        std::fs::write(at("out").join(FILE), old.to_string()).expect("written");
+        claim(&at("out"), &recipe(&at("a"))).expect("the same folder");
+        assert!(claim(&at("out"), &recipe(&at("b"))).is_err());
+    }
 }

@@ -1,6 +1,7 @@
 //! All suites one after another, and their figures as Markdown: `docs/figures.md` is made of it.
 
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Instant;
 
 use serde_json::{Value, json};
@@ -81,6 +82,15 @@ fn rows(suite: &Suite, report: &Report) -> Vec<Row> {
     shown.chain(bars).collect()
 }
 
+/// A path as reports show it: where it lies on this machine is nobody's business.
+pub(crate) fn told(path: &Path) -> String {
+    let name = path.file_name().filter(|_| path.is_absolute());
+    name.map_or_else(
+        || path.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}
+
 /// The command line that runs a suite alone with options that differ from the usual ones.
 fn command(suite: &Suite, options: &Options) -> String {
     let usual = Options::default();
@@ -107,7 +117,7 @@ fn command(suite: &Suite, options: &Options) -> String {
         ("weights", &options.weights),
     ] {
         if let Some(path) = path {
-            let _ = write!(out, " --{name} {}", path.display());
+            let _ = write!(out, " --{name} {}", told(path));
         }
     }
     if !options.presets.is_empty() {

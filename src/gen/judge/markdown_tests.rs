@@ -84,6 +84,19 @@ fn every_suite_has_its_section() {
     assert_eq!(tables[1].json()["error"], "no files; there");
 }
 
+#[test]
+fn a_command_says_no_absolute_path() {
+    let here = std::env::current_dir().expect("a folder").join("deep/frames");
+    let options = Options {
+        frames: 3,
+        data: Some(here),
+        prompts: Some("sets/a.jsonl".into()),
+        ..Options::default()
+    };
+    let text = command(&SUITES[0], &options);
+    assert!(text.ends_with(" --data frames --prompts sets/a.jsonl"), "{text}");
+}
+
 /// Figures are told apart by name, pointers start at the root, and a quick run is a small one.
 #[test]
 fn the_table_of_suites_is_sound() {

@@ -16,6 +16,7 @@ use super::sensors;
 use super::settings::{self, Setting};
 use crate::Progress;
 use crate::held_out::bare_scene;
+use crate::markdown::told;
 use job::{GenParams, JobCtx};
 use nets::OccModels;
 use scene::Scene;
@@ -124,11 +125,7 @@ impl Plan {
             _ => whole(scene, name),
         };
         if let Some(path) = &self.scene {
-            let found = of(
-                authoring::open::scene(path)?,
-                path.display().to_string(),
-                self.seed,
-            );
+            let found = of(authoring::open::scene(path)?, told(path), self.seed);
             if found.is_empty() {
                 bail!("{}: nothing to edit: no car and no road", path.display());
             }
