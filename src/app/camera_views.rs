@@ -234,6 +234,7 @@ pub fn paint_input(scene: &Scene) -> PaintInput<'_> {
     PaintInput {
         frame: scene.frame(),
         rig: &scene.rig,
+        background: &scene.background,
         conditions: scene.conditions,
     }
 }

@@ -55,7 +55,7 @@ impl Perceive {
 
     fn look(&self, scene: &Scene) -> Outcome {
         let placed = scene.with_rig_in_world();
-        let found = perceived::report(placed.frame(), &placed.rig, &placed.conditions)?;
+        let found = perceived::report(&placed)?;
         let swept = perceived_sweep::report(scene)?;
         let heard = Heard::of(scene)?;
         let told = |hears| perceived_voxels::report_of(scene, &heard, hears);

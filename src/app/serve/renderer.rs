@@ -73,7 +73,12 @@ impl Renderer {
         if let Some(ready) = self.prepared.get(&key) {
             return Ok(ready);
         }
-        let ready = Arc::new(Appearance::new(&*frame()?, rig, &scene.conditions));
+        let ready = Arc::new(Appearance::with_things(
+            &*frame()?,
+            &scene.background,
+            rig,
+            &scene.conditions,
+        ));
         self.prepared.put(key, ready.clone());
         Ok(ready)
     }

@@ -285,7 +285,7 @@ fn in_cameras(scene: &Scene, id: BoxId) -> Result<Sight> {
     let Some(b) = frame.boxes.get(&id) else {
         return Ok(best);
     };
-    let appearance = Appearance::new(frame, rig, &placed.conditions);
+    let appearance = Appearance::with_things(frame, &placed.background, rig, &placed.conditions);
     for camera in rig.cameras.iter().filter(|c| may_see(c, b)) {
         let seen = Perceived::of(&appearance, frame, camera)?;
         if let Some((visible, share)) = seen.seen(id) {
@@ -553,7 +553,11 @@ mod tests {
         let after = then.frame().boxes[&b.id];
         assert!(after.center_m.distance(b.center_m) < 0.05, "{}", after.center_m);
         // Now that it moves while the LiDAR turns the sweep differs.
-        let sweep = |scene: &Scene| sensors::rolling::exact(&scene.with_rig_in_world()).points.len();
+        let sweep = |scene: &Scene| {
+            sensors::rolling::of_voxels(&scene.with_rig_in_world())
+                .points
+                .len()
+        };
         assert!(sensors::rolling::is_rolling(&then) && sweep(&then) != sweep(&scene));
         let error = search(&then, b.id, Vary::Speed, Sensor::Lidar, go_on).expect_err("it follows");
         assert!(error.to_string().contains("follows a motion"), "{error}");

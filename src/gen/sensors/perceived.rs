@@ -8,7 +8,7 @@ use crate::painter::{PaintError, native_px};
 use nets::picture::PictureSegmenter;
 use rayon::prelude::*;
 use scene::truth::{self, OUTSIDE, TruthClass};
-use scene::{BoxId, Camera, CameraTruth, Conditions, Frame, SensorRig};
+use scene::{BoxId, Camera, CameraTruth, Frame, Scene};
 
 /// A box of fewer pixels is too small to be missed.
 pub const LEAST_PX: usize = 24;
@@ -193,9 +193,11 @@ pub struct SeenByRig {
     pub thing: SeenThing,
 }
 
-/// Looks at the pictures of all cameras. The rig stands in the frame of the boxes. Errors if the network cannot be read.
-pub fn report(frame: &Frame, rig: &SensorRig, conditions: &Conditions) -> Result<Report, PaintError> {
-    let appearance = Appearance::new(frame, rig, conditions);
+/// Looks at the pictures of all cameras of a scene whose rig stands in the frame of the boxes. Errors if the network cannot be
+/// read.
+pub fn report(scene: &Scene) -> Result<Report, PaintError> {
+    let (frame, rig) = (scene.frame(), &scene.rig);
+    let appearance = Appearance::with_things(frame, &scene.background, rig, &scene.conditions);
     let look = |camera: &Camera| Perceived::of(&appearance, frame, camera);
     let all: Result<Vec<Perceived>, PaintError> = rig.cameras.par_iter().map(look).collect();
     let all = all?;
@@ -227,6 +229,7 @@ fn is_thing(class: TruthClass) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::{Conditions, Frame, SensorRig};
     use world::World;
     use world::voxelize::{Vertical, complete};
 

@@ -3,19 +3,25 @@
 //! above it: buildings up to a height of their own, crowns as domes.
 
 mod build;
+pub(super) mod owners;
+mod structures;
 
 use glam::{Vec2, Vec3};
 
 use super::noise::{floor, value3};
-use build::{raise, spread, structures, trunks, weights};
+use build::{raise, spread, trunks, weights};
+use owners::Owners;
 use scene::appearance::{AppearanceData, BLOCK, FieldShape, LEAVES, NZ, SURFACE, Section};
 use scene::{Class, VoxelGrid};
+#[cfg(test)]
+pub(super) use structures::FARTHEST_M;
+use structures::structures;
 
 /// A cell whose corners all stay below this cannot hold a surface, roughness of leaves included.
 const FLOOR: u8 = 40;
 
-/// A building, wall or pole: columns of voxels that hang together.
-#[derive(Clone, Copy, Debug)]
+/// A building, wall or pole: columns of voxels that look alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Structure {
     /// Direction of its walls, a unit vector.
     pub axis: Vec2,
@@ -56,15 +62,15 @@ pub struct FieldHit {
 }
 
 impl Field {
-    /// From what stands on the ground (physical heights).
-    pub fn new(grid: &VoxelGrid, seed: u32) -> Self {
+    /// From what stands on the ground (physical heights), and the things that own some of it.
+    pub fn new(grid: &VoxelGrid, owners: &Owners, seed: u32) -> Self {
         let shape = FieldShape::of(grid.extent());
         let at = |x: usize, y: usize, z: usize| shape.at(x, y, z);
         let mut solid = vec![Class::FREE; shape.nx * shape.ny * NZ];
         for (x, y, z, label) in grid.iter_set() {
             solid[at(x + 1, y + 1, z + 1)] = if label > Class::FREE { 0 } else { label };
         }
-        let (structure, mut structures) = structures(&shape, &solid, seed);
+        let (structure, mut structures) = structures(&shape, &solid, owners, seed);
         raise(&shape, &mut solid, &structure, &mut structures);
         trunks(&shape, &mut solid);
         let weight = weights(&shape, &solid, &structure, &structures);

@@ -52,6 +52,8 @@ pub fn light_direction(conditions: &Conditions) -> Vec3 {
 }
 
 #[cfg(test)]
+mod looks_tests;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod truth_tests;

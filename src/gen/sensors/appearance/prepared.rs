@@ -3,17 +3,20 @@
 use glam::{Quat, Vec2, Vec3};
 
 use super::field::Field;
+use super::field::owners::Owners;
 use super::ground::Ground;
 use super::sky::Air;
 use super::things::{Material, Thing};
 use crate::march::paint::Paint;
 use crate::march::{GroundHeight, ground, remove_voxels};
 use crate::rays::Ray;
-use scene::appearance::{BLOCK_M, FAR_M};
-use scene::{Conditions, Extent, Frame, Pose, SceneBox, SensorRig};
+use scene::appearance::{BLOCK_M, FAR_M, FieldShape};
+use scene::{Background, Conditions, Extent, Frame, Pose, SceneBox, SensorRig};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
 const STRAY_M: f64 = 0.7;
+/// Lamps at most.
+const MOST_LAMPS: usize = 96;
 /// Things are listed this far around, m, for their contact shadows.
 const NEAR_M: f32 = 0.6;
 
@@ -89,9 +92,19 @@ pub struct Appearance {
 }
 
 impl Appearance {
-    /// Prepares a frame: some 50 ms for a window. Of a map that reaches farther than one can see from the ego vehicle, the
-    /// rest is left out.
+    /// A frame of which no thing beside the road is known; see [`Self::with_things`].
     pub fn new(frame: &Frame, rig: &SensorRig, conditions: &Conditions) -> Self {
+        Self::with_things(frame, &Background::default(), rig, conditions)
+    }
+
+    /// Prepares a frame: some 50 ms for a window. What a thing of the background explains looks as that thing does, whatever is
+    /// edited elsewhere. Of a map that reaches farther than one can see from the ego vehicle, the rest is left out.
+    pub fn with_things(
+        frame: &Frame,
+        background: &Background,
+        rig: &SensorRig,
+        conditions: &Conditions,
+    ) -> Self {
         let seed = (conditions.seed ^ conditions.seed >> 32) as u32;
         let extent = in_sight(frame.extent(), &rig.vehicle);
         let (occupancy, layout) = (frame.occupancy.crop(extent), frame.layout.crop(extent));
@@ -100,7 +113,8 @@ impl Appearance {
         for b in &boxes {
             remove_voxels(&mut grid, &mut columns, b, GroundHeight::Physical, STRAY_M);
         }
-        let field = Field::new(&grid, seed);
+        let owners = Owners::new(background, &layout, &FieldShape::of(extent));
+        let field = Field::new(&grid, &owners, seed);
         let ground = Ground::new(&columns, &layout);
         let mut things: Vec<Thing> = boxes
             .iter()
@@ -392,7 +406,14 @@ fn lamps(air: &Air, field: &Field, things: &[Thing], rig: &SensorRig) -> Vec<Lam
     let foot = rig.vehicle.apply(foot).as_vec3();
     let turn = rig.vehicle.rotation.as_quat();
     beams(foot, &|p| turn * p, size, 75.0 * air.lamps);
-    out.truncate(96);
     out.retain(|l| l.at.is_finite());
+    if out.len() > MOST_LAMPS {
+        // Those nearest to the vehicle, so that one that is put up far away takes none of them out.
+        out.sort_by(|a, b| {
+            a.at.distance_squared(foot)
+                .total_cmp(&b.at.distance_squared(foot))
+        });
+        out.truncate(MOST_LAMPS);
+    }
     out
 }

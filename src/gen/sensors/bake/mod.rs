@@ -22,7 +22,7 @@ use crate::appearance::Appearance;
 use draw::Ellipsoid;
 pub use of_scene::{bake_scene, between, places};
 use samples::{Sample, Sampled};
-use scene::{Baking, Conditions, Frame, GaussianScene, Pose, SceneGaussian, SensorRig};
+use scene::{Background, Baking, Conditions, Frame, GaussianScene, Pose, SceneGaussian, SensorRig};
 use tree::Leaf;
 
 /// How much work goes into it.
@@ -74,6 +74,8 @@ pub struct BakeInput<'a> {
     pub frame: &'a Frame,
     /// Sensors where the vehicle is.
     pub rig: &'a SensorRig,
+    /// What stands beside the roads.
+    pub background: &'a Background,
     /// Light and air. Rain and flakes in the air are left out.
     pub conditions: Conditions,
     /// Where the vehicle drives; if empty, where it stands.
@@ -95,7 +97,7 @@ pub fn bake(
             !go_on(from + (to - from) * done.min(1.0))
         }
     };
-    let appearance = Appearance::new(input.frame, input.rig, &input.conditions);
+    let appearance = Appearance::with_things(input.frame, input.background, input.rig, &input.conditions);
     let here = [input.rig.vehicle];
     let path = if input.path.is_empty() { &here } else { input.path };
     let stands = stands::stands(input.frame, input.rig, path, options.reach_m, options.stands);

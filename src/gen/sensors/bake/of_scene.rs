@@ -17,6 +17,7 @@ pub fn bake_scene(
     let input = BakeInput {
         frame: scene.frame(),
         rig: &scene.rig,
+        background: &scene.background,
         conditions: scene.conditions,
         path: &path(scene),
     };

@@ -1,4 +1,5 @@
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use glam::DVec3;
 
@@ -31,9 +32,11 @@ fn small() -> (Frame, SensorRig, GaussianScene) {
 }
 
 fn input<'a>(frame: &'a Frame, rig: &'a SensorRig) -> BakeInput<'a> {
+    static NOTHING: LazyLock<Background> = LazyLock::new(Background::default);
     BakeInput {
         frame,
         rig,
+        background: &NOTHING,
         conditions: Conditions::default(),
         path: &[],
     }

@@ -39,8 +39,8 @@ impl CameraSource for Learned {
                 occupancy: true,
                 layout: true,
                 boxes: true,
+                background: true,
                 conditions: true,
-                ..Needs::NONE
             },
             ground: GroundHeight::Physical,
             report_key: "learned",
@@ -76,6 +76,7 @@ fn painted(input: &CameraInput<'_>) -> Result<Vec<Arc<CameraImage>>, CameraError
     let input = PaintInput {
         frame: input.frame,
         rig: input.rig,
+        background: input.background,
         conditions: input.conditions,
     };
     Ok(painter.paint(&input, &mut |_| ControlFlow::Continue(()))?)

@@ -43,6 +43,7 @@ impl CameraSource for Normals {
                 occupancy: true,
                 layout: true,
                 boxes: true,
+                background: true,
                 ..Needs::NONE
             },
             ground: GroundHeight::Physical,
@@ -58,7 +59,12 @@ impl CameraSource for Normals {
             seed: input.conditions.seed,
             ..Conditions::default()
         };
-        Box::new(Ready(Appearance::new(input.frame, input.rig, &conditions)))
+        Box::new(Ready(Appearance::with_things(
+            input.frame,
+            input.background,
+            input.rig,
+            &conditions,
+        )))
     }
 }
 

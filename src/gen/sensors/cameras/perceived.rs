@@ -34,8 +34,8 @@ impl CameraSource for PerceivedClasses {
                 occupancy: true,
                 layout: true,
                 boxes: true,
+                background: true,
                 conditions: true,
-                ..Needs::NONE
             },
             ground: GroundHeight::Physical,
             report_key: "perceived",
@@ -46,7 +46,7 @@ impl CameraSource for PerceivedClasses {
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
         Box::new(Ready {
-            appearance: Appearance::new(input.frame, input.rig, &input.conditions),
+            appearance: Appearance::with_things(input.frame, input.background, input.rig, &input.conditions),
             frame: input.frame,
         })
     }

@@ -28,8 +28,8 @@ impl CameraSource for Pictures {
                 occupancy: true,
                 layout: true,
                 boxes: true,
+                background: true,
                 conditions: true,
-                ..Needs::NONE
             },
             ground: GroundHeight::Physical,
             report_key: "appearance",
@@ -39,7 +39,12 @@ impl CameraSource for Pictures {
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
-        Box::new(Ready(Appearance::new(input.frame, input.rig, &input.conditions)))
+        Box::new(Ready(Appearance::with_things(
+            input.frame,
+            input.background,
+            input.rig,
+            &input.conditions,
+        )))
     }
 }
 

@@ -12,9 +12,14 @@ use world::World;
 use world::voxelize::{Vertical, complete};
 
 fn street() -> Frame {
+    street_and_things().0
+}
+
+fn street_and_things() -> (Frame, Background) {
     let world = World::random(5);
     let grid = complete(&world, Vertical::Occ3d);
-    Frame::new(world.layout.clone(), world.boxes.clone(), grid)
+    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), grid);
+    (frame, world.background.clone())
 }
 
 /// One camera's picture by one source, in the colours of its first view.
@@ -25,6 +30,32 @@ fn rgba(
     camera: &Camera,
 ) -> Vec<u8> {
     let picture = drawn(source, frame, conditions, camera, [80, 45]).expect("a small picture");
+    picture.rgba(source.views()[0].id, 12.0).1
+}
+
+/// The same with what stands beside the roads.
+fn rgba_beside(
+    source: &'static dyn CameraSource,
+    frame: &Frame,
+    background: &Background,
+    conditions: Conditions,
+    camera: &Camera,
+) -> Vec<u8> {
+    let input = CameraInput {
+        frame,
+        rig: &SensorRig::default(),
+        background,
+        conditions,
+        detail: Detail::Full,
+        paint: None,
+    };
+    let options = RenderOptions {
+        size: [80, 45],
+        quality: Quality::Preview,
+    };
+    let ready = Ready::new(source, &input);
+    let picture = ready.render(camera, &options, RenderContext::processor());
+    let picture = picture.expect("a small picture");
     picture.rgba(source.views()[0].id, 12.0).1
 }
 
@@ -73,7 +104,8 @@ fn names_are_unique_and_every_view_has_a_source() {
 /// A picture changes with what its source says it needs, and with nothing else.
 #[test]
 fn sources_need_what_they_say() {
-    let (mut frame, camera) = (street(), SensorRig::default().cameras[1].clone());
+    let (mut frame, things) = street_and_things();
+    let camera = SensorRig::default().cameras[1].clone();
     // Where the labels have no ground, the layout says what lies there.
     for (x, y) in (105..150).flat_map(|x| (40..160).map(move |y| (x, y))) {
         frame.occupancy.column_mut(x, y)[..2].fill(scene::Class::FREE);
@@ -112,7 +144,7 @@ fn sources_need_what_they_say() {
             occupancy: differs(&no_voxels, day),
             layout: differs(&no_layout, day),
             boxes: differs(&no_boxes, day),
-            background: false,
+            background: rgba_beside(*source, &frame, &things, day, &camera) != base,
             conditions: differs(&frame, dusk),
         };
         assert_eq!(source.about().needs, found, "{}", source.id().name());

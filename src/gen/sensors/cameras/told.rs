@@ -27,6 +27,7 @@ impl CameraSource for Told {
                 occupancy: true,
                 layout: true,
                 boxes: true,
+                background: true,
                 ..Needs::NONE
             },
             ground: GroundHeight::Physical,
@@ -38,7 +39,7 @@ impl CameraSource for Told {
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
         Box::new(Ready {
-            appearance: Appearance::new(input.frame, input.rig, &input.conditions),
+            appearance: Appearance::with_things(input.frame, input.background, input.rig, &input.conditions),
             frame: input.frame,
         })
     }

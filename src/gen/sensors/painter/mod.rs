@@ -27,7 +27,7 @@ use nets::picture::{self, Before, Motion, PictureNets, RingSize, Sampling};
 pub use noise::NoisePrior;
 use ring::Ring;
 pub use ring::native_px;
-use scene::{Conditions, Frame, SensorRig};
+use scene::{Background, Conditions, Frame, SensorRig};
 use seen::Seen;
 pub use stable::config::SchedulerKind;
 
@@ -92,6 +92,8 @@ pub struct PaintInput<'a> {
     pub frame: &'a Frame,
     /// The cameras.
     pub rig: &'a SensorRig,
+    /// What stands beside the roads.
+    pub background: &'a Background,
     /// Time and weather, and the seed that noise is drawn from.
     pub conditions: Conditions,
 }

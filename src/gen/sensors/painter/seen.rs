@@ -37,7 +37,7 @@ impl Seen {
         let cameras = ring.sorted(&input.rig.cameras);
         let (teller, appearance) = rayon::join(
             || HintedFrame::new(input.frame),
-            || Appearance::new(input.frame, input.rig, &input.conditions),
+            || Appearance::with_things(input.frame, input.background, input.rig, &input.conditions),
         );
         let view = |camera: &&Camera| {
             let plain = appearance.render_plain(camera, [width, height], Quality::Preview);

@@ -86,6 +86,7 @@ fn learned_pictures(scene: &Scene) -> anyhow::Result<Vec<Arc<CameraImage>>> {
     let input = PaintInput {
         frame: placed.frame(),
         rig: &placed.rig,
+        background: &placed.background,
         conditions: placed.conditions,
     };
     let mut painter = Painter::new(PictureNets::bundled()?, PaintOptions::default());

@@ -1,101 +1,11 @@
-//! What the field is made of: structures, what goes on above the grid, trunks, softened occupancy.
+//! What the field is made of: what goes on above the grid, trunks, softened occupancy.
 
-use glam::{IVec3, Vec2};
+use glam::IVec3;
 
 use super::super::noise::{hash1, unit};
 use super::Structure;
 use scene::appearance::{FieldShape, NZ, TRUNK};
 use scene::{Class, Extent};
-
-/// Buildings and poles by 8-connected columns of "manmade", with the direction of their walls.
-pub fn structures(shape: &FieldShape, solid: &[u8], seed: u32) -> (Vec<u16>, Vec<Structure>) {
-    let FieldShape { nx, ny, .. } = *shape;
-    let at = |x: usize, y: usize, z: usize| shape.at(x, y, z);
-    let made = Class::Manmade.id();
-    let has = |x: usize, y: usize| solid[at(x, y, 0)..at(x, y, 0) + NZ].contains(&made);
-    let mut of = vec![0u16; nx * ny];
-    let mut all = Vec::new();
-    for start in 0..nx * ny {
-        let (sx, sy) = (start / ny, start % ny);
-        if of[start] != 0 || sx == 0 || sy == 0 || sx == nx - 1 || sy == ny - 1 || !has(sx, sy) {
-            continue;
-        }
-        let id = (all.len() as u16).saturating_add(1);
-        let mut stack = vec![start];
-        let mut columns: Vec<usize> = Vec::new();
-        of[start] = id;
-        while let Some(c) = stack.pop() {
-            columns.push(c);
-            for k in 0..9 {
-                let (x, y) = (c / ny + k / 3 - 1, c % ny + k % 3 - 1);
-                if x > 0 && y > 0 && x < nx - 1 && y < ny - 1 && of[x * ny + y] == 0 && has(x, y) {
-                    of[x * ny + y] = id;
-                    stack.push(x * ny + y);
-                }
-            }
-        }
-        // Wall directions from the gradient of the footprint; those at right angles count alike (angle times 4).
-        let member = |x: i32, y: i32| {
-            let inside = (0..nx as i32).contains(&x) && (0..ny as i32).contains(&y);
-            f32::from(u8::from(inside && of[x as usize * ny + y as usize] == id))
-        };
-        let mut sum = Vec2::ZERO;
-        let mut top = 0;
-        let mut wide = false;
-        for &c in &columns {
-            let (x, y) = ((c / ny) as i32, (c % ny) as i32);
-            let mut g = Vec2::ZERO;
-            for dx in -3..=3i32 {
-                for dy in -3..=3i32 {
-                    g += Vec2::new(dx as f32, dy as f32) * member(x + dx, y + dy);
-                }
-            }
-            if g.length() > 4.0 {
-                sum += Vec2::from_angle(g.to_angle() * 4.0) * g.length();
-            }
-            wide |= member(x + 1, y)
-                * member(x, y + 1)
-                * member(x + 1, y + 1)
-                * member(x + 2, y)
-                * member(x, y + 2)
-                > 0.5;
-            let column = &solid[at(c / ny, c % ny, 0)..at(c / ny, c % ny, 0) + NZ];
-            top = top.max(column.iter().rposition(|l| *l == made).unwrap_or(0));
-        }
-        let highest = |c: &&usize| solid[at(**c / ny, **c % ny, 0) + top] == made;
-        let tops: Vec<Vec2> = columns
-            .iter()
-            .filter(highest)
-            .map(|c| Vec2::new((c / ny) as f32, (c % ny) as f32) * 0.4 + shape.blocks_from_m)
-            .collect();
-        let first = columns.iter().min().copied().unwrap_or(0);
-        all.push(Structure {
-            axis: if sum == Vec2::ZERO {
-                Vec2::X
-            } else {
-                Vec2::from_angle(sum.to_angle() / 4.0)
-            },
-            columns: columns.len() as u32,
-            height_m: top as f32 * 0.4 - 1.0,
-            id: hash1(place_number(shape, first), seed),
-            thin: columns.len() <= 16 && !wide,
-            top: tops.iter().sum::<Vec2>() / tops.len().max(1) as f32,
-        });
-        if all.len() == usize::from(u16::MAX) - 1 {
-            break;
-        }
-    }
-    (of, all)
-}
-
-/// A number of a column of the field that goes with its place in the ego frame, whatever the map.
-fn place_number(shape: &FieldShape, column: usize) -> u32 {
-    // Its place in a window's field: what stands there looks as it always did.
-    let from = shape.extent.from();
-    let at = [column / shape.ny, column % shape.ny];
-    let [x, y] = [0, 1].map(|i| at[i] as i64 + i64::from(from[i]) + 100);
-    (x * 202 + y) as u32
-}
 
 /// Continues above the grid what reaches its top.
 pub fn raise(shape: &FieldShape, solid: &mut [u8], structure: &[u16], structures: &mut [Structure]) {
