@@ -6,10 +6,9 @@ use glam::DVec2;
 
 use crate::command::Command;
 use crate::screen_map::ScreenMap;
-use authoring::scenery;
-use editor::{Edit, apply_all};
+use editor::Edit;
 use language::{t, tf};
-use scene::{Extent, Scene};
+use scene::Extent;
 use widgets::theme;
 
 /// A click makes it so much larger, m; with Shift, a long road.
@@ -36,21 +35,6 @@ pub(crate) fn extend(outward: DVec2, by_m: f64) -> Edit {
         left_m: so_far(DVec2::Y),
         right_m: so_far(DVec2::NEG_Y),
     }
-}
-
-/// Edits that may make the map larger, and what stands beside the new roads where something stands beside the old ones.
-pub(crate) fn with_scenery(scene: &Scene, mut edits: Vec<Edit>) -> Vec<Edit> {
-    let may_grow = |e: &Edit| {
-        matches!(
-            e,
-            Edit::ExtendMap { .. } | Edit::LetMove { id: None, .. } | Edit::Forecast { .. }
-        )
-    };
-    let mut larger = scene.clone();
-    if edits.iter().any(may_grow) && apply_all(&edits, &mut larger).is_ok() {
-        edits.extend(scenery::beside_new_ground(scene, &larger));
-    }
-    edits
 }
 
 /// Draws the buttons, where there is room for them.

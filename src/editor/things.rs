@@ -26,7 +26,7 @@ const MOST: usize = Background::MAX_THINGS;
 pub(super) fn changed(edit: &Edit, background: &Background) -> Result<Option<Background>, EditError> {
     let mut after = background.clone();
     match edit {
-        Edit::AddThings { forms } => {
+        Edit::AddThings { forms } | Edit::DrawScenery { forms } => {
             at_least("forms", forms.len(), 1)?;
             let total = background.len() + forms.len();
             if forms.len() > MOST || total > MOST {
@@ -35,7 +35,7 @@ pub(super) fn changed(edit: &Edit, background: &Background) -> Result<Option<Bac
                 )));
             }
             for form in forms {
-                after.add(sound(form.clone())?);
+                after.add_as(sound(form.clone())?, matches!(edit, Edit::AddThings { .. }));
             }
         }
         Edit::RemoveThings { ids } => {
@@ -101,9 +101,12 @@ fn for_each(
     mut change: impl FnMut(&mut Form),
 ) -> Result<(), EditError> {
     for id in ids {
-        let mut thing = known(background, *id)?.clone();
+        let before = known(background, *id)?;
+        let mut thing = before.clone();
         change(&mut thing.form);
         thing.form = sound(thing.form)?;
+        // What a user moved or shaped is the user's.
+        thing.placed |= thing.form != before.form;
         background.insert(thing);
     }
     Ok(())

@@ -37,7 +37,7 @@ pub fn within(
                     continue;
                 }
             }
-            Edit::AddThings { forms } => {
+            Edit::AddThings { forms } | Edit::DrawScenery { forms } => {
                 let all = forms.len();
                 forms.iter_mut().for_each(|f| f.map_points(|p| p + by_m, 0.0));
                 forms.retain(|f| inside(f.middle_m()));
@@ -76,7 +76,9 @@ fn way_in(edits: &[Edit], inside: &dyn Fn(DVec2) -> bool, middle_m: DVec2) -> DV
         .iter()
         .flat_map(|edit| match edit {
             Edit::AddBox { center_m, .. } => vec![center_m.truncate()],
-            Edit::AddThings { forms } => forms.iter().map(Form::middle_m).collect(),
+            Edit::AddThings { forms } | Edit::DrawScenery { forms } => {
+                forms.iter().map(Form::middle_m).collect()
+            }
             _ => Vec::new(),
         })
         .collect();

@@ -97,8 +97,13 @@ pub enum Edit {
         /// True sets, false clears.
         value: bool,
     },
-    /// Puts things beside the road, and their voxels.
+    /// Puts things beside the road, and their voxels. They stay when scenery is drawn anew.
     AddThings {
+        /// What and where, world frame.
+        forms: Vec<Form>,
+    },
+    /// The same with scenery that a seed drew: it goes when scenery is drawn anew.
+    DrawScenery {
         /// What and where, world frame.
         forms: Vec<Form>,
     },
@@ -246,10 +251,14 @@ pub enum Edit {
         /// When what it is about begins, s; soon if left out.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         from_s: Option<f64>,
-        /// It begins when so much is between it and the ego vehicle, m, in place of at a time.
+        /// It begins when so much is between it and the ego vehicle, m, in place of at a time; who follows keeps so much to the
+        /// one ahead. Bumper to bumper.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         gap_m: Option<f64>,
     },
+    /// Lets everything that says how fast it is but stands go on along its lane, each at a distance to the one ahead. What would
+    /// come into something, a wall, a parked vehicle or one another, stays where it is.
+    LetTrafficDrive {},
     /// Sets how long the scene lasts. What happens later than that stays, and is not shown.
     SetLength {
         /// Length, s; 0 for a scene of one moment.
@@ -496,6 +505,7 @@ impl Edit {
         matches!(
             self,
             Self::AddThings { .. }
+                | Self::DrawScenery { .. }
                 | Self::RemoveThings { .. }
                 | Self::MoveThings { .. }
                 | Self::RaiseThings { .. }

@@ -566,6 +566,7 @@ fn background_and_relief_come_back_and_version_1_opens() {
         id: ThingId(9),
         form: Form::Line(Line::typical(LineKind::GuardRail, points_m)),
         look: 77,
+        placed: true,
     });
     scene.background = Arc::new(background);
     scene.change_canvas(|frame| {

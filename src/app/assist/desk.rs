@@ -1,7 +1,7 @@
 //! What the calls of a session work on: the document (its own or that of a window), the folder, versions, numbers of
 //! revisions, the networks.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -13,6 +13,7 @@ use serde::Serialize;
 use crate::change::Change;
 use crate::folder::Folder;
 pub use app::shell::guests::Task;
+use authoring::new_ground::with_scenery;
 use editor::checks::{self, Finding};
 use editor::{Document, Edit};
 use formats::loom;
@@ -68,6 +69,8 @@ pub struct Done {
 
 /// Warnings that a receipt holds at most.
 const MOST_WARNINGS: usize = 8;
+/// Numbers of states kept at most: more than there are steps and versions.
+const MOST_REVISIONS: usize = 2 * Document::MAX_STEPS;
 /// Versions kept at most.
 const MOST_VERSIONS: usize = 64;
 
@@ -81,6 +84,8 @@ pub struct Desk {
     weights: Option<PathBuf>,
     pipeline: Option<OccPipeline>,
     revisions: HashMap<SceneRev, u64>,
+    /// How many states were numbered so far.
+    numbered: u64,
     versions: Vec<(String, Arc<Scene>)>,
     /// Findings of the state that was checked last, without sensors.
     checked: Option<(SceneRev, Arc<Vec<Finding>>)>,
@@ -96,6 +101,7 @@ impl Desk {
             weights,
             pipeline: None,
             revisions: HashMap::new(),
+            numbered: 0,
             versions: Vec::new(),
             checked: None,
         }
@@ -132,12 +138,19 @@ impl Desk {
         })
     }
 
-    /// Applies edits as one undo step: all of them, or on error none.
+    /// Applies edits as one undo step: all of them, or on error none. Where they make the map larger, scenery comes with them as
+    /// in the window.
     pub fn apply(&mut self, step: String, edits: Vec<Edit>) -> anyhow::Result<Done> {
         let label = step.clone();
-        let (applied, states) = self.with(move |document| document.apply_all(label, &edits))?;
+        let ((said, applied), states) = self.with(move |document| {
+            let said = editor::remarks(document.settled_scene(), &edits);
+            let edits = with_scenery(document.settled_scene(), edits);
+            (said, document.apply_all(label, &edits))
+        })?;
         applied?;
-        Ok(self.done(step, &states))
+        let mut done = self.done(step, &states);
+        done.warnings.splice(0..0, said);
+        Ok(done)
     }
 
     /// Puts another state in the place of the state `from`, as one undo step. Errors if the scene has changed since. Its
@@ -178,10 +191,29 @@ impl Desk {
         }
     }
 
-    /// The number of a state: states are numbered from 1 in the order in which this session sees them.
+    /// The number of a state: states are numbered from 1 in the order in which this session sees them. One that can come back,
+    /// by undo or as a version, keeps its number.
     pub fn number(&mut self, state: SceneRev) -> u64 {
-        let next = self.revisions.len() as u64 + 1;
-        *self.revisions.entry(state).or_insert(next)
+        if let Some(number) = self.revisions.get(&state) {
+            return *number;
+        }
+        self.numbered += 1;
+        self.revisions.insert(state, self.numbered);
+        let number = self.numbered;
+        if self.revisions.len() > MOST_REVISIONS {
+            self.forget_revisions(state);
+        }
+        number
+    }
+
+    /// Forgets the numbers of states that are gone for good, other than `newest`.
+    fn forget_revisions(&mut self, newest: SceneRev) {
+        // (if whoever owns the document is gone, nothing comes back)
+        let steps = self.look(|document| document.contents().collect::<Vec<_>>());
+        let mut there: HashSet<SceneRev> = steps.unwrap_or_default().into_iter().collect();
+        there.extend(self.versions.iter().map(|(_, scene)| scene.content()));
+        there.insert(newest);
+        self.revisions.retain(|state, _| there.contains(state));
     }
 
     /// What the checks that need no sensors find, the open findings alone.
@@ -303,4 +335,40 @@ fn told(f: &Finding) -> String {
 pub fn draft_columns(scene: &Scene) -> usize {
     let of = scene.for_generation();
     edited_columns(of.frame(), 0).iter().filter(|c| **c).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::{Frame, VoxelGrid};
+
+    fn desk() -> (tempfile::TempDir, Desk) {
+        let dir = tempfile::tempdir().expect("a folder");
+        let folder = Folder::new(dir.path()).expect("a folder");
+        let frame = Frame::new(Default::default(), Default::default(), VoxelGrid::new());
+        let scene = Scene::single("s", frame, Arc::default(), 0);
+        let document = Box::new(Document::new(scene));
+        (dir, Desk::new(Holder::Own(document), folder, None))
+    }
+
+    #[test]
+    fn numbers_of_states_that_are_gone_for_good_are_forgotten_and_those_that_come_back_are_not() {
+        let (_dir, mut desk) = desk();
+        let first = desk.scene().expect("a scene");
+        assert_eq!(desk.number(first.content()), 1);
+        let kept = Arc::new(Scene::clone(&first));
+        let version = {
+            let mut other = Scene::clone(&kept);
+            other.touch();
+            Arc::new(other)
+        };
+        assert_eq!(desk.number(version.content()), 2);
+        desk.keep("v".into(), version.clone()).expect("room");
+        for i in 0..3 * MOST_REVISIONS as u64 {
+            assert_eq!(desk.number(SceneRev::fresh()), i + 3, "no number twice");
+            assert!(desk.revisions.len() <= MOST_REVISIONS + 1);
+        }
+        assert_eq!(desk.number(first.content()), 1, "undo could bring it back");
+        assert_eq!(desk.number(version.content()), 2);
+    }
 }

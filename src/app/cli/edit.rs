@@ -10,12 +10,12 @@ use super::progress::Progress;
 use super::{Common, Gen, Outcome, Stop, Weights, output};
 use app::open;
 use app::text::with_conditions;
+use authoring::new_ground::with_scenery;
 use editor::{Document, Edit};
 use formats::{input, loom};
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use metrics::agreement::layout_agreement;
-use nets::OccModels;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -56,10 +56,11 @@ impl EditCommand {
         let seed = scene.conditions.seed;
         let mut document = Document::new(scene);
         let before = document.scene().clone();
+        let said = editor::remarks(&before, &edits);
         document
-            .apply_all("Edit", &with_conditions(&edits, seed))
+            .apply_all("Edit", &with_scenery(&before, with_conditions(&edits, seed)))
             .with_context(|| self.edits.display().to_string())?;
-        let mut pipeline = OccPipeline::new(OccModels::of(self.weights.folder.as_deref())?);
+        let mut pipeline = OccPipeline::new(self.generation.models(&self.weights)?);
         let round_trip = if self.verify {
             let job = Job {
                 scene: before,
@@ -101,12 +102,14 @@ impl EditCommand {
             "seam_change_share": r.seam_change_share,
             "round_trip_error": round_trip,
             "noise": { "std": r.noise_std, "max_abs": r.noise_max_abs },
-            "notes": r.notes,
+            "notes": said.iter().chain(&r.notes).collect::<Vec<_>>(),
             "file": self.output,
         });
         output::report(&self.common, &report, || {
+            let notes = said.iter().chain(&r.notes).map(|n| format!("\nnote: {n}"));
+            let notes: String = notes.collect();
             format!(
-                "{}: {} edits, {} voxels changed in {} columns ({:.1} %), {} outside, {} network calls, {:.1} s",
+                "{}: {} edits, {} voxels changed in {} columns ({:.1} %), {} outside, {} network calls, {:.1} s{notes}",
                 self.output.display(),
                 edits.len(),
                 r.voxels_changed,

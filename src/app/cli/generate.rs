@@ -8,13 +8,12 @@ use serde_json::json;
 use super::progress::Progress;
 use super::{Common, Gen, Outcome, Weights, output};
 use app::open;
-use app::scenery::SceneryWish;
+use authoring::whole::scenery_first;
 use editor::Document;
 use formats::loom;
 use job::pipeline::OccPipeline;
-use job::{GenParams, GenResult, Job, Pipeline, RegionMode};
+use job::{GenParams, GenResult, Job, Pipeline};
 use metrics::agreement::layout_agreement;
-use nets::OccModels;
 use scene::Scene;
 use sensors::cloud::GaussianCloud;
 use sensors::{lidar, splat};
@@ -68,24 +67,20 @@ pub fn sense(scene: &Scene) -> (f64, f64) {
     (lidar_s, start.elapsed().as_secs_f64())
 }
 
-/// Draws what stands beside the roads, where nothing is known of it and everything is generated: what
-/// networks invent alone is ragged and follows the seed. True if it did.
+/// Draws scenery first where the scene leaves open what kind of place it is; true if it did.
 fn draw_scenery(document: &mut Document, params: &GenParams) -> anyhow::Result<bool> {
-    let scene = document.scene().clone();
-    let nothing_known = scene.background.is_empty() && !scene.frame().inferred.background;
-    if params.region != RegionMode::Full || !nothing_known {
-        return Ok(false);
-    }
-    document.apply_all("Draw scenery", &SceneryWish::of_seed(params.seed).edits(&scene)?)?;
-    Ok(true)
+    let edits = scenery_first(document.scene(), params)?;
+    document.apply_all("Draw scenery", &edits)?;
+    Ok(!edits.is_empty())
 }
 
 impl Generate {
     pub(super) fn run(self) -> Outcome {
         let scene = open::scene(&self.scene)?;
-        let mut pipeline = OccPipeline::new(OccModels::of(self.weights.folder.as_deref())?);
+        let mut pipeline = OccPipeline::new(self.generation.models(&self.weights)?);
         let progress = Progress::new(&self.common);
         let params = self.generation.params(GenParams::whole_scene())?;
+        let before = scene.frame().occupancy.clone();
         let mut document = Document::new(scene);
         let drawn = !self.bare && draw_scenery(&mut document, &params)?;
         let result = run_and_adopt(&mut document, &mut pipeline, params.clone(), &progress)?;
@@ -107,6 +102,9 @@ impl Generate {
             "holes_closed": result.report.holes_closed,
             "stems_added": result.report.stems_added,
             "loose_dropped": result.report.loose_dropped,
+            "voxels_differ": before.count_different(&scene.frame().occupancy),
+            "things_given": result.report.things_given,
+            "notes": result.report.notes,
             "seed": params.seed,
             "steps": params.steps,
             "guidance": params.guidance,
@@ -115,8 +113,10 @@ impl Generate {
         });
         output::report(&self.common, &report, || {
             let percent = |v: Option<f64>| v.map_or("none".into(), |v| format!("{:.0} %", v * 100.0));
+            let notes = result.report.notes.iter().map(|note| format!("\n{note}"));
+            let notes: String = notes.collect();
             format!(
-                "{}: {occupied} occupied voxels, layout agreement drivable {} vehicles {}, {} network calls, {:.1} s",
+                "{}: {occupied} occupied voxels, layout agreement drivable {} vehicles {}, {} network calls, {:.1} s{notes}",
                 self.output.display(),
                 percent(agreement.drivable),
                 percent(agreement.vehicles),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use serde_json::json;
 
 use super::generate::run_and_adopt;
@@ -14,6 +14,7 @@ use app::open;
 use app::prompting::{How, Keep, Placer};
 use app::text::{self, Prompted, doubts};
 use app::wildcards;
+use authoring::new_ground::with_scenery;
 use editor::{Document, Edit};
 use formats::loom;
 use job::GenParams;
@@ -85,6 +86,10 @@ impl Prompt {
         if self.schema {
             println!("{:#}", endpoint::schema());
             return Ok(());
+        }
+        if self.weights.folder.is_some() && !self.generate && self.placer == Placer::Rules {
+            let line = "--weights is of networks, but neither --generate nor --placer diffusion asks for one";
+            return Err(anyhow!(line).into());
         }
         match self.base.clone() {
             Some(base) if self.keep.is_none() => self.edit(&base),
@@ -166,6 +171,7 @@ impl Prompt {
             keep: self.kept()?,
             ..How::default()
         };
+        how.check().context("--weights")?;
         let description = std::mem::take(&mut prompted.described.description);
         let mut made = text::make(&self.text, &description, self.seed, &how);
         made.scene.words = std::sync::Arc::new(vec![self.text.clone()]);
@@ -269,11 +275,12 @@ impl Prompt {
             return self.print(&edited.heard);
         }
         let output = self.output.clone().context("-o is missing")?;
-        let edits = edited.edits();
+        let (edits, answer) = (edited.edits(), edited.answer_on(&scene));
         let mut document = Document::new(scene);
         if !edits.is_empty() {
             let words = self.text.clone();
             let all = [edits.as_slice(), &[Edit::KeepWords { words }]].concat();
+            let all = with_scenery(document.scene(), all);
             document.apply_all("Edit by text", &all).context("edit by text")?;
         }
         let questions = &edited.outcome.questions;
@@ -290,7 +297,7 @@ impl Prompt {
             (scene, generated) = (std::sync::Arc::new(made), Some(report));
         }
         let remarks: Vec<String> = edited.outcome.remarks.iter().map(|r| r.1.to_string()).collect();
-        let (notes, answer) = (doubts(&edited.heard), edited.answer());
+        let notes = doubts(&edited.heard);
         let report = json!({
             "text": self.text,
             "edits": edits,

@@ -93,15 +93,22 @@ impl Scenery {
             scene.background.len(),
             before.count_different(&scene.frame().occupancy),
         );
+        let locked = &scene.arranged.locked.things;
+        let kept = scene
+            .background
+            .iter()
+            .filter(|t| t.placed || locked.contains(&t.id))
+            .count();
         let report = json!({
             "things": things,
+            "things_kept": kept,
             "voxels_changed": changed,
             "seed": self.seed,
             "file": self.output,
         });
         output::report(&self.common, &report, || {
             format!(
-                "{}: {things} things beside the road, {changed} voxels changed",
+                "{}: {things} things beside the road, {kept} of them placed or locked and kept, {changed} voxels changed",
                 self.output.display()
             )
         });

@@ -384,6 +384,7 @@ mod tests {
         let thing = |i: u32, form| Thing {
             id: ThingId(i),
             look: 0,
+            placed: false,
             form,
         };
         let tree = thing(

@@ -12,7 +12,7 @@ use crate::scenery::{Drawer, SceneryWish};
 use editor::Edit;
 use job::GenError;
 use language::{t, tf};
-use scene::Scene;
+use scene::{Scene, SceneRev};
 
 /// How soon the window looks again whether it is done.
 const LOOK_AGAIN: Duration = Duration::from_millis(40);
@@ -24,6 +24,13 @@ pub(crate) struct Drawing {
     /// The result waits for the user's decision.
     staged: bool,
     edits: Receiver<Result<Vec<Edit>, GenError>>,
+}
+
+impl Drawing {
+    /// True if it is drawn for this state.
+    pub(crate) fn is_of(&self, content: SceneRev) -> bool {
+        self.before.content() == content
+    }
 }
 
 impl SceneloomApp {
@@ -94,6 +101,11 @@ impl SceneloomApp {
         };
         self.apply("Draw scenery", &edits);
         let after = self.document.settled_scene().clone();
+        if after.frame().occupancy == before.frame().occupancy {
+            let now_s = self.now_s();
+            let text = t("Generated: no voxel differs from before");
+            self.toasts.push(Level::Info, text, now_s);
+        }
         if after.content() != before.content() {
             let note = tf!("Seed {n}", n = wish.seed);
             self.generation

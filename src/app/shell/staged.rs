@@ -12,11 +12,11 @@ use crate::panes::camera_strip::thousands;
 use crate::panes::compare::CompareMode;
 use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::tools::{Hand, ToolState};
-use editor::Edit;
+use authoring::whole::{leaves_place_open, scenery_first};
 use editor::checks::{Finding, Severity};
 use editor::part::{Part, changed_by_class};
 use job::inpaint::InpaintMask;
-use job::{GenError, GenParams, RegionMode};
+use job::{GenParams, RegionMode};
 use language::{t, tf};
 use scene::background::in_extent;
 use scene::raster::box_cells;
@@ -170,18 +170,18 @@ impl SceneloomApp {
         }
     }
 
-    /// True for a scene without anything beside the roads. There scenery is drawn first, because what the networks invent
-    /// alone is ragged.
+    /// True for a scene that leaves open what kind of place it is. There scenery is drawn first, because what the networks
+    /// invent alone is ragged.
     pub(crate) fn draws_scenery_first(&self) -> bool {
-        let scene = self.document.settled_scene();
-        scene.background.is_empty() && !scene.frame().inferred.background && !self.state.tools.things.locked
+        leaves_place_open(self.document.settled_scene()) && !self.state.tools.things.locked
     }
 
     /// Draws scenery by the seed of `params` and generates on it, as one undo step.
     pub(crate) fn generate_on_scenery(&mut self, params: GenParams) {
         let before = self.document.settled_scene().clone();
-        let Some(edits) = self.scenery_edits(&SceneryWish::of_seed(params.seed), &before) else {
-            return;
+        let edits = match scenery_first(&before, &params) {
+            Ok(edits) => edits,
+            Err(error) => return self.fail(tf!("No scenery was drawn: {error}", error = error)),
         };
         self.apply("Generate", &edits);
         let scene = self.document.settled_scene().clone();
@@ -224,16 +224,6 @@ impl SceneloomApp {
             region: self.state.tools.region.clone(),
         };
         self.put_scenery(wish, true);
-    }
-
-    /// The network that draws scenery; none if it cannot be loaded, of which the user is told.
-    fn scenery_edits(&mut self, wish: &SceneryWish, scene: &Scene) -> Option<Vec<Edit>> {
-        let now_s = self.now_s();
-        let failed = |e: GenError| {
-            let text = tf!("No scenery was drawn: {error}", error = e);
-            self.toasts.push(Level::Error, text, now_s);
-        };
-        wish.edits(scene).map_err(failed).ok()
     }
 
     /// Shows the state before again, and returns it.

@@ -5,12 +5,13 @@ use std::time::Duration;
 
 use super::app::SceneloomApp;
 use crate::camera_views::Wanted;
+use crate::panes::camera_strip::thousands;
 use crate::shell::live::{Advice, Purpose, Running};
 use crate::shell::staged::Again;
 use crate::shell::status::Receipt;
 use crate::shell::toasts::Level;
 use job::{GenParams, GenResult, JobEvent, JobUpdate};
-use language::tf;
+use language::{t, tf};
 use scene::{Frame, Scene};
 
 impl SceneloomApp {
@@ -197,14 +198,35 @@ impl SceneloomApp {
                 .take()
                 .filter(|(rev, _)| *rev == result.rev());
             match (own_step, words) {
-                (Some(_), _) => self.stage(
-                    drawn.map_or(before, |(_, before)| before),
-                    Some(Again::Generate(Box::new(result.key.params.clone()))),
-                ),
+                (Some(_), _) => {
+                    let first = drawn.is_some();
+                    let before = drawn.map_or(before, |(_, before)| before);
+                    // Scenery that was drawn first went by the seed.
+                    let given = if first { 0 } else { result.report.things_given };
+                    self.say_what_differs(&before, given);
+                    self.stage(before, Some(Again::Generate(Box::new(result.key.params.clone()))));
+                }
                 (None, Some((_, before))) => self.stage(before, None),
                 (None, None) => {}
             }
         }
+    }
+
+    /// Says what a generation that was asked for left as it was: a whole one draws no other things than those that are there.
+    fn say_what_differs(&mut self, before: &Scene, things: usize) {
+        let after = self.document.settled_scene();
+        let voxels = before.frame().occupancy.count_different(&after.frame().occupancy);
+        let text = match (voxels, things) {
+            (0, 0) => t("Generated: no voxel differs from before").to_owned(),
+            (_, 0) => return,
+            (voxels, things) => tf!(
+                "Generated: {voxels} voxels differ. All {things} things beside the roads stay, whatever the seed; Regenerate scenery draws others",
+                voxels = thousands(voxels),
+                things = thousands(things),
+            ),
+        };
+        let now_s = self.now_s();
+        self.toasts.push(Level::Info, text, now_s);
     }
 
     /// Ends a whole generation with its last preview as the result.

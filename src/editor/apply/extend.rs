@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use scene::roads::{Arm, NodeId};
 use scene::{
-    BevLayout, Edit, EditError, Extent, Frame, Inferred, Polyline, PolylineKind, Scene, SourceFrame, draft,
+    BevLayout, Edit, EditError, Extent, Frame, Inferred, Polyline, PolylineKind, Road, RoadNetwork, Scene,
+    SourceFrame, draft,
 };
 
 /// How far from a lane's middle, along the edge, the ground goes on in its direction, m; elsewhere it goes straight out.
@@ -13,6 +15,8 @@ const BESIDE_LANE_M: f64 = 18.0;
 const ONE_ROAD_M: f64 = 8.0;
 /// A line that ends this near to the edge is one that reaches it, m.
 const AT_EDGE_M: f64 = 2.5;
+/// Lines that go on end so far beyond the new edge, m.
+const BEYOND_M: f64 = 5.0;
 /// Flatter than this against the edge no line leaves the map.
 const STEEPEST: f64 = 0.35;
 
@@ -46,12 +50,23 @@ pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
     }
     let old = scene.canvas().extent();
     let mut layout = scene.canvas().layout.clone();
+    let mut roads = scene.roads.clone();
     for (side, columns) in SIDES.into_iter().zip(columns).filter(|(_, columns)| *columns > 0) {
-        layout = side.extended(&layout, columns)?;
+        let leavings = side.leavings(&layout);
+        let larger = side.extended(&layout, &leavings, columns)?;
+        if !roads.is_empty() {
+            side.extend_roads(
+                [layout.extent(), larger.extent()],
+                &leavings,
+                Arc::make_mut(&mut roads),
+            );
+        }
+        layout = larger;
     }
     if layout.extent() == old {
         return Ok(());
     }
+    scene.roads = roads;
     scene.change_canvas(|canvas| *canvas = over(canvas, layout));
     Ok(())
 }
@@ -181,8 +196,13 @@ impl Side {
         side_by_side
     }
 
-    /// The layout with so many columns more on this side.
-    fn extended(self, layout: &BevLayout, columns: i32) -> Result<BevLayout, EditError> {
+    /// The layout with so many columns more on this side, on which roads go on as they leave the map.
+    fn extended(
+        self,
+        layout: &BevLayout,
+        leavings: &[Leaving],
+        columns: i32,
+    ) -> Result<BevLayout, EditError> {
         let old = layout.extent();
         let (mut from, mut size) = (old.from(), [old.nx(), old.ny()]);
         size[self.axis] += columns as usize;
@@ -190,7 +210,6 @@ impl Side {
             from[self.axis] -= columns;
         }
         let new = Extent::new(from, size).map_err(EditError::BadMap)?;
-        let leavings = self.leavings(layout);
         let last = [old.nx(), old.ny()].map(|n| n as i64 - 1);
         // Each new column takes what lies where its road comes from, at the edge.
         let cell = |[x, y]: [usize; 2]| {
@@ -219,7 +238,7 @@ impl Side {
         let lines = layout
             .polylines
             .iter()
-            .map(|line| self.line_to([old, new], &leavings, line))
+            .map(|line| self.line_to([old, new], leavings, line))
             .collect();
         let mut out = BevLayout::from_cells_over(new, cells, lines)
             .map_err(|found| EditError::BadMap(format!("{found} columns")))?;
@@ -227,32 +246,108 @@ impl Side {
         Ok(out)
     }
 
-    /// A line of the road that ends at the old edge goes on to the new one, beside the lanes.
-    fn line_to(self, [old, new]: [Extent; 2], leavings: &[Leaving], line: &Polyline) -> Polyline {
+    /// A line of the road that ends at the old edge or beyond it goes on to the new one as the drawn road does.
+    fn line_to(self, extents: [Extent; 2], leavings: &[Leaving], line: &Polyline) -> Polyline {
         let mut line = line.clone();
         if matches!(line.kind, PolylineKind::StopLine | PolylineKind::PedCrossing) {
             return line;
         }
         for _ in 0..2 {
             line.points_m.reverse();
-            let [.., before, end] = line.points_m.as_slice() else {
-                return line;
-            };
-            let (end, way) = (*end, *end - *before);
-            let reaches = (-AT_EDGE_M..=AT_EDGE_M).contains(&self.outside_m(old, end));
-            if reaches && let Some(leaving) = self.leaving(old, end, way) {
-                let off_m = |l: &&Leaving| (l.along_m - leaving.along_m).abs();
-                let lane = leavings.iter().min_by(|a, b| off_m(a).total_cmp(&off_m(b)));
-                let slope = lane
-                    .filter(|l| off_m(l) < ONE_ROAD_M)
-                    .map_or(leaving.slope, |l| l.slope);
-                let outside_m = -self.outside_m(new, end) + 5.0;
-                let mut on = end + self.outward() * outside_m;
-                on[1 - self.axis] += outside_m * slope;
-                line.points_m.push(on);
+            if let Some(points_m) = self.end_to(extents, leavings, &line.points_m) {
+                line.points_m = points_m;
             }
         }
         line
+    }
+
+    /// The points of a line whose end leaves the old map, led on from the old edge to beyond the new one; `None` if it does not.
+    fn end_to(self, [old, new]: [Extent; 2], leavings: &[Leaving], points_m: &[DVec2]) -> Option<Vec<DVec2>> {
+        let inside = points_m.iter().rposition(|p| self.outside_m(old, *p) <= 0.0)?;
+        let mut out = points_m[..=inside].to_vec();
+        let last = out[inside];
+        // Where it crosses the edge, or where it ends just before it.
+        let (end, way) = match points_m.get(inside + 1) {
+            Some(next) => {
+                let (from_m, to_m) = (self.outside_m(old, last), self.outside_m(old, *next));
+                (last.lerp(*next, -from_m / (to_m - from_m)), *next - last)
+            }
+            None if self.outside_m(old, last) >= -AT_EDGE_M => {
+                (last, last - *out.get(inside.checked_sub(1)?)?)
+            }
+            None => return None,
+        };
+        let along = self.along_m(end);
+        let corners = [old.min_m().truncate(), old.max_m().truncate()].map(|p| self.along_m(p));
+        if !(corners[0] - ONE_ROAD_M..=corners[1] + ONE_ROAD_M).contains(&along) {
+            return None; // it left over another edge before
+        }
+        let slope = self.slope_of(old, leavings, end, way)?;
+        let outside_m = -self.outside_m(new, end) + BEYOND_M;
+        let mut on = end + self.outward() * outside_m;
+        on[1 - self.axis] += outside_m * slope;
+        if end != last {
+            out.push(end);
+        }
+        out.push(on);
+        Some(out)
+    }
+
+    /// The slope with which the road goes on whose line leaves at `end` in a direction; `None` if it does not lead out.
+    fn slope_of(self, old: Extent, leavings: &[Leaving], end: DVec2, way: DVec2) -> Option<f64> {
+        let leaving = self.leaving(old, end, way)?;
+        let off_m = |l: &&Leaving| (l.along_m - leaving.along_m).abs();
+        let lane = leavings.iter().min_by(|a, b| off_m(a).total_cmp(&off_m(b)));
+        let beside = lane.filter(|l| off_m(l) < ONE_ROAD_M);
+        Some(beside.map_or(leaving.slope, |l| l.slope))
+    }
+
+    /// Roads of the network that end at the old edge or beyond it go on to the new one as well.
+    fn extend_roads(self, [old, new]: [Extent; 2], leavings: &[Leaving], roads: &mut RoadNetwork) {
+        let ends: Vec<(NodeId, Arm)> = roads
+            .nodes
+            .iter()
+            .filter(|node| self.outside_m(old, node.at_m) >= -AT_EDGE_M)
+            .filter_map(|node| match roads.arms(node.id).as_slice() {
+                [only] => Some((node.id, *only)),
+                _ => None,
+            })
+            .collect();
+        for (node, arm) in ends {
+            let Some(road) = roads.road(arm.road) else {
+                continue;
+            };
+            let mut points_m = roads.points_m(road);
+            if arm.end == 0 {
+                points_m.reverse();
+            }
+            let Some(new_m) = self.end_to([old, new], leavings, &points_m) else {
+                continue;
+            };
+            let length_m = |points: &[DVec2]| points.array_windows::<2>().map(|[a, b]| a.distance(*b)).sum();
+            let (was_m, is_m): (f64, f64) = (length_m(&points_m), length_m(&new_m));
+            let [_, via_m @ .., end_m] = new_m.as_slice() else {
+                continue;
+            };
+            let mut via_m = via_m.to_vec();
+            if arm.end == 0 {
+                via_m.reverse();
+            }
+            if via_m.len() > Road::MAX_VIA {
+                continue;
+            }
+            if let Some(node) = roads.node_mut(node) {
+                node.at_m = *end_m;
+            }
+            if let Some(road) = roads.road_mut(arm.road) {
+                road.via_m = via_m;
+                if arm.end == 0 {
+                    // Places along it are counted from where it begins.
+                    road.crossings.iter_mut().for_each(|c| c.at_m += is_m - was_m);
+                    road.stops.iter_mut().for_each(|s| s.at_m += is_m - was_m);
+                }
+            }
+        }
     }
 }
 

@@ -98,6 +98,68 @@ fn a_road_goes_on_as_it_leaves_the_map() {
     }
 }
 
+/// Lanes of templates and of road files reach a little beyond the map: they go on as well, and so does the network.
+#[test]
+fn what_ends_beyond_the_edge_goes_on_too() {
+    for beyond_m in [0.0, 3.5, 60.0] {
+        let mut scene = scene(0.3);
+        let ends = |x: f64| DVec2::new(x, 0.3 * x);
+        scene.change_canvas(|canvas| {
+            let mut lines = canvas.layout.polylines.to_vec();
+            // (a bend out there is not what the drawn road does)
+            let far = ends(40.0 + beyond_m) + DVec2::new(0.0, 0.2 * beyond_m.min(1.0));
+            lines[0].points_m = vec![ends(-40.0), ends(0.0), ends(40.0), far];
+            if beyond_m == 0.0 {
+                lines[0].points_m.pop();
+            }
+            let mut back = lines[0].clone();
+            back.points_m.reverse();
+            lines.push(back);
+            canvas.layout.polylines = lines.into();
+        });
+        let mut net = RoadNetwork::default();
+        let nodes = [ends(-40.0), ends(40.0 + beyond_m)].map(|p| net.add_node(p));
+        let id = net.add_road(Road {
+            id: scene::RoadId(0),
+            ends: [nodes[1], nodes[0]],
+            via_m: vec![ends(0.0)],
+            offset_m: 0.0,
+            left: Vec::new(),
+            right: Vec::new(),
+            limit_kph: None,
+            crossings: vec![scene::roads::RoadCrossing {
+                at_m: 50.0,
+                width_m: 3.0,
+            }],
+            stops: Vec::new(),
+        });
+        scene.roads = net.into();
+        let at = |scene: &Scene| {
+            let road = scene.roads.road(id).expect("there");
+            let along = scene.roads.points_m(road);
+            scene::road_map::at_along(&along, road.crossings[0].at_m)
+        };
+        let crossing = at(&scene);
+        extend(&mut scene, 60.0, 0.0).expect("a map");
+        for (line, last) in scene.canvas().layout.polylines.iter().zip([true, false]) {
+            let points = &line.points_m;
+            let end = if last { points[points.len() - 1] } else { points[0] };
+            assert!(end.x > 100.0, "{beyond_m}: {points:?}");
+            let off_m = points.iter().map(|p| (p.y - 0.3 * p.x).abs());
+            assert!(off_m.fold(0.0, f64::max) < 0.6, "{beyond_m}: {points:?}");
+        }
+        let lane = crate::lanes::nearest_lane(&scene.canvas().layout, ends(90.0), 1.0);
+        assert!(lane.is_some(), "a lane lies on the new road");
+        let node = scene.roads.node(nodes[1]).expect("there").at_m;
+        assert!(node.x > 100.0 && (node.y - 0.3 * node.x).abs() < 0.01, "{node}");
+        assert!(
+            at(&scene).distance(crossing) < 0.1,
+            "{beyond_m}: the crossing stays"
+        );
+        assert_eq!(scene.roads.problem(), None);
+    }
+}
+
 #[test]
 fn no_map_is_too_large_or_of_no_number() {
     let mut scene = scene(0.0);

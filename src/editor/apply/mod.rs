@@ -7,9 +7,12 @@ mod boxes;
 mod correct;
 mod extend;
 pub mod forecast;
+pub mod left_standing;
 mod let_move;
 mod map;
 mod motion;
+pub mod off_lane;
+pub mod start;
 mod voxels;
 
 use std::sync::Arc;
@@ -86,6 +89,10 @@ impl Apply for Edit {
             Self::Forecast { seconds } => {
                 let found = forecast::forecast(scene, *seconds).map_err(EditError::BadMotion)?;
                 all_or_nothing(scene, &found.edits)?;
+            }
+            Self::LetTrafficDrive {} => {
+                let start = start::traffic_drives(scene).map_err(EditError::BadMotion)?;
+                all_or_nothing(scene, &start.edits)?;
             }
             edit => at::apply_scoped(edit, scene, Scope::default())?,
         }

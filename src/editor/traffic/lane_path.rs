@@ -6,7 +6,7 @@ use crate::lanes::{along, nearest_lane};
 use scene::{BevLayout, Moving};
 
 /// A lane is an object's own if it is this near, m.
-const REACH_M: f64 = 6.0;
+pub(crate) const REACH_M: f64 = 6.0;
 /// Distance between two points of a path, m.
 const STEP_M: f64 = 1.0;
 /// Over this way something that stands beside the middle of its lane comes onto it, m.
@@ -27,10 +27,13 @@ pub fn lane_path(layout: &BevLayout, from: &Moving, length_m: f64) -> Vec<DVec2>
         1.0
     };
     // How far beside the lane it is now, to the left of the lane's direction.
-    let aside_m = DVec2::from_angle(lane.yaw_rad).perp_dot(from.at_m - lane.at_m);
+    let way = DVec2::from_angle(lane.yaw_rad);
+    let aside_m = way.perp_dot(from.at_m - lane.at_m);
+    // Beyond the lane's end the way begins where it is, not where the lane ends.
+    let beyond_m = way.dot(from.at_m - lane.at_m);
     let point = |i: usize| {
         let along_m = i as f64 * STEP_M;
-        let (at_m, yaw_rad) = along(layout, &lane, sign * along_m);
+        let (at_m, yaw_rad) = along(layout, &lane, beyond_m + sign * along_m);
         let left = 1.0 - smooth(along_m / SETTLE_M.min(length_m).max(STEP_M));
         at_m + DVec2::from_angle(yaw_rad).perp() * (aside_m * left)
     };
@@ -74,4 +77,39 @@ pub fn aside(points_m: &[DVec2], left_m: impl Fn(f64) -> f64) -> Vec<DVec2> {
         out.push(*p + way(i).perp() * left_m(along_m));
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use scene::{Polyline, PolylineKind};
+
+    /// Whoever stands beyond the end of a lane starts from there, and comes back onto the lane if it leads there.
+    #[test]
+    fn a_way_begins_where_one_stands() {
+        let mut layout = BevLayout::default();
+        layout.polylines = Arc::new(vec![Polyline {
+            kind: PolylineKind::LaneCenter,
+            points_m: vec![DVec2::new(-40.0, 0.0), DVec2::new(30.0, 0.0)],
+        }]);
+        for (x, y, yaw_rad) in [
+            (34.5, 1.0, 0.0),
+            (34.5, -1.0, 3.0),
+            (-43.0, 0.5, 0.1),
+            (5.0, 1.5, 0.0),
+        ] {
+            let from = Moving::still(DVec2::new(x, y), yaw_rad);
+            let path = lane_path(&layout, &from, 40.0);
+            assert!(path[0].distance(from.at_m) < 1e-9, "{x} {y}: {}", path[0]);
+            let step_m = path.array_windows::<2>().map(|[a, b]| a.distance(*b));
+            assert!(step_m.fold(0.0, f64::max) < 1.2, "{x} {y}: no leap");
+            assert!(
+                path[40].y.abs() < 0.05,
+                "{x} {y}: on the lane at last: {}",
+                path[40]
+            );
+        }
+    }
 }

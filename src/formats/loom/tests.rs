@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use scene::background::{Background, Form, Tree, TreeKind};
+use scene::background::{Background, Form, Post, PostKind, Tree, TreeKind};
 use scene::clip::ObjectVoxels;
 use scene::roads::{LaneKind, NodeId, NodeKind, RoadCrossing, RoadStop};
 use scene::{Arranged, Arrangement, BoxName, Members, Road, RoadId, RoadLane, RoadNetwork};
@@ -66,6 +66,10 @@ fn sample(version: u32) -> Scene {
             crown_radius_m: 1.7,
             kind: TreeKind::Conifer,
         }));
+        if version >= 9 {
+            let lamp = Post::typical(PostKind::StreetLight, DVec2::new(2.0 / 3.0, 7.1), 0.1);
+            background.add_as(Form::Post(lamp), true);
+        }
         scene.background = Arc::new(background);
     }
     if version >= 5 {
@@ -388,8 +392,8 @@ const FROM_0: Migration = Migration {
 
 #[test]
 fn an_older_version_goes_through_every_step() {
-    let [v1, v2, v3, v4, v5, v6, v7] = migrate::ALL;
-    let chain = [FROM_0, v1, v2, v3, v4, v5, v6, v7];
+    let [v1, v2, v3, v4, v5, v6, v7, v8] = migrate::ALL;
+    let chain = [FROM_0, v1, v2, v3, v4, v5, v6, v7, v8];
     let found = read::read(Cursor::new(of_version_0()), &chain).expect("version 0 opens");
     assert_same(&found, &sample(1));
     // The steps are for their versions only.

@@ -71,10 +71,21 @@ impl SceneryWish {
         }
     }
 
-    /// Edits that regenerate the scenery of the frame that a scene shows: what stands whole in the region goes, so do voxels
-    /// of scenery there that belong to no thing; what comes keeps clear of all that stays, and of the region's border. On a
-    /// larger map that happens window by window.
+    /// Edits that regenerate the scenery of the frame that a scene shows: what stands whole in the region goes unless it was
+    /// placed ([`Thing::placed`]) or is locked, so do voxels of scenery there that belong to no thing; what comes keeps clear of
+    /// all that stays, and of the region's border. On a larger map that happens window by window.
     pub fn edits(&self, scene: &Scene) -> Result<Vec<Edit>, GenError> {
+        let locked = &scene.arranged.locked.things;
+        self.edits_without(scene, |t| !t.placed && !locked.contains(&t.id))
+    }
+
+    /// The same around everything that stands there.
+    pub fn edits_around(&self, scene: &Scene) -> Result<Vec<Edit>, GenError> {
+        self.edits_without(scene, |_| false)
+    }
+
+    /// Edits that draw scenery in the place of the things that may go.
+    fn edits_without(&self, scene: &Scene, may_go: impl Fn(&Thing) -> bool) -> Result<Vec<Edit>, GenError> {
         let map = scene.frame().extent();
         let (mut ids, mut forms, mut cleared) = (Vec::new(), Vec::new(), Vec::new());
         for (place, own) in windows_over(map) {
@@ -99,7 +110,7 @@ impl SceneryWish {
                 true => scene.clone(),
                 false => scene.window_at(to_window),
             };
-            let drawn = wish.in_window(&within, &columns, map == Extent::WINDOW)?;
+            let drawn = wish.in_window(&within, &columns, map == Extent::WINDOW, &may_go)?;
             ids.extend(drawn.0);
             let things: Background = drawn.1.into_iter().collect();
             let back = scene::Pose {
@@ -113,7 +124,6 @@ impl SceneryWish {
             forms.extend(on_map.iter().map(|t| t.form.clone()));
             cleared.extend(on_the_map(map, place.extent(), &columns));
         }
-        ids.retain(|id| !scene.arranged.locked.things.contains(id));
         let mut edits = Vec::new();
         if !ids.is_empty() {
             edits.push(Edit::RemoveThings { ids });
@@ -121,7 +131,7 @@ impl SceneryWish {
         let shape = (!self.region.is_empty()).then_some(Shape::Cells(cleared));
         edits.push(Edit::ClearScenery { shape });
         if !forms.is_empty() {
-            edits.push(Edit::AddThings { forms });
+            edits.push(Edit::DrawScenery { forms });
         }
         Ok(edits)
     }
@@ -132,6 +142,7 @@ impl SceneryWish {
         scene: &Scene,
         columns: &[bool],
         alone: bool,
+        may_go: &dyn Fn(&Thing) -> bool,
     ) -> Result<(Vec<ThingId>, Vec<Thing>), GenError> {
         let frame = scene.frame();
         let whole = |form: &Form| {
@@ -149,7 +160,7 @@ impl SceneryWish {
         let goes = |form: &Form| whole(form) == (true, false);
         let (mut ids, mut stays) = (Vec::<ThingId>::new(), Background::default());
         for thing in scene.background.iter() {
-            match goes(&thing.form) {
+            match may_go(thing) && goes(&thing.form) {
                 true => ids.push(thing.id),
                 false => drop(stays.add(thing.form.clone())),
             }
@@ -271,27 +282,6 @@ impl Paved {
     }
 }
 
-/// Edits that draw what stands beside the roads where a map has become larger; none where nothing stood beside the roads before.
-pub fn beside_new_ground(before: &Scene, larger: &Scene) -> Vec<Edit> {
-    let (old, new) = (before.canvas().extent(), larger.canvas().extent());
-    if old == new || before.background.is_empty() {
-        return Vec::new();
-    }
-    let mut region = InpaintMask::of_rect(new, new.min_m().truncate(), new.max_m().truncate());
-    let was_there = |[x, y]: &[usize; 2]| {
-        let p = new.center(*x, *y, 0);
-        old.column_at(p.x, p.y).is_some()
-    };
-    let old_columns: Vec<[usize; 2]> = new.all_columns().filter(was_there).collect();
-    region.set_columns(new, &old_columns, false);
-    let wish = SceneryWish {
-        region,
-        ..SceneryWish::of_seed(before.seed)
-    };
-    // The rules never fail.
-    wish.edits(larger).unwrap_or_default()
-}
-
 #[cfg(test)]
 mod tests {
     use glam::DVec2;
@@ -338,6 +328,49 @@ mod tests {
         let after = &document.scene().background;
         assert_eq!(after.get(kept.id), Some(&kept));
         assert!(after.len() > 1);
+    }
+
+    /// What a hand, words or a file placed or moved stands as it was; what comes keeps clear of it.
+    #[test]
+    fn what_was_placed_stands_when_scenery_is_drawn_anew() {
+        let mut document = Document::new(open::from_template("straight", 7).expect("a template"));
+        let drawn = document.scene().background.len();
+        let house = Building::rectangle(DVec2::new(-25.0, 25.0), DVec2::splat(4.0), DVec2::X, 7.0);
+        let add = Edit::AddThings {
+            forms: vec![Form::Building(house)],
+        };
+        document.apply("Add a house", &add).expect("sound");
+        let moved = document.scene().background.iter().next().expect("a thing").id;
+        let shift = Edit::MoveThings {
+            ids: vec![moved],
+            by_m: DVec2::new(0.4, 0.0),
+            turn_deg: 0.0,
+        };
+        document.apply("Move a thing", &shift).expect("sound");
+        let placed = |document: &Document| -> Vec<Thing> {
+            let all = document.scene().background.iter();
+            all.filter(|t| t.placed).cloned().collect()
+        };
+        let hands = placed(&document);
+        assert_eq!(hands.len(), 2);
+        for seed in 11..14 {
+            let before = document.scene().background.clone();
+            let edits = wish(seed).edits(document.scene()).expect("rules");
+            document.apply_all("Draw scenery", &edits).expect("sound");
+            let after = &document.scene().background;
+            assert_eq!(placed(&document), hands, "seed {seed}");
+            assert!(*after != before && after.len() > 2 && drawn > 2);
+            let house = &hands[1].form;
+            let mut own = std::collections::BTreeSet::new();
+            scenery_around::columns(Extent::WINDOW, house, 0.0, |x, y| {
+                own.insert([x, y]);
+            });
+            for thing in after.iter().filter(|t| t.id != hands[1].id) {
+                scenery_around::columns(Extent::WINDOW, &thing.form, 0.0, |x, y| {
+                    assert!(!own.contains(&[x, y]), "{:?} stands in the house", thing.form);
+                });
+            }
+        }
     }
 
     #[test]

@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 
 use anyhow::bail;
 
+use super::afterwards::{off_by, told};
+use super::in_motion::set_in_motion;
+use super::new_ground::beside_new_ground;
 use super::open;
 use super::prompting::{How, Laid, lay_out};
-use super::scenery::beside_new_ground;
-use editor::{Apply, Edit, apply_all};
+use editor::clashes::{clashes, new_clashes};
+use editor::{Edit, apply_all};
 use place::description::Description;
-use scene::clip::{Manoeuvre, Template};
-use scene::{BoxId, Class, Clip, Frame, Scene};
+use scene::{Clip, Frame, Scene};
 use words::answer::answer;
 use words::beside::edits::{OpenBackground, ThingOutcome, carry_out as carry_out_beside, means_barriers};
 use words::beside::wishes::scenery;
@@ -22,11 +24,6 @@ use words::reader::Mode;
 use words::reading::Reading;
 use words::stage::{OpenScene, Outcome};
 use world::World;
-
-/// What begins later than this makes a scene longer, s.
-const LATE_S: f64 = 3.0;
-/// What begins is seen for so long, s.
-const SEEN_S: f64 = 5.0;
 
 /// A scene made from a description.
 pub struct Made {
@@ -158,61 +155,21 @@ pub fn made(mut laid: Laid, seed: u64) -> Made {
     let before = scene.clone();
     let cannot = set_in_motion(&mut scene, &laid);
     laid.road.missing.extend(cannot);
-    // (what no rule draws is not there)
-    let _ = apply_all(&beside_new_ground(&before, &scene), &mut scene);
+    let off = off_by(&laid);
+    laid.notes.extend(off.into_iter().chain(told(&clashes(&scene))));
+    let edits = beside_new_ground(&before, &scene);
+    laid.road.missing.extend(take_over(&edits, &mut scene));
     Made { scene, laid }
 }
 
-/// Lets everything move that was said to, and the ego vehicle with it; what cannot be, in words.
-fn set_in_motion(scene: &mut Scene, laid: &Laid) -> Vec<String> {
-    let d = &laid.description;
-    let length = d.length_s.map(|length_s| Edit::SetLength {
-        length_s: length_s.min(Clip::MAX_LENGTH_S),
-        rate_hz: None,
-    });
-    let moving = d.foreground.iter().zip(&laid.graphed.nodes);
-    let moving = moving.filter_map(|(o, nodes)| Some((o, nodes, o.motion?)));
-    let objects: Vec<(BoxId, Class, Manoeuvre)> = moving
-        .flat_map(|(o, nodes, how)| nodes.iter().map(move |id| (BoxId(*id), o.class, how)))
-        .collect();
-    if objects.is_empty() && d.ego_motion.is_none() && length.is_none() {
-        return Vec::new();
+/// Draws all of what stands on new ground, or none of it and says why.
+fn take_over(edits: &[Edit], scene: &mut Scene) -> Option<String> {
+    let mut drawn = scene.clone();
+    match apply_all(edits, &mut drawn) {
+        Ok(()) => *scene = drawn,
+        Err(error) => return Some(format!("scenery on the new ground: {error}")),
     }
-    // What begins late makes the scene longer.
-    let latest_s = objects
-        .iter()
-        .filter_map(|(_, _, how)| how.from_s)
-        .fold(0.0, f64::max);
-    let length = length.or((latest_s > LATE_S).then(|| Edit::SetLength {
-        length_s: (latest_s + SEEN_S).min(Clip::MAX_LENGTH_S),
-        rate_hz: None,
-    }));
-    let ego = match (d.ego_motion, objects.is_empty()) {
-        (None, true) => None,
-        (how, _) => Some(Edit::let_move(
-            &how.unwrap_or(Manoeuvre::of(Template::Follow)),
-            None,
-            None,
-        )),
-    };
-    let edits = objects
-        .iter()
-        .map(|(id, class, how)| Edit::let_move(how, Some(*id), Some(*class)));
-    // The ego vehicle first, so that others know when it is near; and once more at the end, so that it sees them.
-    let all = length.into_iter().chain(ego.clone()).chain(edits).chain(ego);
-    let mut cannot = Vec::new();
-    for edit in all {
-        let known = match &edit {
-            Edit::LetMove { id: Some(id), .. } => scene.frame().boxes.contains_key(id),
-            _ => true,
-        };
-        // (what found no place is told elsewhere)
-        if known && let Err(error) = edit.apply(scene) {
-            cannot.push(error.to_string());
-        }
-    }
-    cannot.dedup();
-    cannot
+    None
 }
 
 /// What a text changes in a scene.
@@ -237,7 +194,25 @@ impl Edited {
         !(self.outcome.questions.is_empty() && self.things.questions.is_empty())
     }
 
-    /// The answer in a sentence.
+    /// What stands in each other or meets in the scene afterwards, and did not `before`, as the checks say it.
+    fn clashes(&self, before: &Scene) -> Vec<String> {
+        let edits = self.edits();
+        let mut after = before.clone();
+        // (while something is asked nothing changes)
+        match !self.asks() && !edits.is_empty() && apply_all(&edits, &mut after).is_ok() {
+            true => new_clashes(before, &after),
+            false => Vec::new(),
+        }
+    }
+
+    /// The answer in a sentence, with what the checks say of what came of it; `before` is the scene that it changes.
+    pub fn answer_on(&self, before: &Scene) -> String {
+        let clashes = told(&self.clashes(before)).map(|c| format!("But {c}."));
+        let parts: Vec<String> = Some(self.answer()).into_iter().chain(clashes).collect();
+        parts.join(" ")
+    }
+
+    /// The answer in a sentence; nothing is looked at once more.
     pub fn answer(&self) -> String {
         let mut parts = Vec::new();
         let reading = &self.heard.reading;
@@ -323,13 +298,14 @@ fn put_on_ground(edits: &mut [Edit], frame: &Frame) {
 }
 
 /// The part of a scene that text edits look at: what is there at a moment, and the clip that the moment is of.
-pub fn open_scene<'a>(scene: &'a Scene, clip: &Clip) -> OpenScene<'a> {
+pub fn open_scene<'a>(scene: &'a Scene, clip: &'a Clip) -> OpenScene<'a> {
     let frame = scene.frame();
     OpenScene {
         boxes: &frame.boxes,
         layout: &frame.layout,
         prompt: &scene.prompt,
         conditions: scene.conditions,
+        clip: Some(clip),
         ego_moves: clip.ego.is_some(),
         length_s: clip.length_s,
     }
@@ -419,7 +395,27 @@ mod tests {
     use super::*;
     use editor::Document;
     use scene::Extent;
-    use scene::{Relief, SceneBox};
+    use scene::{BoxId, Relief, SceneBox};
+
+    #[test]
+    fn scenery_that_is_refused_is_told_and_not_half_drawn() {
+        let description = read("a parked car 12 m ahead")
+            .expect("a scene")
+            .described
+            .description;
+        let mut scene = make("", &description, 3, &How::default()).scene;
+        let before = scene.clone();
+        let id = *before.frame().boxes.keys().next().expect("the car");
+        let refused = [Edit::RemoveBox { id }, Edit::RemoveBox { id: BoxId(4000) }];
+        let said = take_over(&refused, &mut scene).expect("no such box");
+        assert!(
+            said.starts_with("scenery on the new ground: ") && said.contains("4000"),
+            "{said}"
+        );
+        assert_eq!(scene.content(), before.content());
+        assert_eq!(take_over(&refused[..1], &mut scene), None);
+        assert!(scene.frame().boxes.is_empty());
+    }
 
     /// What words add or move on a grade stands on its ground.
     #[test]

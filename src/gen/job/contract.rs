@@ -124,8 +124,13 @@ pub struct GenReport {
     pub ground_kept: usize,
     /// Voxels that the networks put on the road or in a removed box's place unasked, and that were cleared.
     pub invented_cleared: usize,
-    /// Columns that the networks left without ground in a scene that should be complete, and that got ground.
+    /// Columns that the networks left without ground in a scene that should be complete, and that got ground in the result.
     pub holes_closed: usize,
+    /// Where, in the window of the job's scene that was generated.
+    #[serde(skip)]
+    pub holes: Vec<[usize; 3]>,
+    /// Of a whole scene: things that say what stands beside its roads, so that the networks invented nothing there.
+    pub things_given: usize,
     /// Voxels put under crowns that hung in the air.
     pub stems_added: usize,
     /// Voxels that were taken out because they hung in the air or belonged to an object without a box.
@@ -158,6 +163,12 @@ impl GenReport {
     /// Notes what hung in the air.
     pub fn grounded(&mut self, found: super::keep_grounded::Grounded) {
         (self.stems_added, self.loose_dropped) = (found.stems, found.dropped);
+    }
+
+    /// Notes the holes that were closed.
+    pub fn close(&mut self, holes: Vec<[usize; 3]>) {
+        self.holes_closed = holes.len();
+        self.holes = holes;
     }
 
     /// Adds what another part of the same job did. The share of the columns is the caller's to set.

@@ -62,6 +62,9 @@ pub struct Thing {
     /// Which of many looks its details take (boughs, balconies); moving a thing keeps them.
     #[serde(default)]
     pub look: u32,
+    /// Put or changed by hand, by words or by a file, not drawn by a seed: when scenery is drawn anew, it stays.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub placed: bool,
 }
 
 /// Height of the ground at a point, m, in the frame that the form is given in.
@@ -87,6 +90,15 @@ impl Form {
             Self::Line(line) => line.kind.class(),
             Self::Post(post) => post.kind.class(),
             Self::Building(_) | Self::Bridge(_) => Class::Manmade,
+        }
+    }
+
+    /// True if it says what kind of place it stands in; see [`Background::describes_place`].
+    pub fn describes_place(&self) -> bool {
+        match self {
+            Self::Building(_) | Self::Tree(_) | Self::Shrubs(_) => true,
+            Self::Line(line) => line.kind != LineKind::GuardRail,
+            Self::Post(_) | Self::Bridge(_) => false,
         }
     }
 
@@ -235,11 +247,27 @@ impl Background {
         self.things.insert(thing.id, thing)
     }
 
-    /// Adds a form under the next id, which is its look too.
+    /// Adds a form that a seed drew under the next id, which is its look too.
     pub fn add(&mut self, form: Form) -> ThingId {
+        self.add_as(form, false)
+    }
+
+    /// Adds a form under the next id, which is its look too; see [`Thing::placed`].
+    pub fn add_as(&mut self, form: Form, placed: bool) -> ThingId {
         let id = self.next_id();
-        self.insert(Thing { id, form, look: id.0 });
+        self.insert(Thing {
+            id,
+            form,
+            look: id.0,
+            placed,
+        });
         id
+    }
+
+    /// True if it says what kind of place it is: buildings, plants or walls stand there. Signs, lamps, benches and bridges
+    /// alone leave that open.
+    pub fn describes_place(&self) -> bool {
+        self.things.values().any(|t| t.form.describes_place())
     }
 
     /// Takes a thing out.

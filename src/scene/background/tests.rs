@@ -79,6 +79,7 @@ fn thing(form: Form) -> Thing {
         id: ThingId(7),
         form,
         look: 7,
+        placed: false,
     }
 }
 
@@ -186,6 +187,7 @@ fn too_many_things_are_one_problem() {
     let tree = |i: u32| Thing {
         id: ThingId(i),
         look: 0,
+        placed: false,
         form: Form::Tree(Tree {
             position_m: DVec2::new(f64::from(i % 300), 0.0),
             height_m: 4.0,

@@ -331,3 +331,29 @@ fn another_seed_each_time_is_drawn_and_recorded() {
     let params = bench.app().generation.live.params_for(&scene, false);
     assert_eq!(params.seed, scene.seed);
 }
+
+/// One undo is one step: while something is generated it ends that, and takes the edit before back only when it is asked again.
+#[test]
+fn undo_while_generating_takes_nothing_else_back() {
+    for scenery_first in [true, false] {
+        let mut bench = Bench::new();
+        bench.off();
+        bench.app().state.tools.things.locked = !scenery_first;
+        let opened = bench.app().document.settled_scene().content();
+        bench.key(Modifiers::NONE, egui::Key::J);
+        bench.key(Modifiers::NONE, egui::Key::Delete);
+        let edited = bench.app().document.settled_scene().content();
+        bench.click("Generate everything");
+        let started = bench.started.recv_timeout(PATIENCE);
+        assert_eq!(started, Ok(RegionMode::Full));
+        assert_eq!(bench.app().undo_step(), Some("Generate"));
+        bench.key(Modifiers::COMMAND, egui::Key::Z);
+        bench.wait_until("the end", |b| b.app().generation.live.running.is_none());
+        bench.steps(3);
+        let now = bench.app().document.settled_scene().content();
+        assert_eq!(now, edited, "scenery first: {scenery_first}");
+        assert_eq!(bench.app().undo_step(), Some("Delete box"));
+        bench.key(Modifiers::COMMAND, egui::Key::Z);
+        assert_eq!(bench.app().document.settled_scene().content(), opened);
+    }
+}

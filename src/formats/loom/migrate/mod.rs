@@ -9,6 +9,7 @@ mod v4;
 mod v5;
 mod v6;
 mod v7;
+mod v8;
 
 use std::io::{Read, Seek};
 
@@ -37,7 +38,7 @@ pub enum Change {
 }
 
 /// Every step, oldest first, each to the version that the next one takes.
-pub const ALL: [Migration; 7] = [
+pub const ALL: [Migration; 8] = [
     v1::TO_V2,
     v2::TO_V3,
     v3::TO_V4,
@@ -45,6 +46,7 @@ pub const ALL: [Migration; 7] = [
     v5::TO_V6,
     v6::TO_V7,
     v7::TO_V8,
+    v8::TO_V9,
 ];
 
 /// What a step may change.

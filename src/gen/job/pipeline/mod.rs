@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::close_holes::{close_holes, close_holes_of_edit};
+use crate::close_holes::{close_holes, close_holes_of_edit, still_closed};
 use crate::composite::{composite, seam_change_share, untouched_hash, untouched_voxels_changed};
 use crate::contract::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
@@ -278,10 +278,11 @@ impl OccPipeline {
                 refine,
             )
         })?;
+        let mut holes = Vec::new();
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, true, &mut generated);
             if params.named.completeness.is_none_or(|share| share >= COMPLETE) {
-                report.holes_closed = close_holes(&frame.layout, &mut generated);
+                holes = close_holes(&frame.layout, &mut generated);
             }
             report.grounded(keep_grounded(
                 frame,
@@ -291,8 +292,10 @@ impl OccPipeline {
                 &mut generated,
             ));
         }
+        standing::keep_loose_things(&job.scene, &region, &mut generated);
         let source = &frame.source.occupancy;
-        let result = self.finish(job, source, &generated, &region, &mut report);
+        let mut result = self.finish(job, source, &generated, &region, &mut report);
+        result.report.close(still_closed(holes, &result.occupancy));
         self.adopt(
             &result.occupancy,
             &condition,
@@ -448,16 +451,19 @@ impl OccPipeline {
                 keep_unchanged(frame, &region, inpainted, &request, &source, &mut generated);
             Ok::<_, GenError>(generated)
         })?;
+        let mut holes = Vec::new();
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, false, &mut generated);
             report.ground_kept = keep_ground(frame, &region, &mut generated);
             report.unobserved_kept = keep_unobserved(frame, &region, inpainted, &request, &mut generated);
             report.invented_cleared = keep_clear(frame, &region, inpainted, &request, &mut generated);
             let complete = is_new && named.completeness.is_some_and(|share| share >= COMPLETE);
-            report.holes_closed = close_holes_of_edit(&frame.layout, before, complete, &mut generated);
+            holes = close_holes_of_edit(&frame.layout, before, (&region, complete), &mut generated);
             report.grounded(keep_grounded(frame, &region, false, &request, &mut generated));
         }
-        let result = self.finish(job, before, &generated, &region, &mut report);
+        standing::keep_loose_things(&job.scene, &region, &mut generated);
+        let mut result = self.finish(job, before, &generated, &region, &mut report);
+        result.report.close(still_closed(holes, &result.occupancy));
         if fresh {
             return Ok(result); // not adopted: its states around the region are noised, not inverted
         }
@@ -514,6 +520,28 @@ impl Pipeline for OccPipeline {
             RegionMode::Auto => self.edit(job, ctx),
         });
         self.unfinished = unfinished;
-        result
+        let mut result = result?;
+        result.report.notes.extend(job.params.notes());
+        if job.params.region == RegionMode::Full
+            && let Some(given) = standing::given(&job.scene)
+        {
+            let before = job.scene.for_generation();
+            let differ = before.frame().occupancy.count_different(&result.occupancy);
+            let note = given_note(given, differ);
+            result.report.things_given = given;
+            result.report.notes.push(note);
+        }
+        Ok(result)
     }
+}
+
+/// What is to be said of a whole scene whose things say what stands beside its roads.
+fn given_note(things: usize, voxels: usize) -> String {
+    let things = match things {
+        1 => "1 thing says".to_owned(),
+        n => format!("{n} things say"),
+    };
+    format!(
+        "{things} what stands beside the roads, so nothing else was invented there; {voxels} voxels differ from before"
+    )
 }

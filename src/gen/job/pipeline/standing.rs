@@ -2,8 +2,46 @@
 
 use std::sync::Arc;
 
+use crate::region::Region;
 use scene::background::Columns;
 use scene::{Background, BevLayout, Class, Extent, Relief, Scene, VoxelGrid, Window};
+
+/// How many things say what stands beside the roads of a scene, so that networks invent nothing else; `None` if they may.
+pub fn given(scene: &Scene) -> Option<usize> {
+    let says = scene.background.describes_place() && !scene.frame().inferred.background;
+    says.then(|| scene.background.len())
+}
+
+/// Puts things that the networks were not told of, because they say nothing of the place (signs, lamps), into what was generated
+/// in a region of the window.
+pub fn keep_loose_things(scene: &Scene, region: &Region, generated: &mut VoxelGrid) {
+    let frame = scene.frame();
+    if given(scene).is_some() || frame.inferred.background {
+        return;
+    }
+    for thing in scene.background.in_extent(Extent::WINDOW) {
+        let columns = thing.columns(&frame.layout);
+        let held = columns
+            .iter()
+            .filter(|([x, y], _)| region.columns[x * Window::NY + y]);
+        for ([x, y], labels) in held {
+            stand_in_column(labels, generated.column_mut(*x, *y));
+        }
+    }
+}
+
+/// Puts labels into a column wherever no object stands.
+fn stand_in_column(labels: &[u8; Window::NZ], column: &mut [u8; Window::NZ]) {
+    let held = labels
+        .iter()
+        .zip(column)
+        .filter(|(label, _)| **label != Class::FREE);
+    for (label, to) in held {
+        if !Class::from_id(*to).is_some_and(Class::is_object) {
+            *to = *label;
+        }
+    }
+}
 
 /// The voxels of a frame's background, kept from one job to the next: most edits leave it alone.
 #[derive(Clone)]
@@ -14,13 +52,11 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// The background of a scene's frame on the ground of `layout`; reuses `last` if nothing changed. `None` if the scene
-    /// has no background, or only one that was guessed from voxels, which lacks much of what is there.
+    /// The background of a scene's frame on the ground of `layout`; reuses `last` if nothing changed. `None` if no thing of it
+    /// says what kind of place it is (a sign alone silences no invention), or if it was guessed from voxels and lacks much of what
+    /// is there.
     pub fn of(scene: &Scene, layout: &BevLayout, last: Option<&Self>) -> Option<Self> {
-        let frame = scene.frame();
-        if scene.background.is_empty() || frame.inferred.background {
-            return None;
-        }
+        given(scene)?;
         let same =
             |last: &&Self| Arc::ptr_eq(&last.background, &scene.background) && last.relief == layout.relief;
         if let Some(last) = last.filter(same) {
@@ -44,16 +80,7 @@ impl Standing {
     /// Puts it into a draft wherever no object stands.
     pub fn stand_in(&self, draft: &mut VoxelGrid) {
         for ([x, y], labels) in &*self.columns {
-            let column = draft.column_mut(*x, *y);
-            for (label, to) in labels
-                .iter()
-                .zip(column)
-                .filter(|(label, _)| **label != Class::FREE)
-            {
-                if !Class::from_id(*to).is_some_and(Class::is_object) {
-                    *to = *label;
-                }
-            }
+            stand_in_column(labels, draft.column_mut(*x, *y));
         }
     }
 }
@@ -122,5 +149,28 @@ mod tests {
         assert_ne!(first.columns, other.columns);
         scene.background = Arc::default();
         assert!(Standing::of(&scene, &layout, None).is_none());
+        assert_eq!(given(&scene), None);
+    }
+
+    /// One sign says nothing of the place: networks go on inventing, and the sign stands in what they give.
+    #[test]
+    fn a_sign_silences_nothing_and_stays() {
+        use scene::Form;
+        use scene::background::{Post, PostKind};
+        let mut scene = scene(5);
+        let layout = scene.frame().layout.clone();
+        assert_eq!(given(&scene), Some(scene.background.len()));
+        let mut sign = Background::default();
+        let at = glam::DVec2::new(9.0, -11.0);
+        sign.add(Form::Post(Post::typical(PostKind::Sign, at, 0.0)));
+        let columns = sign.iter().next().expect("a sign").columns(&layout);
+        scene.background = Arc::new(sign);
+        assert!(Standing::of(&scene, &layout, None).is_none() && given(&scene).is_none());
+        let mut generated = VoxelGrid::new();
+        keep_loose_things(&scene, &Region::empty(), &mut generated);
+        assert_eq!(generated.count_set(), 0, "outside of the region nothing changes");
+        keep_loose_things(&scene, &Region::full(), &mut generated);
+        let stands = columns.values().flatten().filter(|l| **l != Class::FREE).count();
+        assert!(stands > 2 && generated.count_set() == stands);
     }
 }

@@ -2,6 +2,7 @@
 //! put back into the map.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::plan::{Part, Place, Task, extent_of, plan};
@@ -75,6 +76,7 @@ pub(super) fn over_the_map(
     let rounds = plan(job.scene.frame(), &job.params);
     let all: usize = rounds.iter().map(Vec::len).sum();
     let (mut report, mut done, mut made) = (GenReport::default(), 0, 0);
+    let mut holes = BTreeSet::new();
     let mut kept = unfinished.begin(job);
     for round in &rounds {
         let before = map.scene.clone();
@@ -88,6 +90,7 @@ pub(super) fn over_the_map(
             made += 1;
             if let Some(result) = kept.as_ref().and_then(|kept| kept.part(made - 1)) {
                 map.take(part, &cut, &result);
+                map.note_holes(part, &cut, &result, &mut holes);
                 report.add(&result.report);
                 continue;
             }
@@ -114,6 +117,7 @@ pub(super) fn over_the_map(
                 kept.keep(&result);
             }
             map.take(part, &cut, &result);
+            map.note_holes(part, &cut, &result, &mut holes);
             report.add(&result.report);
             if ctx.previews() && done < all {
                 ctx.preview(GenResult {
@@ -128,9 +132,13 @@ pub(super) fn over_the_map(
         kept.end();
     }
     report.region_share = report.region_columns as f64 / job.scene.frame().extent().columns() as f64;
+    let occupancy = map.scene.frame().occupancy.clone();
+    // Windows overlap, and what is drawn beyond their own part is thrown away.
+    report.close(holes.into_iter().collect());
+    report.voxels_changed = job.scene.frame().source.occupancy.count_different(&occupancy);
     Ok(GenResult {
         key: job.key(),
-        occupancy: map.scene.frame().occupancy.clone(),
+        occupancy,
         report,
     })
 }
@@ -233,6 +241,37 @@ impl Map {
             }
         }
         occupancy
+    }
+
+    /// Notes where on the map a result that was taken over has closed holes, and forgets those that it drew over.
+    fn note_holes(&self, part: &Part, cut: &Cut, result: &GenResult, holes: &mut BTreeSet<[usize; 3]>) {
+        let (window, map) = (part.place.extent(), self.scene.frame().extent());
+        let on_map = |x: usize, y: usize| {
+            let p = window.center(x, y, 0);
+            map.column_at(p.x, p.y)
+        };
+        let own = match &part.task {
+            Task::Whole(cells) => Some(extent_of(cells)),
+            Task::Edit | Task::Seam(_) => None,
+        };
+        let taken = |x: usize, y: usize| {
+            let p = window.center(x, y, 0);
+            own.is_none_or(|own| own.column_at(p.x, p.y).is_some())
+                && cut.columns.as_ref().is_none_or(|c| c[Extent::WINDOW.index(x, y)])
+        };
+        if let Some(columns) = &cut.columns {
+            let drawn = Extent::WINDOW
+                .all_columns()
+                .zip(columns)
+                .filter(|(_, taken)| **taken);
+            for [x, y] in drawn.filter_map(|([x, y], _)| on_map(x, y)) {
+                for z in 0..Extent::NZ {
+                    holes.remove(&[x, y, z]);
+                }
+            }
+        }
+        let closed = result.report.holes.iter().filter(|[x, y, _]| taken(*x, *y));
+        holes.extend(closed.filter_map(|[x, y, z]| on_map(*x, *y).map(|[x, y]| [x, y, *z])));
     }
 
     /// Takes a result over.
@@ -441,6 +480,28 @@ mod tests {
         // The same whatever came first: windows of one kind see nothing of each other.
         let again = over_the_map(&job, &JobCtx::detached(), &mut Unfinished::default(), grow).expect("runs");
         assert_eq!(again.occupancy, result.occupancy);
+    }
+
+    /// Windows overlap: a hole that two of them close counts once, and one beyond the map or in another's part not at all.
+    #[test]
+    fn counts_of_a_whole_map_are_of_what_differs() {
+        let params = GenParams {
+            region: RegionMode::Full,
+            ..GenParams::default()
+        };
+        let job = job(scene(), params);
+        let everywhere = |job: &Job, ctx: &JobCtx<'_>| {
+            let mut result = grow(job, ctx)?;
+            let columns = Extent::WINDOW.all_columns();
+            result.report.close(columns.map(|[x, y]| [x, y, 0]).collect());
+            Ok(result)
+        };
+        let result = over_the_map(&job, &JobCtx::detached(), &mut Unfinished::default(), everywhere);
+        let report = result.expect("runs").report;
+        assert_eq!(report.holes_closed, map().columns());
+        let source = &job.scene.frame().source.occupancy;
+        let again = over_the_map(&job, &JobCtx::detached(), &mut Unfinished::default(), grow).expect("runs");
+        assert_eq!(report.voxels_changed, source.count_different(&again.occupancy));
     }
 
     #[test]

@@ -60,8 +60,9 @@ pub fn scenery(
                 continue;
             }
             match forms(&here, ground, seed ^ i as u64) {
+                // What was asked for is placed: scenery drawn anew leaves it.
                 Ok(forms) => forms.into_iter().for_each(|f| {
-                    things.add(f);
+                    things.add_as(f, true);
                 }),
                 Err(why) => short.push(format!("{}: {why}", s.described())),
             }
