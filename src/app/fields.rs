@@ -21,6 +21,15 @@ pub fn label(ui: &mut Ui, text: &str, width_points: f32) {
         .text(at, egui::Align2::LEFT_CENTER, text, font, theme::text_weak());
 }
 
+/// A number with so many decimals; never a zero with a sign.
+pub fn decimal(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.to_owned(),
+        _ => text,
+    }
+}
+
 /// Three numbers in a row; the response of all of them.
 pub fn numbers(
     ui: &mut Ui,
@@ -38,7 +47,8 @@ pub fn numbers(
             let drag = DragValue::new(&mut value[axis])
                 .speed(speed)
                 .range(range.clone())
-                .fixed_decimals(2);
+                .fixed_decimals(2)
+                .custom_formatter(|v, _| decimal(v, 2));
             ui.add_sized([width, theme::ROW], drag)
                 .on_hover_text(format!("{name}, m"))
                 .accessible_name(name)
@@ -83,8 +93,23 @@ pub fn number(
             .speed(0.5 * 10f64.powi(-(decimals as i32)).max(0.02))
             .range(range)
             .fixed_decimals(decimals)
+            .custom_formatter(|v, _| decimal(v, decimals))
             .suffix(suffix);
         ui.add_sized([86.0, theme::ROW], drag).accessible_name(name)
     })
     .inner
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_zero_has_a_sign() {
+        assert_eq!(decimal(-0.04, 1), "0.0");
+        assert_eq!(decimal(-0.0, 2), "0.00");
+        assert_eq!(decimal(-0.06, 1), "-0.1");
+        assert_eq!(decimal(12.34, 0), "12");
+        assert_eq!(decimal(-10.0, 0), "-10");
+    }
 }

@@ -151,8 +151,8 @@ impl View3d {
 
     /// Fits a whole map in.
     pub fn frame_map(&mut self, extent: Extent) {
-        self.camera.focus_map(extent);
-        self.step_back();
+        self.camera
+            .focus_map(extent, f64::from(self.rect.width() / self.rect.height()));
     }
 
     /// What fits in by its height must also do so by its width, in a pane that is narrow.

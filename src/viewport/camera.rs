@@ -80,6 +80,8 @@ impl Default for ViewCamera {
     }
 }
 
+/// A whole map is looked at from so much farther away than where its corners are just seen.
+const ROOM_AROUND: f64 = 1.05;
 /// Nearest visible distance in a perspective view, m.
 const NEAR_M: f64 = 0.1;
 /// Half of the depth that an orthographic view shows about its target at least, m.
@@ -277,8 +279,9 @@ impl ViewCamera {
         *self = self.sane();
     }
 
-    /// Fits a whole map in, from above if it was looked at along the ground.
-    pub fn focus_map(&mut self, extent: Extent) {
+    /// Fits a whole map into a view of an aspect (width by height), with little left around it; from above if it was looked at along
+    /// the ground.
+    pub fn focus_map(&mut self, extent: Extent, aspect: f64) {
         let (low, high) = (extent.min_m(), extent.max_m());
         let middle = ((low + high) / 2.0).with_z(0.0);
         if !self.ortho {
@@ -289,7 +292,30 @@ impl ViewCamera {
                 self.pitch_rad = usual.pitch_rad;
             }
         }
-        self.focus(middle, (high - low).truncate().max_element() / 2.0 * 1.1);
+        self.target_m = middle;
+        *self = self.sane();
+        let [right, up, forward] = self.axes();
+        let aspect = if aspect.is_finite() {
+            aspect.clamp(0.05, 20.0)
+        } else {
+            1.0
+        };
+        let half_height = (self.fov_y_rad / 2.0).tan();
+        // How far away each corner is just seen.
+        let far_m = |corner: DVec3| {
+            let way = corner - middle;
+            let aside_m = way.dot(right).abs() / (half_height * aspect);
+            let above_m = way.dot(up).abs() / half_height;
+            let nearer_m = if self.ortho { 0.0 } else { way.dot(forward) };
+            aside_m.max(above_m) - nearer_m
+        };
+        let corners = (0..4).map(|i| {
+            let x = if i & 1 == 0 { low.x } else { high.x };
+            let y = if i & 2 == 0 { low.y } else { high.y };
+            DVec3::new(x, y, 0.0)
+        });
+        self.distance_m = corners.map(far_m).fold(0.5, f64::max) * ROOM_AROUND;
+        *self = self.sane();
     }
 
     /// Half of the depth that an orthographic view shows about its target, m.
@@ -460,9 +486,9 @@ mod tests {
             let extent = Extent::new(from, size).expect("sound");
             for preset in [ViewPreset::Perspective, ViewPreset::Top] {
                 let mut camera = ViewCamera::preset(preset);
-                camera.focus_map(extent);
+                camera.focus_map(extent, 1.0);
                 assert!(
-                    camera == camera.sane() && seen(&camera, extent, false),
+                    camera == camera.sane() && seen(&camera, extent, true),
                     "{preset:?} {extent}"
                 );
             }
@@ -473,12 +499,22 @@ mod tests {
                 );
             }
         }
-        // Over the networks' window nothing moves.
-        let mut camera = ViewCamera::default();
-        camera.focus_map(Extent::WINDOW);
-        let mut other = ViewCamera::default();
-        other.focus(DVec3::ZERO, 44.0);
-        assert_eq!(camera, other);
+        // In panes of any shape it is in the view, and some side of it comes near the edge.
+        for size_px in [[480, 480], [1600, 500], [300, 900]] {
+            for (from, size) in [([-100, -100], [200, 200]), ([-375, -125], [750, 250])] {
+                let extent = Extent::new(from, size).expect("sound");
+                let mut camera = ViewCamera::default();
+                camera.focus_map(extent, f64::from(size_px[0]) / f64::from(size_px[1]));
+                let (low, high) = (extent.min_m(), extent.max_m());
+                let corners = [[low.x, low.y], [low.x, high.y], [high.x, low.y], [high.x, high.y]];
+                let reach = corners.map(|[x, y]| {
+                    let c = camera.clip_from_world(size_px) * DVec3::new(x, y, 0.0).extend(1.0);
+                    (c.x.abs() / c.w).max(c.y.abs() / c.w)
+                });
+                let most = reach.into_iter().fold(0.0, f64::max);
+                assert!((0.85..=1.0).contains(&most), "{size_px:?} {size:?}: {reach:?}");
+            }
+        }
         for preset in ViewPreset::ALL {
             let over = ViewCamera::preset_over(preset, Extent::WINDOW);
             let usual = ViewCamera::preset(preset).sane();
@@ -519,11 +555,11 @@ mod tests {
     fn a_whole_map_is_never_seen_from_its_edge() {
         let mut camera = ViewCamera::preset(ViewPreset::Ego);
         (camera.pitch_rad, camera.fov_y_rad) = (0.0, 2.0);
-        camera.focus_map(Extent::WINDOW);
+        camera.focus_map(Extent::WINDOW, 1.5);
         assert_eq!(camera.pitch_rad, ViewCamera::default().pitch_rad);
         assert_eq!(camera.fov_y_rad, ViewCamera::default().fov_y_rad);
         let mut side = ViewCamera::preset(ViewPreset::Side);
-        side.focus_map(Extent::WINDOW);
+        side.focus_map(Extent::WINDOW, 1.5);
         assert!(side.ortho && side.pitch_rad == ViewCamera::preset(ViewPreset::Side).pitch_rad);
     }
 

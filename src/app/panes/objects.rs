@@ -13,7 +13,7 @@ use super::pane::{Pane, PaneContext, Place};
 use super::{thing_list, things};
 use crate::canvas_draw::box_color;
 use crate::command::{Command, ViewCommand};
-use crate::fields::{caption, field, fields, number, numbers};
+use crate::fields::{caption, decimal, field, fields, number, numbers};
 use crate::panes::label::label_ui;
 use crate::state::{UiState, called};
 use crate::tools::{Choose, Hand, ToolCommand};
@@ -362,6 +362,7 @@ fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>
             let drag = DragValue::new(&mut yaw_deg)
                 .speed(0.5)
                 .fixed_decimals(1)
+                .custom_formatter(|v, _| decimal(v, 1))
                 .suffix("°");
             let drag = ui
                 .add_sized([64.0, theme::ROW], drag)

@@ -54,7 +54,7 @@ fn a_wall_100_m_ahead_is_drawn_where_it_stands() {
     let mut near = ViewCamera::default();
     near.focus(DVec3::new(100.0, 0.0, 1.0), 10.0);
     let mut all = ViewCamera::default();
-    all.focus_map(map());
+    all.focus_map(map(), 1.0);
     let (on_wall, on_top) = (DVec3::new(100.0, 0.1, 0.9), DVec3::new(100.6, 0.1, 3.0));
     // A window in between: the textures follow, to and fro.
     let window = VoxelGrid::over(Extent::WINDOW);
