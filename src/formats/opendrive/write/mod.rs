@@ -197,6 +197,8 @@ fn is_left_hand(bundled: &Bundled) -> bool {
 }
 
 #[cfg(test)]
+mod limits_tests;
+#[cfg(test)]
 mod measure;
 #[cfg(test)]
 mod tests;

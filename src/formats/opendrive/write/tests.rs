@@ -11,7 +11,7 @@ use scene::raster::{draw_polyline, line_cells, polygon_cells};
 use scene::{BevLayer, Extent, Polyline, PolylineKind, Relief};
 
 /// Streets of one lane each way, 3.5 m wide, with shoulders of 0.4 m and walkways of 2 m.
-fn streets(axes: &[&[[f64; 2]]]) -> BevLayout {
+pub(super) fn streets(axes: &[&[[f64; 2]]]) -> BevLayout {
     let mut layout = BevLayout::default();
     let mut lines = Vec::new();
     let paint = |layout: &mut BevLayout, layer: BevLayer, axis: &[DVec2], half_m: f64| {
