@@ -70,9 +70,24 @@ enum Verdict {
     Clear,
 }
 
-/// Words by which a number of things comes about that no numeral of the text says.
-const WORKED_OUT: [&str; 9] = [
-    "couple", "pair", "both", "twins", "dozen", "half", "double", "twice", "each",
+/// Words by which a number of things, or so many times, comes about that no numeral of the text says.
+const WORKED_OUT: [&str; 16] = [
+    "another",
+    "couple",
+    "pair",
+    "both",
+    "twins",
+    "dozen",
+    "half",
+    "halve",
+    "halved",
+    "double",
+    "doubled",
+    "twice",
+    "triple",
+    "tripled",
+    "quadruple",
+    "each",
 ];
 
 /// Takes out of a reading every number that its text gives as another quantity; a number that is right but for its unit
@@ -81,7 +96,8 @@ pub fn set_right(reading: &mut Reading, tokens: &[Token], measures: &[Measure]) 
     let works_out = tokens.iter().any(|t| WORKED_OUT.contains(&t.text.as_str()));
     let judge = |slot: Slot| -> Verdict {
         let is_count = slot.kind == SlotKind::Of(Kind::Count);
-        if measures.iter().any(|m| slot.is(m)) || is_count && (slot.value <= 1.0 || works_out) {
+        let by_words = (is_count || slot.kind == SlotKind::Times) && works_out;
+        if measures.iter().any(|m| slot.is(m)) || by_words || is_count && slot.value <= 1.0 {
             return Verdict::Keep;
         }
         let own = |m: &&Measure| SlotKind::Of(m.kind) == slot.kind && near(m.raw, slot.value);
@@ -237,8 +253,8 @@ fn each_thing(things: &mut [Thing], visit: Visit<'_>) {
             },
             other => other,
         };
-        // (the first and the last are words)
-        if let Some(nth) = t.nth.filter(|n| *n > 1) {
+        // (the last, the first and the fifth are words)
+        if let Some(nth) = t.nth.filter(|n| *n > 5) {
             t.nth = count(nth, visit);
         }
         if let Some(id) = t.id {
@@ -334,6 +350,10 @@ mod tests {
         // Numbers that no numeral of the text says stay.
         assert_eq!(right("a couple of cars after 2 s", "add 2 car"), "add 2 car");
         assert_eq!(right("cars at 30 km/h", "add 4 car"), "add 4 car");
+        let third = "go the nth 3 car stop from 3s";
+        assert_eq!(right("the third car stops after 3 s", third), third);
+        let twice = "count car times 2";
+        assert_eq!(right("double the cars after 2 s", twice), twice);
         assert_eq!(right("30 cars at 30 km/h", "add 30 car"), "add 30 car");
     }
 }
