@@ -286,3 +286,90 @@ fn drives_become_pictures_to_train_on() {
         "{error}"
     );
 }
+
+/// A sweep in its sensor's frame says that it was lifted, and is lifted as it is asked to be.
+#[test]
+fn a_sweep_is_lifted_onto_the_map_and_says_so() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let mut points = String::new();
+    for i in 0..2560 {
+        let (x, y) = (f64::from(i % 80) * 0.5 - 20.0, f64::from(i / 80) * 0.5 - 8.0);
+        points.push_str(&format!("{x} {y} -1.84\n"));
+    }
+    let header = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2560\nHEIGHT 1\nPOINTS 2560\nDATA ascii\n";
+    std::fs::write(path("sweep.pcd"), format!("{header}{points}")).expect("written");
+    let report = import(&path("sweep.pcd"), &path("sweep.loom"));
+    let told = "the sweep lies in its sensor's frame: lifted by 1.84 m";
+    assert_eq!(report["notes"], serde_json::json!([told]));
+    let args = |lift: &str| {
+        [
+            "import",
+            &path("sweep.pcd"),
+            "--lift",
+            lift,
+            "-o",
+            &path("b.loom"),
+        ]
+        .map(str::to_owned)
+    };
+    let run = |lift: &str| {
+        let args = args(lift);
+        sceneloom(&args.iter().map(String::as_str).collect::<Vec<_>>())
+    };
+    let (code, said, _) = run("1.5");
+    assert!(
+        code == 0 && said.contains("lifted by 1.50 m, as asked for"),
+        "{said}"
+    );
+    let (code, _, error) = run("0");
+    assert!(
+        code == 2 && error.contains("none of 2560 points lies on the map"),
+        "{code} {error}"
+    );
+    let (code, _, error) = run("NaN");
+    assert!(code == 2 && error.contains("a lift of NaN m"), "{code} {error}");
+    let (code, _, error) = sceneloom(&[
+        "import",
+        &path("sweep.loom"),
+        "--lift",
+        "1",
+        "-o",
+        &path("c.loom"),
+    ]);
+    assert!(
+        code == 2 && error.contains("expected a point cloud"),
+        "{code} {error}"
+    );
+}
+
+/// What is not read is called what it is, whatever its name says.
+#[test]
+fn files_that_are_not_read_are_called_what_they_are() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    for (name, bytes, word) in [
+        (
+            "sample.json",
+            &b"[{\"token\": \"a\"}]"[..],
+            "a part of nuScenes' tables",
+        ),
+        ("drive.mcap", b"\x89MCAP0\r\n", "an MCAP recording"),
+        ("map", b"{\"type\": \"FeatureCollection\"}", "GeoJSON"),
+        ("a.xodr", b"PK\x03\x04", "a zip archive"),
+        ("b.json", b"{\"boxes\": []}", "no list of boxes"),
+        ("c.dat", b"\0\0\0\0", "a file of a kind that is not known"),
+    ] {
+        std::fs::write(path(name), bytes).expect("written");
+        let (code, _, error) = sceneloom(&["import", &path(name), "-o", &path("out.loom")]);
+        assert_eq!(code, 2, "{error}");
+        assert!(
+            error.contains(word) && error.trim_end().lines().count() == 1,
+            "{error}"
+        );
+    }
+    std::fs::create_dir(dir.path().join("clouds")).expect("made");
+    std::fs::write(path("clouds/000000.pcd"), "").expect("written");
+    let (code, _, error) = sceneloom(&["import", &path("clouds"), "-o", &path("out.loom")]);
+    assert!(code == 2 && error.contains("such as 000000.pcd"), "{error}");
+}

@@ -201,7 +201,7 @@ const TABLE: &[Foreign] = &[
         is: |h| h.begins(b"ASTM-E57"),
     },
     Foreign {
-        what: "a point cloud as text",
+        what: "rows of numbers as text, as of a point cloud",
         instead: CLOUD,
         is: |h| h.named(&["xyz", "pts", "asc", "csv", "txt"]) && is_rows_of_numbers(h.text),
     },

@@ -33,9 +33,9 @@ const LEAST_CELLS: usize = 50;
 const LEAST_SHARE: f64 = 0.25;
 const DIRECTIONS: usize = 8;
 const LEAST_DIRECTIONS: u32 = 3;
-/// Heights at which the ground of a cloud in the ego frame lies: with labels it is at -0.8 m, and a hill may be higher.
+/// Heights at which the ground of a cloud in the ego frame lies: with labels it is at -0.8 m, and a hill on the map may be higher.
 const LOWEST_M: f64 = -0.9;
-const HIGHEST_M: f64 = 1.5;
+const HIGHEST_M: f64 = 5.0;
 /// No sensor of a vehicle is mounted higher, m.
 const HIGHEST_MOUNT_M: f64 = 5.0;
 /// Tilt from here on is told, degrees: the ground is 0.7 m off at 20 m.
@@ -43,16 +43,18 @@ const TOLD_TILT_DEG: f64 = 2.0;
 
 /// The ground around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::import) struct Ground {
+pub(super) struct Ground {
     /// Its height at the origin, m.
-    pub(in crate::import) height_m: f64,
+    pub(super) height_m: f64,
     /// Slope along x and y.
     slope: DVec2,
+    /// Most of it lies where the ego frame has no ground.
+    is_beside: bool,
 }
 
 impl Ground {
     /// The ground that these points show; `None` if they show none.
-    pub(in crate::import) fn of(points: impl Iterator<Item = DVec3>) -> Option<Self> {
+    pub(super) fn of(points: impl Iterator<Item = DVec3>) -> Option<Self> {
         let lowest = lowest(points);
         let plane = plane(&lowest)?;
         let on: Vec<DVec3> = lowest
@@ -64,14 +66,21 @@ impl Ground {
         let is_ground = on.len() >= LEAST_CELLS
             && on.len() as f64 >= LEAST_SHARE * lowest.len() as f64
             && directions.count_ones() >= LEAST_DIRECTIONS;
-        is_ground.then_some(plane)
+        let beside = on
+            .iter()
+            .filter(|p| !(LOWEST_M..=HIGHEST_M).contains(&p.z))
+            .count();
+        is_ground.then_some(Self {
+            is_beside: 2 * beside > on.len(),
+            ..plane
+        })
     }
 
     /// How far a cloud with this ground must be lifted to lie on the map, m, to the centimetre; 0 where it does.
-    pub(in crate::import) fn lift_m(self) -> f64 {
-        match (LOWEST_M..=HIGHEST_M).contains(&self.height_m) {
-            true => 0.0,
-            false => -(self.height_m * 100.0).round() / 100.0,
+    pub(super) fn lift_m(self) -> f64 {
+        match self.is_beside && !(LOWEST_M..=HIGHEST_M).contains(&self.height_m) {
+            true => -(self.height_m * 100.0).round() / 100.0,
+            false => 0.0,
         }
     }
 
@@ -171,14 +180,18 @@ fn through([a, b, c]: [DVec3; 3]) -> Option<Ground> {
     (area.abs() >= LEAST_SPREAD_M2 && slope.length() <= STEEPEST).then(|| Ground {
         height_m: a.z - slope.dot(a.truncate()),
         slope,
+        is_beside: false,
     })
 }
 
-/// The plane of least squares, if it is not too steep.
+/// The plane of least squares, if it is not too steep. A slope counts as an error of one metre's height a metre: so it is level across
+/// a strip that is too narrow to tell.
 fn fitted<'a>(points: impl Iterator<Item = &'a DVec3>) -> Option<Ground> {
     let mut rows = vec![vec![0.0; 4]; 3];
     for p in points {
         let row = [p.x, p.y, 1.0, p.z];
+        rows[0][0] += 1.0;
+        rows[1][1] += 1.0;
         for (i, sums) in rows.iter_mut().enumerate() {
             for (sum, v) in sums.iter_mut().zip(row) {
                 *sum += row[i] * v;
@@ -190,6 +203,7 @@ fn fitted<'a>(points: impl Iterator<Item = &'a DVec3>) -> Option<Ground> {
     (slope.length() <= STEEPEST).then_some(Ground {
         height_m: found[2],
         slope,
+        is_beside: false,
     })
 }
 
@@ -275,6 +289,7 @@ mod tests {
         let ground = |height_m| Ground {
             height_m,
             slope: DVec2::ZERO,
+            is_beside: true,
         };
         for height_m in [-0.83, -0.37, 0.0, 1.0] {
             assert_eq!(ground(height_m).lift_m(), 0.0, "{height_m}");

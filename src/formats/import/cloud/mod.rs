@@ -18,7 +18,7 @@ use glam::DVec3;
 use scene::{Class, Pose, Recorded, SensorRig, VoxelGrid, Window};
 
 use super::{GUESSED, Loaded, Source, labelled};
-pub(super) use level::Ground;
+use level::Ground;
 
 /// Fields of points whose numbers are classes of Occ3D, in small letters.
 pub(super) const LABELS: [&str; 6] = [

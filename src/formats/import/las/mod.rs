@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use scene::{Class, Window};
 
-use super::cloud::{Cloud, Ground, Label, NothingOnTheMap};
+use super::cloud::{Cloud, Label, NothingOnTheMap};
 use super::{Content, Importer, Source};
 use crate::las::{Asprs, of_asprs};
 use crate::{FormatError, Holds};
@@ -135,7 +135,7 @@ pub fn read_around(source: &Source<'_>, origin_m: Option<DVec3>) -> Result<Conte
 const SAMPLED: u64 = 1 << 16;
 /// Share of them that may be stray on either side.
 const STRAY: f64 = 0.01;
-/// Ground at the origin, where no plane shows it: this share of the points within so many m lies lower.
+/// Ground at the origin: this share of the points within so many m lies lower.
 const GROUND_SHARE: f64 = 0.1;
 const GROUND_REACH_M: f64 = 40.0;
 
@@ -166,13 +166,6 @@ fn origin(header: &Header, bytes: &[u8], keeps_height: bool) -> Result<DVec3, La
     };
     if keeps_height {
         return Ok(middle_m);
-    }
-    if let Some(ground) = Ground::of(sample.iter().map(|p| *p - middle_m)) {
-        let height_m = match moves {
-            true => (ground.height_m * 100.0).round() / 100.0,
-            false => -ground.lift_m(),
-        };
-        return Ok(middle_m.with_z(height_m));
     }
     let near = |p: &&DVec3| (**p - middle_m).truncate().length() <= GROUND_REACH_M;
     let near: Vec<DVec3> = sample.iter().filter(near).copied().collect();
