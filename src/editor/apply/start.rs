@@ -136,9 +136,9 @@ fn who_stays(waiting: &[Goer], met: &[Met], both: bool) -> BTreeMap<BoxId, Strin
 }
 
 /// What a person should know of edits that are about to be applied, a line each: who stays where traffic is let drive, what comes
-/// into something where a scene is let go on, and who drives where no lane is.
+/// into something where a scene is let go on, who drives where no lane is, and what a removed guess leaves standing.
 pub fn remarks(scene: &Scene, edits: &[Edit]) -> Vec<String> {
-    let mut out = Vec::new();
+    let mut out = super::left_standing::left_standing(scene, edits);
     for (i, edit) in edits.iter().enumerate() {
         if !matches!(
             edit,
