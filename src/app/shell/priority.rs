@@ -45,7 +45,7 @@ pub fn start_workers(give_way_to_window: bool) -> Option<String> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (threads, line) = number(std::env::var(ASKED_BY).ok().as_deref(), cores);
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
+        .num_threads(if threads == 0 { cores } else { threads })
         .start_handler(move |_| {
             if give_way_to_window {
                 give_way();

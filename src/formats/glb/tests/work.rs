@@ -52,7 +52,11 @@ fn a_pile_of_large_triangles_is_refused_beforehand_and_named() {
             .and_then(|n| n.parse().ok())
             .expect("a number");
         let each = columns as f64 / times as f64;
-        let on_map = if reach < 100.0 { 40_000.0 } else { 2048.0 * 2048.0 };
+        let on_map = if reach < 100.0 {
+            390.0 * 390.0 / 2.0
+        } else {
+            2048.0 * 2048.0
+        };
         assert!(
             each > 0.9 * on_map && each < 1.2 * on_map,
             "{each} columns of {on_map}"
