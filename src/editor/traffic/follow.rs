@@ -334,7 +334,7 @@ mod tests {
             };
             let others = |t: f64| vec![other(1, [place(t), 0.0], pace(t))];
             let found = follow(&driver, &road(), (0.0, 10.0), &BODY, 16.0, others);
-            for t in (60..=160).map(|i| f64::from(i) * 0.1) {
+            for t in (105..=160).map(|i| f64::from(i) * 0.1) {
                 let gap_m = place(t) - place_m(&found.speeds, t) - 4.4;
                 assert!(
                     (gap_m - keeps_m).abs() < 0.8,
