@@ -125,7 +125,7 @@ fn what_ends_beyond_the_edge_goes_on_too() {
             via_m: vec![ends(0.0)],
             offset_m: 0.0,
             left: Vec::new(),
-            right: Vec::new(),
+            right: vec![scene::RoadLane::usual(scene::roads::LaneKind::Drive)],
             limit_kph: None,
             crossings: vec![scene::roads::RoadCrossing {
                 at_m: 50.0,
