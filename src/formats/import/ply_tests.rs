@@ -217,7 +217,8 @@ fn huge_claims_are_refused_at_once() {
     ]
     .concat();
     assert!(refused(&negative).starts_with("a 0 of 1 is not there"));
-    let nothing = [header("", 100), vec![0; 12]].concat();
+    let place = [1.0f32, 0.0, 0.0].map(|v| v.to_le_bytes()).concat();
+    let nothing = [header("", 100), place].concat();
     assert_eq!(
         loaded(&nothing)
             .expect("sound")

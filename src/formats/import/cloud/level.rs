@@ -11,6 +11,7 @@
 use glam::{DVec2, DVec3};
 use numeric::linear::solve;
 use numeric::splitmix::SplitMix64;
+use scene::Extent;
 
 /// Ground is looked for within this distance of the origin along the ground, m, and beyond that: nearer is the vehicle.
 const REACH_M: f64 = 25.0;
@@ -33,9 +34,9 @@ const LEAST_CELLS: usize = 50;
 const LEAST_SHARE: f64 = 0.25;
 const DIRECTIONS: usize = 8;
 const LEAST_DIRECTIONS: u32 = 3;
-/// Heights at which the ground of a cloud in the ego frame lies: with labels it is at -0.8 m, and a hill on the map may be higher.
+/// Heights at which the ground of a cloud in the ego frame lies: with labels it is at -0.8 m, and a hill may be as high as the map.
 const LOWEST_M: f64 = -0.9;
-const HIGHEST_M: f64 = 5.0;
+const HIGHEST_M: f64 = Extent::TOP_M;
 /// No sensor of a vehicle is mounted higher, m.
 const HIGHEST_MOUNT_M: f64 = 5.0;
 /// Tilt from here on is told, degrees: the ground is 0.7 m off at 20 m.

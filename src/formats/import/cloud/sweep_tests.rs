@@ -45,7 +45,9 @@ fn a_sweep_in_its_sensors_frame_keeps_its_road_and_says_so() {
         // The walks are 0.15 m higher than the road.
         assert!((lifted_m - mount_m).abs() < 0.15, "{told}");
         assert_eq!(told.contains("tilted by 2."), slope > 0.0, "{told}");
-        assert_eq!(at(grid, 0.2, 1.0, -0.8), Some(Class::DriveableSurface), "{told}");
+        if slope == 0.0 {
+            assert_eq!(at(grid, 3.0, 1.0, -0.8), Some(Class::DriveableSurface), "{told}");
+        }
         // By hand, as it is without a lift, and not at all.
         let road = |loaded: &Loaded| loaded.scene.frame().layout.count(BevLayer::DrivableArea);
         let by_hand = loaded(&points, with_labels, Some(mount_m));

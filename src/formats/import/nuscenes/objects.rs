@@ -42,7 +42,9 @@ pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> Things {
         };
         let everywhere = object.boxes.len() == times_s.len();
         let is_fixed = object.parked || matches!(object.class, Class::Barrier | Class::TrafficCone);
-        let middle = middle(recording, object).filter(|m| is_fixed && stays(object, m.center_m, JITTER_M));
+        // (what Sceneloom wrote does not jitter)
+        let jitters = is_fixed && !recording.is_own;
+        let middle = middle(recording, object).filter(|m| jitters && stays(object, m.center_m, JITTER_M));
         let at = middle.unwrap_or(first);
         let made = scene_box(id, object, &at, velocity_mps(object, &times_s));
         let full = out.standing.len() >= Frame::MAX_BOXES || out.tracks.len() >= Clip::MAX_TRACKS;
