@@ -324,7 +324,8 @@ class Calls:
     ) -> types.Rendered:
         """Renders what cameras and LiDAR of the ego vehicle see at the moment that is shown, or the map from
         above, and writes PNG pictures and data into a folder. Over MCP the first picture comes with the
-        answer, at most 640 pixels wide. Look at bev to see where things are.
+        answer, at most 640 pixels wide. Look at bev to see where things are. Files that are there are
+        written over only with replace: call again with it, or name another folder.
 
         what: What is rendered: `bev` is the map and the voxels from above, `view` the 3D view (needs a
             graphics driver), `lidar` the points of a sweep; the others are what cameras see, `appearance`
@@ -334,7 +335,8 @@ class Calls:
         learned_lidar: The LiDAR network instead of exact rays.
         preview: `appearance` several times faster, with rougher edges.
         replace: Write over files that are there.
-        size: Width and height of camera pictures, pixels.
+        size: Width and height of camera pictures, pixels; all pictures of a call together have at most 40
+            million.
         source: What classes and depths are rendered from.
         time: Time of day of `appearance`; the scene's if left out.
         weather: Weather of `appearance`; the scene's if left out.

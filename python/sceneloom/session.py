@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import collections
+import contextlib
 import json
 import os
+import pathlib
 import shutil
 import subprocess
+import tempfile
 import threading
-from typing import Any
+from typing import Any, Iterator, Sequence
 
+from .arrays import Array, npz, ply
 from .calls import Calls
 
 
@@ -25,7 +29,7 @@ class Session(Calls):
     """One scene with its undo history. Calls are answered one by one, also if several threads make them.
 
     scene: file to begin with; the scene that ships with the program if left out.
-    folder: the one folder whose files calls may read and write.
+    folder: the one folder whose files calls may read and write; it is made if it is missing.
     program: path of `sceneloom`; else that of the environment variable SCENELOOM, else the one on the PATH.
     weights: folder of weights instead of the bundled ones.
     """
@@ -40,7 +44,12 @@ class Session(Calls):
         found = program or os.environ.get("SCENELOOM") or shutil.which("sceneloom")
         if not found:
             raise SessionEnded("sceneloom was not found: name it by program= or SCENELOOM, or put it on the PATH")
-        command = [os.fspath(found), "session", "--folder", os.fspath(folder)]
+        self.folder = pathlib.Path(folder).absolute()
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise SessionEnded(f"{folder}: {error.strerror}, expected a folder or the name of a new one") from error
+        command = [os.fspath(found), "session", "--folder", os.fspath(self.folder)]
         if weights is not None:
             command += ["--weights", os.fspath(weights)]
         if scene is not None:
@@ -91,6 +100,30 @@ class Session(Calls):
     def _why(self) -> str:
         self._listener.join(timeout=1)
         return self._said[-1] if self._said else "the session has ended"
+
+    @contextlib.contextmanager
+    def _written(self) -> Iterator[tuple[str, pathlib.Path]]:
+        """A folder for files that are read at once: its name within the session's folder, and its path. It goes afterwards."""
+        with tempfile.TemporaryDirectory(prefix="arrays_", dir=self.folder) as path:
+            yield pathlib.Path(path).name, pathlib.Path(path)
+
+    def voxels(self) -> Array:
+        """Classes of all voxels at the moment that is shown, u8 [x, y, z], 0.4 m each way, in the ego frame; 17 is free."""
+        with self._written() as (name, path):
+            self.export(format="occ3d", name=f"{name}/voxels.npz", replace=True)
+            return npz(path / "voxels.npz")["semantics"]
+
+    def maps(self, camera: str, size: Sequence[int] = (480, 270)) -> dict[str, Array]:
+        """What each pixel of a camera sees, [height, width]: `semantic` (class, u8), `depth_m` and others (f32). `size`: width, height."""
+        with self._written() as (name, path):
+            self.render(what=["semantic", "depth"], cameras=[camera], size=size, folder=name, replace=True)
+            return npz(path / f"{camera}_maps.npz")
+
+    def points(self, learned: bool = False) -> dict[str, Array]:
+        """The LiDAR sweep at the moment that is shown, one array per property: x, y, z in m in the ego frame, intensity, ring, class, …"""
+        with self._written() as (name, path):
+            self.render(what=["lidar"], learned_lidar=learned, folder=name, replace=True)
+            return ply(path / "lidar.ply")
 
     def close(self) -> int:
         """Ends the session; the exit code of the program. Nothing is saved."""

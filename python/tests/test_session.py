@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import pathlib
+import struct
 import sys
 import tempfile
 import threading
 import unittest
+import unittest.mock
+from typing import Any
 
 ROOT = pathlib.Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
-from sceneloom import CallError, Session, SessionEnded, edits  # noqa: E402
+from sceneloom import CallError, Session, SessionEnded, arrays, edits  # noqa: E402
 
 
 class TestSession(unittest.TestCase):
@@ -39,6 +43,51 @@ class TestSession(unittest.TestCase):
         with Session(self.folder / "a.loom", folder=self.folder) as s:
             self.assertEqual(s.diff(file="a.loom")["changed"]["voxels"], 0)
             self.assertEqual(s.close(), 0)
+
+    def test_the_example_of_the_document_runs_twice_in_a_folder_that_is_missing(self) -> None:
+        document = (ROOT.parent / "docs/assistants.md").read_text(encoding="utf-8")
+        example = document.split("```python\n")[1].split("```")[0]
+        there = str(self.folder / "a" / "scenes")
+        example = example.replace('"scenes"', repr(there)).replace("    s.generate(quality", "    #")
+        for _ in range(2):
+            found: dict[str, Any] = {}
+            exec(compile(example, "assistants.md", "exec"), found)
+            shapes = {name: tuple(found[name].shape) for name in ("labels", "depth_m")}
+            self.assertEqual(shapes, {"labels": (200, 200, 16), "depth_m": (270, 480)})
+            self.assertGreater(found["x"].shape[0], 1000)
+        self.assertEqual(os.listdir(there), ["labels.npz"], "files of arrays do not stay")
+
+    def test_arrays_hold_what_is_in_the_scene(self) -> None:
+        with Session(folder=self.folder) as s:
+            s.new(template="straight", seed=3)
+            labels, occupied = s.voxels(), s.state(roads=False)["occupied_voxels"]
+            values = bytes(labels.tobytes())
+            self.assertEqual(len(values) - values.count(17), occupied)
+            self.assertEqual(int(labels[0, 0, 15]), 17)
+            points = s.points()
+            self.assertEqual({len(of) for of in points.values()}, {points["x"].shape[0]})
+            self.assertLess(max(points["range_m"].tolist()), 200)
+            with self.assertRaisesRegex(CallError, "NOWHERE"):
+                s.maps("NOWHERE")
+            self.assertEqual(os.listdir(self.folder), [])
+
+    def test_without_numpy_arrays_are_views_of_the_same_shape(self) -> None:
+        head = repr({"descr": "<f4", "fortran_order": False, "shape": (2, 3)}).encode()
+        content = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head + struct.pack("<6f", *range(6))
+        with unittest.mock.patch("importlib.util.find_spec", return_value=None):
+            view = arrays.npy(content)
+        self.assertIsInstance(view, memoryview)
+        self.assertEqual((view.shape, view[1, 2], view.tolist()), ((2, 3), 5.0, [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]))
+        for bad in (b"", b"PK", content.replace(b"<f4", b"<c8"), content.replace(b"False", b"True ")):
+            with self.assertRaises(ValueError):
+                arrays.npy(bad)
+
+    def test_a_refusal_says_how_to_write_over_files(self) -> None:
+        with Session(folder=self.folder) as s:
+            s.render(what=["bev"])
+            with self.assertRaisesRegex(CallError, r'pictures/bev.png: is there already; "replace": true'):
+                s.render(what=["bev"])
+            s.render(what=["bev"], replace=True)
 
     def test_what_is_refused_is_an_exception_and_the_session_goes_on(self) -> None:
         with Session(folder=self.folder) as s:
@@ -72,7 +121,6 @@ class TestSession(unittest.TestCase):
             self.assertEqual(seen, [1] * 8)
 
     def test_the_package_is_made_from_the_schema_of_this_program(self) -> None:
-        import os
         import shutil
 
         spec = importlib.util.spec_from_file_location("generate", ROOT / "generate.py")
