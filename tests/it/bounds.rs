@@ -151,7 +151,7 @@ fn guidance_beyond_what_was_measured_is_said_and_nonsense_refused() {
     };
     let notes = |guidance: &str| json(&generate(guidance))["notes"].to_string();
     assert!(
-        notes("50").contains("guidance is 50, measured is 1 to"),
+        notes("50").contains("guidance is 50, measured is 0.5 to 2"),
         "{}",
         notes("50")
     );

@@ -151,7 +151,7 @@ type Choices = (SolverKind, RegionMode, InpaintMask, Quality, Precision, [bool; 
 
 impl GenParams {
     /// Guidance with which layouts come out as asked for, see docs/trade.md.
-    pub const MEASURED_GUIDANCE: [f64; 2] = [1.0, 4.0];
+    pub const MEASURED_GUIDANCE: [f64; 2] = [0.5, 2.0];
 
     /// For all of a scene from its layout and boxes alone.
     pub fn whole_scene() -> Self {
@@ -354,7 +354,7 @@ mod tests {
         for params in [GenParams::default(), GenParams::whole_scene()] {
             assert!(params.notes().is_empty(), "{params:?}");
         }
-        for guidance in [0.0, 0.99, 4.5, 50.0, 100.0] {
+        for guidance in [0.0, 0.4, 2.5, 50.0, 100.0] {
             let params = GenParams {
                 guidance,
                 ..GenParams::default()
@@ -363,7 +363,7 @@ mod tests {
             let [note] = &params.notes()[..] else {
                 panic!("one note for {guidance}");
             };
-            let told = format!("guidance is {guidance}, measured is 1 to 4: ");
+            let told = format!("guidance is {guidance}, measured is 0.5 to 2: ");
             assert!(note.starts_with(&told) && note.lines().count() == 1, "{note}");
         }
     }

@@ -15,12 +15,14 @@ use crate::folder::FileEntry;
 use crate::render::{Rendering, check_what};
 use app::camera_views::LidarModel;
 use app::picture::Picture;
-use formats::png;
+use formats::{calibration, png};
 use scene::{Scene, TimeOfDay, Weather};
 use sensors::cameras::{self, SourceId, ViewId};
 
 /// Longest side of the picture that goes with a receipt, pixels.
 const SMALL_SIDE: u32 = 640;
+/// Most pixels of all pictures of one call: a minute or so of two cores. Whoever waits for an answer gives up before long.
+const MOST_PIXELS: u64 = 40_000_000;
 
 /// Arguments of `render`.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -33,7 +35,7 @@ pub struct Render {
     /// Names of cameras, as `state` lists them; all of them if left out.
     #[serde(default)]
     cameras: Vec<String>,
-    /// Width and height of camera pictures, pixels.
+    /// Width and height of camera pictures, pixels; all pictures of a call together have at most 40 million.
     #[serde(default = "usual_size")]
     #[schemars(schema_with = "names::size")]
     size: [u32; 2],
@@ -92,6 +94,36 @@ pub struct Rendered {
 }
 
 impl Render {
+    /// Files that are written in any case.
+    fn surely(&self) -> Vec<&'static str> {
+        let file = |what: &String| match what.as_str() {
+            "bev" => "bev.png",
+            "view" => "view.png",
+            _ => calibration::FILE,
+        };
+        self.what.iter().map(file).collect()
+    }
+
+    /// Errors if the pictures of so many cameras have more pixels than one call renders.
+    fn check_pixels(&self, cameras: usize) -> anyhow::Result<()> {
+        let kinds = self
+            .what
+            .iter()
+            .filter(|w| !["bev", "view", "lidar"].contains(&w.as_str()));
+        let pictures = (kinds.count() * cameras) as u64;
+        let [width, height] = self.size.map(u64::from);
+        let pixels = (width * height).saturating_mul(pictures);
+        if pixels > MOST_PIXELS {
+            bail!(
+                "{pictures} pictures of {width}x{height} have {} million pixels, expected at most {} million in one call: fewer cameras \
+                 or kinds, or a smaller size",
+                pixels / 1_000_000,
+                MOST_PIXELS / 1_000_000
+            );
+        }
+        Ok(())
+    }
+
     /// The scene with the cameras that were asked for, in the order of the rig.
     fn with_cameras(&self, scene: &Scene) -> anyhow::Result<Scene> {
         let mut scene = scene.clone();
@@ -128,7 +160,7 @@ fn small(picture: Picture) -> Option<Vec<u8>> {
 
 impl Operation for Render {
     const NAME: &'static str = "render";
-    const ABOUT: &'static str = "Renders what cameras and LiDAR of the ego vehicle see at the moment that is shown, or the map from above, and writes PNG pictures and data into a folder. Over MCP the first picture comes with the answer, at most 640 pixels wide. Look at bev to see where things are.";
+    const ABOUT: &'static str = "Renders what cameras and LiDAR of the ego vehicle see at the moment that is shown, or the map from above, and writes PNG pictures and data into a folder. Over MCP the first picture comes with the answer, at most 640 pixels wide. Look at bev to see where things are. Files that are there are written over only with replace: call again with it, or name another folder.";
     const EXAMPLE: &'static str = r#"{"what": ["bev", "semantic"], "cameras": ["CAM_FRONT"], "size": [480, 270], "folder": "pictures", "replace": true}"#;
     const CHANGES: bool = false;
     type Receipt = Rendered;
@@ -137,7 +169,11 @@ impl Operation for Render {
         check_what(&self.what, "what")?;
         names::check_size(self.size)?;
         names::check("source", &self.source, &names::sources())?;
-        desk.folder.may_write(&format!("{}/x", self.folder), true)?;
+        // (told before anything is rendered; the other files are looked at once they are there)
+        for file in self.surely() {
+            let file = format!("{}/{file}", self.folder);
+            desk.folder.may_write(&file, self.replace)?;
+        }
         let scene = desk.scene()?;
         let source = cameras::sources_of(ViewId::SEMANTIC)
             .into_iter()
@@ -157,8 +193,15 @@ impl Operation for Render {
             },
             paint: None,
         };
+        let shown = self.with_cameras(&scene)?;
+        self.check_pixels(shown.rig.cameras.len())?;
         let staging = desk.folder.staging()?;
-        let made = rendering.write(&self.with_cameras(&scene)?, staging.path())?;
+        let stop = desk.stop.clone();
+        let mut listen = |_| match stop() {
+            true => bail!("stopped: nobody waits for it any more"),
+            false => Ok(()),
+        };
+        let made = rendering.write(&shown, staging.path(), &mut listen)?;
         let wall_s = made.wall_s.iter().map(|(kind, s)| ((*kind).to_owned(), *s));
         Ok(Rendered {
             files: desk
@@ -174,5 +217,41 @@ impl Operation for Render {
 
     fn picture(receipt: &mut Rendered) -> Option<Vec<u8>> {
         receipt.picture.take()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_pixels_than_a_call_renders_are_refused_beforehand() {
+        let of = |what: &[&str], size: [u32; 2]| -> Render {
+            serde_json::from_value(serde_json::json!({ "what": what, "size": size })).expect("arguments")
+        };
+        let line = of(&["bev", "appearance"], [4096, 4096])
+            .check_pixels(6)
+            .expect_err("100 million")
+            .to_string();
+        assert!(
+            line.starts_with("6 pictures of 4096x4096 have 100 million pixels, expected at most 40 million"),
+            "{line}"
+        );
+        assert!(of(&["appearance"], [4096, 4096]).check_pixels(2).is_ok());
+        assert!(
+            of(&["appearance", "truth"], [4096, 4096])
+                .check_pixels(2)
+                .is_err()
+        );
+        assert!(
+            of(&["bev", "view", "lidar"], [8192, 8192])
+                .check_pixels(6)
+                .is_ok()
+        );
+        assert!(
+            of(&["semantic", "depth", "appearance"], [1920, 1080])
+                .check_pixels(6)
+                .is_ok()
+        );
     }
 }
