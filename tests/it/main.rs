@@ -4,6 +4,7 @@ mod appearance_gpu;
 mod assist;
 mod batch;
 mod bounded_memory;
+mod bounds;
 mod camera_files;
 mod candle;
 mod cli;
