@@ -1,6 +1,6 @@
 //! Buildings, walls and poles: which columns of man-made voxels look alike, and how. What a thing beside the road explains
-//! looks as the thing does. The rest looks as the middle of it that is nearest, so that nothing farther than
-//! [`FARTHEST_M`] from an edit looks otherwise after it.
+//! looks as the thing does. The rest looks as the middle of it that is nearest, so that nothing farther than 18 m from an edit
+//! looks otherwise after it.
 
 use std::collections::BTreeMap;
 
