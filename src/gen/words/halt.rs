@@ -92,7 +92,14 @@ fn noun_at(tokens: &[Token], i: usize) -> Option<(Noun, usize)> {
 pub(super) fn set_right(reading: &mut Reading, text: &str, tokens: &[Token], mode: Mode) -> Option<Missing> {
     let halt = find(tokens)?;
     let span = tokens[halt.at.0].span.to(tokens[halt.at.1 - 1].span);
-    let class = halt.who.map_or(Noun::Person.classes(), Noun::classes);
+    // (nobody may be read as no person, no vehicle and nothing)
+    let is_anybody = |n: Noun| {
+        let general = matches!(
+            n,
+            Noun::Vehicle | Noun::TwoWheeler | Noun::Thing | Noun::It | Noun::One
+        );
+        general || n.classes() == Noun::Person.classes()
+    };
     let of_it = |act: &Act| {
         let who = match &act.what {
             What::No { who } | What::Remove { who } => who,
@@ -101,7 +108,10 @@ pub(super) fn set_right(reading: &mut Reading, text: &str, tokens: &[Token], mod
         let here = act
             .span
             .is_none_or(|s: Span| s.start < span.end && s.end > span.start);
-        let fits = |t: &Thing| t.noun.classes().iter().any(|c| class.contains(c));
+        let fits = |t: &Thing| match halt.who {
+            Some(noun) => t.noun.classes().iter().any(|c| noun.classes().contains(c)),
+            None => is_anybody(t.noun),
+        };
         here && who.iter().all(fits)
     };
     reading.acts.retain(|act| !of_it(act));

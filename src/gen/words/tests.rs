@@ -81,7 +81,7 @@ fn a_pronoun_silences_no_noun() {
             "add 2 car ; no other thing",
             &["bus"],
         ),
-        ("no bus and no other vehicles", "no other vehicle", &["bus"]),
+        ("a bus, and no other vehicles", "no other vehicle", &["bus"]),
         (
             "move the taxi next to the truck",
             "move the thing to ( next_to it )",

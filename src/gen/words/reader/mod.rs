@@ -86,9 +86,10 @@ impl LearnedReader {
         &self.speller
     }
 
-    /// True if a word means something, or is one of the frequent ones.
+    /// True if a word means something, or is one of the frequent ones; a number alone is neither.
     pub fn knows(&self, t: &Token) -> bool {
-        !t.senses.is_empty() || self.speller.is_common(&t.text) || grammar::knows(&t.text)
+        let is_word = t.value.is_none() && (self.speller.is_common(&t.text) || grammar::knows(&t.text));
+        !t.senses.is_empty() || is_word
     }
 
     /// Reads a text: whole if it is short, else sentence by sentence, and at most [`MOST_PARTS`] of these.
