@@ -79,7 +79,8 @@ class Calls:
         without a box, boxes that no sensor sees. Call it before export. An edit `waive` lets a finding
         stand.
 
-        fix: Apply the first repair of each finding that has one, as one undo step, and check again.
+        fix: Apply the first repair of each finding that has one and is better for it, as one undo step, and
+            check again. No repair is done that brings something as bad, or that makes the map larger.
         sensors: Also look with cameras and LiDAR, which takes a few seconds.
         """
         args = _given({'fix': fix, 'sensors': sensors}, [])
@@ -131,7 +132,7 @@ class Calls:
     def generate(
         self,
         *,
-        quality: Literal['draft', 'balanced', 'accurate', 'reference'] | None = None,
+        quality: Literal['draft', 'balanced', 'careful', 'reference'] | None = None,
         seed: int | None = None,
         steps: int | None = None,
         whole: bool | None = None,
@@ -142,7 +143,8 @@ class Calls:
 
         quality: A preset of speed against accuracy, the fastest first; a usual one if left out.
         seed: Fixes every random draw.
-        steps: Sampling steps instead of the preset's: more are slower and more accurate.
+        steps: Sampling steps instead of the preset's: more are slower and nearer to the reference, which is
+            not less invented.
         whole: All of the map from fresh noise; otherwise only what was edited since it was generated, and
             everything else stays bit-identical.
         """
