@@ -348,7 +348,8 @@ def let_move(
 
     template: How.
     from_s: When what it is about begins, s; soon if left out.
-    gap_m: It begins when so much is between it and the ego vehicle, m, in place of at a time.
+    gap_m: It begins when so much is between it and the ego vehicle, m, in place of at a time; who follows
+        keeps so much to the one ahead. Bumper to bumper.
     id: The box; the ego vehicle if left out.
     mps: Speed, m/s; a usual one of its class if left out.
     """
@@ -363,6 +364,14 @@ def let_move(
         ['template'],
     )
     return cast('types.EditLetMove', {"let_move": args})
+
+
+def let_traffic_drive() -> types.EditLetTrafficDrive:
+    """Lets everything that says how fast it is but stands go on along its lane, each at a distance to the one
+    ahead. What would come into something, a wall, a parked vehicle or one another, stays where it is.
+    """
+    args = _given({}, [])
+    return cast('types.EditLetTrafficDrive', {"let_traffic_drive": args})
 
 
 def set_length(*, length_s: float, rate_hz: float | None = None) -> types.EditSetLength:

@@ -717,7 +717,8 @@ EditLetMoveArgs = TypedDict(
     {
         # When what it is about begins, s; soon if left out.
         'from_s': 'NotRequired[float | None]',
-        # It begins when so much is between it and the ego vehicle, m, in place of at a time.
+        # It begins when so much is between it and the ego vehicle, m, in place of at a time; who follows keeps so
+        # much to the one ahead. Bumper to bumper.
         'gap_m': 'NotRequired[float | None]',
         # The box; the ego vehicle if left out.
         'id': 'NotRequired[BoxId | None]',
@@ -734,6 +735,15 @@ EditLetMove = TypedDict(
     'EditLetMove',
     {
         'let_move': 'EditLetMoveArgs',
+    },
+)
+
+# Lets everything that says how fast it is but stands go on along its lane, each at a distance to the one ahead.
+# What would come into something, a wall, a parked vehicle or one another, stays where it is.
+EditLetTrafficDrive = TypedDict(
+    'EditLetTrafficDrive',
+    {
+        'let_traffic_drive': 'dict[str, Any]',
     },
 )
 
@@ -871,7 +881,7 @@ EditSetRig = TypedDict(
 
 # One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:
 # `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
-Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditArrange | EditSetBoxClass | EditPaintBev | EditAddThings | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditChangeRoads | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetShape | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
+Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditArrange | EditSetBoxClass | EditPaintBev | EditAddThings | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditChangeRoads | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetShape | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditLetTrafficDrive | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
 
 # Receipt of `export`.
 Exported = TypedDict(
