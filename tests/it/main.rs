@@ -10,6 +10,7 @@ mod candle;
 mod cli;
 mod cli_formats;
 mod cli_tools;
+mod crowd;
 mod diffusion;
 mod fuzz;
 mod house;

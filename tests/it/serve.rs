@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use ::serve::wire::{
     AvailableCamerasRequest, AvailableCamerasReturn, AvailableTrajectoriesRequest,
-    AvailableTrajectoriesReturn, ImageFormat, LidarRenderRequest, LidarRenderReturn, PosePair,
-    RgbRenderRequest, RgbRenderReturn, SERVICE,
+    AvailableTrajectoriesReturn, Empty, ImageFormat, LidarRenderRequest, LidarRenderReturn, PosePair,
+    RgbRenderRequest, RgbRenderReturn, SERVICE, VersionId,
 };
 use editor::{Apply, Edit};
 use glam::{DQuat, DVec3};
@@ -16,6 +16,8 @@ use scene::{Pose, Template};
 use tonic::transport::{Channel, Endpoint};
 use tonic::{Code, Status};
 use tonic_prost::ProstCodec;
+
+use crate::crowd::{crowd, open_files};
 
 fn program(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sceneloom"));
@@ -314,6 +316,92 @@ fn sweeps_are_answered_and_errors_are_one_line() {
         };
         assert!(ended.success(), "{ended}");
     }
+}
+
+/// A frame of HTTP/2.
+fn frame(kind: u8, flags: u8, stream: u32, payload: &[u8]) -> Vec<u8> {
+    let mut out = (payload.len() as u32).to_be_bytes()[1..].to_vec();
+    out.extend([kind, flags]);
+    out.extend(stream.to_be_bytes());
+    out.extend(payload);
+    out
+}
+
+/// The head of a request: POST, http, the path, and what gRPC wants, as literals of HPACK (RFC 7541).
+fn head_of(method: &str) -> Vec<u8> {
+    let path = format!("/{SERVICE}/{method}");
+    let mut head = vec![0x83, 0x86];
+    for (name, value) in [
+        (vec![0x04], path.as_str()),
+        (vec![0x0f, 0x10], "application/grpc"),
+    ] {
+        head.extend(name);
+        head.push(value.len() as u8);
+        head.extend(value.as_bytes());
+    }
+    head.extend(b"\x00\x02te\x08trailers");
+    frame(1, 0x4, 1, &head)
+}
+
+/// What a hostile client says before it falls silent, by its number.
+fn hostile(i: usize) -> Vec<u8> {
+    let preface = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n";
+    let mut out = preface.to_vec();
+    match i % 6 {
+        0 => return Vec::new(),
+        1 => out.truncate(9),
+        2 => out.extend(frame(4, 0, 0, &[])),
+        // Half a head.
+        3 => {
+            out.extend(frame(4, 0, 0, &[]));
+            let head = head_of("render_rgb");
+            out.extend(&head[..head.len() / 2]);
+        }
+        // A body that never ends.
+        4 => {
+            out.extend(frame(4, 0, 0, &[]));
+            out.extend(head_of("render_rgb"));
+            out.extend(frame(0, 0, 1, &[0, 0, 0, 9, 0, 1, 2, 3]));
+        }
+        // An answer that is never taken: SETTINGS_INITIAL_WINDOW_SIZE is 0.
+        _ => {
+            out.extend(frame(4, 0, 0, &[0, 4, 0, 0, 0, 0]));
+            out.extend(head_of("get_version"));
+            out.extend(frame(0, 1, 1, &[0; 5]));
+        }
+    }
+    out
+}
+
+#[test]
+fn silent_slow_and_half_connections_keep_no_honest_client_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("junction.loom");
+    write_scene(&path);
+    let server = Server::start(&[&path.display().to_string(), "--jobs", "1"]);
+    let honest = |channel: Channel| async move {
+        let asked = ask::<_, VersionId>(&channel, "get_version", Empty {});
+        let answer = tokio::time::timeout(Duration::from_secs(60), asked).await;
+        answer.expect("an answer at all").expect("a version");
+        let requests = tokio::time::timeout(Duration::from_secs(60), pictures(&channel, "junction", 100));
+        assert!(!requests.await.expect("an answer at all").is_empty());
+    };
+    block_on(async {
+        let before = server.channel();
+        honest(before.clone()).await;
+        let crowd = crowd(&server.address, hostile);
+        let start = Instant::now();
+        honest(server.channel()).await;
+        println!("a new client was answered after {:?}", start.elapsed());
+        honest(before).await;
+        if let Some(files) = open_files(server.child.id()) {
+            assert!(
+                files < 800,
+                "{files} files are open for {} connections",
+                crowd.len()
+            );
+        }
+    });
 }
 
 #[test]

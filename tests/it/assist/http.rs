@@ -3,11 +3,12 @@
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
 use std::process::{Child, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
 use super::process::{all_of, command};
+use crate::crowd::{crowd, open_files};
 
 const TOKEN: &str = "0123456789abcdef";
 
@@ -152,4 +153,58 @@ fn clients_share_one_scene_and_hostile_ones_are_refused() {
     });
     let (status, state) = call("state", json!({}));
     assert_eq!((status, &state["result"]["isError"]), (200, &json!(false)));
+}
+
+/// What a hostile client says before it falls silent, by its number.
+fn hostile(i: usize) -> Vec<u8> {
+    let head = "POST /mcp HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n";
+    let body = "Content-Length: 1000\r\n\r\n{";
+    let said = match i % 5 {
+        0 => String::new(),
+        1 => "POST /mcp HT".into(),
+        // Half a head without a token, and a body without one.
+        2 => head.into(),
+        3 => format!("{head}{body}"),
+        // With a token, a body that never ends.
+        _ => format!("{head}Authorization: Bearer {TOKEN}\r\n{body}"),
+    };
+    said.into_bytes()
+}
+
+#[test]
+fn silent_slow_and_half_connections_keep_no_honest_client_out() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let server = start(&dir.path().display().to_string());
+    let crowd = crowd(&server.address, hostile);
+    for _ in 0..3 {
+        let start = Instant::now();
+        // (a client that hears nothing gives up long after this would have ended)
+        let (status, state) = call(&server.address, TOKEN, "state", &json!({}));
+        println!("an honest client was answered after {:?}", start.elapsed());
+        assert_eq!((status, &state["result"]["isError"]), (200, &json!(false)));
+    }
+    if let Some(files) = open_files(server.child.id()) {
+        assert!(
+            files < 500,
+            "{files} files are open for {} connections",
+            crowd.len()
+        );
+    }
+}
+
+#[test]
+fn who_is_refused_is_hung_up_on() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let server = start(&dir.path().display().to_string());
+    let mut stream = TcpStream::connect(&server.address).expect("it listens");
+    let limit = Some(Duration::from_secs(120));
+    stream.set_read_timeout(limit).expect("a timeout");
+    let head = "POST /mcp HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n\r\n";
+    stream.write_all(head.as_bytes()).expect("written");
+    // (its end comes, though the client asked for none)
+    let answer = all_of(stream);
+    assert!(
+        answer.starts_with("HTTP/1.1 401 ") && answer.contains("connection: close"),
+        "{answer}"
+    );
 }

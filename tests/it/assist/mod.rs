@@ -2,7 +2,8 @@
 
 mod hostile;
 pub mod http;
-mod mcp;
-mod process;
+pub mod mcp;
+pub mod process;
 mod schema;
 mod session;
+mod soak;

@@ -97,9 +97,18 @@ impl Talk {
 
     /// Most memory that it has taken, MiB; 0 where the system does not tell.
     pub fn most_memory_mib(&self) -> u64 {
+        self.status_mib("VmHWM:")
+    }
+
+    /// Memory that it takes now, MiB; 0 where the system does not tell.
+    pub fn memory_mib(&self) -> u64 {
+        self.status_mib("VmRSS:")
+    }
+
+    fn status_mib(&self, line: &str) -> u64 {
         let status = format!("/proc/{}/status", self.child.id());
         let text = std::fs::read_to_string(status).unwrap_or_default();
-        let line = text.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+        let line = text.lines().find_map(|l| l.strip_prefix(line));
         let kib = line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<u64>().ok());
         kib.unwrap_or(0) / 1024
     }
