@@ -174,7 +174,7 @@ pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
 /// Writes the current frame. One format goes to `path`: the file, or a folder for the format's usual name; formats that
 /// fill a folder make it. More go into the folder `path`. Returns the files and their sizes in bytes. Errors in one line;
 /// each file is written whole or not at all, and none before all are ready: an export that is cancelled leaves nothing
-/// behind. In a folder nothing outside it is written, and no file of this export over another.
+/// behind. In a folder nothing outside it is written, and no file of a format over another of its own.
 pub fn export_all(
     scene: &Scene,
     formats: &[Format],
@@ -201,7 +201,7 @@ pub fn export_all(
         };
         let files = (format.write)(&of_file, &mut making)?;
         progress.go_on()?;
-        ready.extend(files);
+        ready.push(files);
     }
     progress.go_on()?;
     match fills_a_folder(formats, path) {
@@ -221,34 +221,41 @@ fn fills_a_folder(formats: &[Format], path: &Path) -> bool {
 }
 
 /// Writes the file of a format; no folder is made.
-fn write_one(path: &Path, ready: &[OutFile]) -> anyhow::Result<Vec<(PathBuf, u64)>> {
+fn write_one(path: &Path, ready: &[Vec<OutFile>]) -> anyhow::Result<Vec<(PathBuf, u64)>> {
     let one = |file: &OutFile| {
         atomic::write(path, &file.bytes).with_context(|| format!("write {}", path.display()))?;
         Ok((path.to_path_buf(), file.bytes.len() as u64))
     };
-    ready.iter().map(one).collect()
+    ready.iter().flatten().map(one).collect()
 }
 
-/// Writes files into a folder, which is made; none before it is known that all of them may be written.
-fn write_into(path: &Path, ready: &[OutFile]) -> anyhow::Result<Vec<(PathBuf, u64)>> {
-    let mut known: BTreeMap<String, &OutFile> = BTreeMap::new();
-    for file in ready {
-        let first = known.entry(plain_name::folded(&file.name)).or_insert(file);
-        if first.bytes != file.bytes {
-            bail!(
-                "{}: two different files would be called {} (sensors of like names, or formats that need folders of their own)",
-                path.display(),
-                file.name
-            );
+/// Writes the files of each format into a folder, which is made; none before it is known that all of them may be written.
+fn write_into(path: &Path, ready: &[Vec<OutFile>]) -> anyhow::Result<Vec<(PathBuf, u64)>> {
+    for files in ready {
+        let mut known: BTreeMap<String, &OutFile> = BTreeMap::new();
+        for file in files {
+            let first = known.entry(plain_name::folded(&file.name)).or_insert(file);
+            if first.bytes != file.bytes {
+                bail!(
+                    "{}: two different files would be called {}, expected sensors of less like names",
+                    path.display(),
+                    file.name
+                );
+            }
         }
     }
-    let mut folder = OutFolder::make(path)?;
-    ready.iter().try_for_each(|file| folder.check(&file.name))?;
-    let mut one = |file: &OutFile| {
-        let written = folder.write(&file.name, &file.bytes)?;
-        Ok((written, file.bytes.len() as u64))
-    };
-    ready.iter().map(&mut one).collect()
+    let mut written = Vec::new();
+    let folder = OutFolder::make(path)?;
+    let mut all = ready.iter().flatten();
+    all.try_for_each(|file| folder.check(&file.name))?;
+    // (formats that share a file, as the calibration, share it: the last one's stays)
+    for files in ready {
+        let mut folder = OutFolder::make(path)?;
+        for file in files {
+            written.push((folder.write(&file.name, &file.bytes)?, file.bytes.len() as u64));
+        }
+    }
+    Ok(written)
 }
 
 /// Makes the products of a scene for the formats that ask for them.
