@@ -59,8 +59,8 @@ class TestSession(unittest.TestCase):
 
     def test_arrays_hold_what_is_in_the_scene(self) -> None:
         with Session(folder=self.folder) as s:
-            s.new(template="straight", seed=3)
-            labels, occupied = s.voxels(), s.state(roads=False)["occupied_voxels"]
+            occupied = s.new(template="straight", seed=3)["occupied_voxels"]
+            labels = s.voxels()
             values = bytes(labels.tobytes())
             self.assertEqual(len(values) - values.count(17), occupied)
             self.assertEqual(int(labels[0, 0, 15]), 17)
