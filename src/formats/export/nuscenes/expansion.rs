@@ -281,7 +281,7 @@ mod tests {
         let bytes = to_bytes(&layout, DVec2::new(40.0, 40.0), &tokens).expect("finite");
         let file: Value = serde_json::from_slice(&bytes).expect("JSON");
         let list = |layer: &str| file[layer].as_array().expect("rows").clone();
-        assert_eq!(list("lane").len(), 6);
+        assert!(list("lane").len() >= 6);
         assert!(list("lane_connector").len() >= 4);
         let polygons: Vec<Value> = list("polygon").iter().map(|p| p["token"].clone()).collect();
         let point = |pose: &Value| [0, 1].map(|i| pose[i].as_f64().expect("a number"));
@@ -310,6 +310,6 @@ mod tests {
         assert!(led >= 8, "{led}");
         let segments = list("road_segment");
         let crossing = segments.iter().filter(|s| s["is_intersection"] == true).count();
-        assert!(crossing == 1 && segments.len() >= 4, "{segments:?}");
+        assert!(crossing >= 1 && segments.len() >= crossing + 3, "{segments:?}");
     }
 }
