@@ -37,8 +37,8 @@ class Calls:
         template: How it moves, along the lanes of the map.
         box: The box that moves from where it is at the moment that is shown; the ego vehicle if left out.
         from_s: When what it is about begins (the cut-in, the crossing, the stop), s; soon if left out.
-        gap_m: It begins when so much is left between it and the ego vehicle, m, in place of at a time. Only
-            if the ego vehicle moves.
+        gap_m: It begins when so much is left between it and the ego vehicle, m, in place of at a time (only
+            if the ego vehicle moves); who follows keeps so much to the one ahead. Bumper to bumper.
         length_s: How long the scene lasts from now on, s; as before if left out, or as long as the motion
             needs if it was one moment.
         mps: Speed, m/s; a usual one of its class if left out.
@@ -218,6 +218,7 @@ class Calls:
         at_m: Sequence[float] | None = None,
         file: str | None = None,
         heading_deg: float | None = None,
+        lift_m: float | None = None,
         size_m: Sequence[float] | None = None,
     ) -> types.Opened:
         """Replaces the scene by one from a file: a project (.loom), roads (.xodr), occupancy labels (.npz), a
@@ -230,9 +231,20 @@ class Calls:
             the scene that ships with the program.
         heading_deg: Of a road file: its heading, degrees counter-clockwise from x; along the lane if left
             out.
+        lift_m: Of a point cloud: how far it is lifted, m, 0 for not at all; if left out, a sweep whose
+            ground lies beside the map is lifted onto it, and `notes` says by how much.
         size_m: Of a road file: length and width of the map, m; 80 x 80 if left out.
         """
-        args = _given({'at_m': at_m, 'file': file, 'heading_deg': heading_deg, 'size_m': size_m}, [])
+        args = _given(
+            {
+                'at_m': at_m,
+                'file': file,
+                'heading_deg': heading_deg,
+                'lift_m': lift_m,
+                'size_m': size_m,
+            },
+            [],
+        )
         receipt: types.Opened = self.call("open", args)
         return receipt
 

@@ -124,12 +124,21 @@ def paint_bev(*, layer: types.BevLayer, shape: types.Shape, value: bool) -> type
 
 
 def add_things(*, forms: Sequence[types.Form]) -> types.EditAddThings:
-    """Puts things beside the road, and their voxels.
+    """Puts things beside the road, and their voxels. They stay when scenery is drawn anew.
 
     forms: What and where, world frame.
     """
     args = _given({'forms': forms}, ['forms'])
     return cast('types.EditAddThings', {"add_things": args})
+
+
+def draw_scenery(*, forms: Sequence[types.Form]) -> types.EditDrawScenery:
+    """The same with scenery that a seed drew: it goes when scenery is drawn anew.
+
+    forms: What and where, world frame.
+    """
+    args = _given({'forms': forms}, ['forms'])
+    return cast('types.EditDrawScenery', {"draw_scenery": args})
 
 
 def remove_things(*, ids: Sequence[types.ThingId]) -> types.EditRemoveThings:
@@ -348,8 +357,8 @@ def let_move(
 
     template: How.
     from_s: When what it is about begins, s; soon if left out.
-    gap_m: It begins when so much is between it and the ego vehicle, m, in place of at a time; who follows
-        keeps so much to the one ahead. Bumper to bumper.
+    gap_m: It begins when so much is between it and the ego vehicle, m, in place of at a time; who
+        follows keeps so much to the one ahead. Bumper to bumper.
     id: The box; the ego vehicle if left out.
     mps: Speed, m/s; a usual one of its class if left out.
     """
@@ -367,8 +376,9 @@ def let_move(
 
 
 def let_traffic_drive() -> types.EditLetTrafficDrive:
-    """Lets everything that says how fast it is but stands go on along its lane, each at a distance to the one
-    ahead. What would come into something, a wall, a parked vehicle or one another, stays where it is.
+    """Lets everything that says how fast it is but stands go on along its lane, each at a distance to the
+    one ahead. What would come into something, a wall, a parked vehicle or one another, stays where it
+    is.
     """
     args = _given({}, [])
     return cast('types.EditLetTrafficDrive', {"let_traffic_drive": args})

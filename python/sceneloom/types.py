@@ -414,11 +414,27 @@ EditAddThingsArgs = TypedDict(
     },
 )
 
-# Puts things beside the road, and their voxels.
+# Puts things beside the road, and their voxels. They stay when scenery is drawn anew.
 EditAddThings = TypedDict(
     'EditAddThings',
     {
         'add_things': 'EditAddThingsArgs',
+    },
+)
+
+EditDrawSceneryArgs = TypedDict(
+    'EditDrawSceneryArgs',
+    {
+        # What and where, world frame.
+        'forms': 'Sequence[Form]',
+    },
+)
+
+# The same with scenery that a seed drew: it goes when scenery is drawn anew.
+EditDrawScenery = TypedDict(
+    'EditDrawScenery',
+    {
+        'draw_scenery': 'EditDrawSceneryArgs',
     },
 )
 
@@ -717,8 +733,8 @@ EditLetMoveArgs = TypedDict(
     {
         # When what it is about begins, s; soon if left out.
         'from_s': 'NotRequired[float | None]',
-        # It begins when so much is between it and the ego vehicle, m, in place of at a time; who follows keeps so
-        # much to the one ahead. Bumper to bumper.
+        # It begins when so much is between it and the ego vehicle, m, in place of at a time; who follows keeps
+        # so much to the one ahead. Bumper to bumper.
         'gap_m': 'NotRequired[float | None]',
         # The box; the ego vehicle if left out.
         'id': 'NotRequired[BoxId | None]',
@@ -881,7 +897,7 @@ EditSetRig = TypedDict(
 
 # One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:
 # `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
-Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditArrange | EditSetBoxClass | EditPaintBev | EditAddThings | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditChangeRoads | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetShape | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditLetTrafficDrive | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
+Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditArrange | EditSetBoxClass | EditPaintBev | EditAddThings | EditDrawScenery | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditChangeRoads | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetShape | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditLetTrafficDrive | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
 
 # Receipt of `export`.
 Exported = TypedDict(
@@ -1373,6 +1389,8 @@ Opened = TypedDict(
         'length_s': 'float',
         # Name of the scene.
         'name': 'str',
+        # What was done with the file that nobody asked for.
+        'notes': 'NotRequired[Sequence[str]]',
         # Number of the state that the scene is in now. A state that comes back by undo has its old number.
         'revision': 'int',
         # Name of the undo step; empty if nothing changed.
@@ -1435,8 +1453,24 @@ Polyline = TypedDict(
     },
 )
 
+PolylineKindSpeedLimitArgs = TypedDict(
+    'PolylineKindSpeedLimitArgs',
+    {
+        # The limit, mm/s: whole numbers of km/h and mph come back as they were.
+        'mm_per_s': 'int',
+    },
+)
+
+# A speed limit along the middle of a lane, in driving direction. Not drawn into a layer.
+PolylineKindSpeedLimit = TypedDict(
+    'PolylineKindSpeedLimit',
+    {
+        'speed_limit': 'PolylineKindSpeedLimitArgs',
+    },
+)
+
 # What a polyline means.
-PolylineKind: TypeAlias = "Literal['lane_center', 'road_divider', 'lane_divider', 'stop_line', 'ped_crossing']"
+PolylineKind: TypeAlias = "Literal['lane_center', 'road_divider', 'lane_divider', 'stop_line', 'ped_crossing'] | PolylineKindSpeedLimit"
 
 # A small upright thing.
 Post = TypedDict(

@@ -38,8 +38,9 @@ def driven(path, folder, name):
     metres = sum(float(lane.get("length")) for lane in lanes)
     allowed = sum(float(lane.get("length")) * float(lane.get("speed")) for lane in lanes) / metres
     tools = os.path.join(sumo.SUMO_HOME, "tools", "randomTrips.py")
-    run(sys.executable, tools, "-n", net, "-o", trips, "--seed", 7, "-e", 600, "-p", 4, "--fringe-factor", 5, "--validate", "--min-distance", 60)
-    run(os.path.join(BIN, "sumo"), "-n", net, "-r", trips, "--seed", 7, "--end", 1800, "--tripinfo-output", out, "--no-step-log")
+    routes = os.path.join(folder, f"{name}.rou.xml")
+    run(sys.executable, tools, "-n", net, "-o", trips, "-r", routes, "--seed", 7, "-e", 600, "-p", 4, "--fringe-factor", 5, "--validate", "--min-distance", 60)
+    run(os.path.join(BIN, "sumo"), "-n", net, "-r", routes, "--seed", 7, "--end", 1800, "--tripinfo-output", out, "--no-step-log")
     infos = ET.parse(out).getroot().findall("tripinfo")
     length = sum(float(t.get("routeLength")) for t in infos)
     seconds = sum(float(t.get("duration")) for t in infos)
