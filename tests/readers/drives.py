@@ -47,7 +47,7 @@ def clip(program, folder, template, seed, move):
     calls += [{"call": "apply", "args": {"edits": [{"let_move": {"id": b["id"], "template": "drive", "mps": 5.0}}]}} for b in drives]
     walkers = [b for b in things if b["class"] == "pedestrian"][:2]
     calls += [{"call": "apply", "args": {"edits": [{"let_move": {"id": b["id"], "template": "cross", "mps": 1.4}}]}} for b in walkers]
-    answers = call(program, folder, *calls, {"call": "save", "args": {"file": name}})
+    answers = call(program, folder, *calls, {"call": "save", "args": {"file": name, "replace": True}})
     for needed in (0, 1, len(calls)):
         if not answers.get(needed, {}).get("ok"):
             raise RuntimeError(f"{name}: {answers.get(needed)}")

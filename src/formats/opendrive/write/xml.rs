@@ -191,8 +191,8 @@ fn lane(out: &mut String, road: &Road, strip: usize, layout: &BevLayout) {
     let name = match kind {
         Strip::Lane { .. } => "driving",
         Strip::Between => "restricted",
-        Strip::Shoulder => "shoulder",
-        Strip::Parking => "parking",
+        // Car parks are written as areas upon it: a simulator drives along a lane of parking, however short a part of it is one.
+        Strip::Shoulder | Strip::Parking => "shoulder",
         Strip::Verge => "none",
         Strip::Walkway => "sidewalk",
     };
