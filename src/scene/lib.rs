@@ -30,6 +30,7 @@ pub mod plain_name;
 pub mod pose;
 pub mod raster;
 pub mod recorded;
+mod recording;
 pub mod relations;
 pub mod relief;
 pub mod returns;

@@ -6,6 +6,8 @@ use glam::DVec2;
 
 use super::{BevLayout, PolylineKind};
 
+/// Lines are followed so far beyond the map, m.
+const AROUND_M: f64 = 100.0;
 /// Side of a cell of the index, m.
 const CELL_M: f64 = 8.0;
 
@@ -17,18 +19,19 @@ pub struct SpeedLimits {
 }
 
 impl SpeedLimits {
-    /// The limits of a layout. Vertices that are not finite are left out.
+    /// The limits of a layout. Vertices that are not finite, or far beyond the map, are left out.
     pub fn of(layout: &BevLayout) -> Self {
         let mut out = Self::default();
         let extent = layout.extent();
         let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
+        let (low, high) = (low - AROUND_M, high + AROUND_M);
         for line in layout.polylines.iter() {
             let PolylineKind::SpeedLimit { mm_per_s } = line.kind else {
                 continue;
             };
             for ends in line.points_m.windows(2) {
-                let on_map = |p: &DVec2| p.is_finite() && p.cmpge(low).all() && p.cmple(high).all();
-                if ends.iter().all(on_map) {
+                let near = |p: &DVec2| p.is_finite() && p.cmpge(low).all() && p.cmple(high).all();
+                if ends.iter().all(near) {
                     out.add([ends[0], ends[1]], mm_per_s);
                 }
             }

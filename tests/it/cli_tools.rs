@@ -84,6 +84,27 @@ fn export(scene: &str, format: &str, out: &str, more: &[&str]) -> Vec<PathBuf> {
     files
 }
 
+/// A place on bare ground that is far from every box that stands.
+fn free_place(scene: &Scene) -> DVec3 {
+    let frame = scene.frame();
+    let is_ground = |l: &u8| *l == Class::FREE || Class::from_id(*l).is_some_and(Class::is_ground);
+    let is_bare = |at: DVec3| {
+        let around = (-8..=8).flat_map(|x| (-8..=8).map(move |y| (0.4 * f64::from(x), 0.4 * f64::from(y))));
+        around.into_iter().all(|(x, y)| {
+            let column = frame.extent().column_at(at.x + x, at.y + y);
+            column.is_some_and(|[x, y]| frame.occupancy.column(x, y).iter().all(is_ground))
+        })
+    };
+    let is_far = |at: DVec3| {
+        let standing = frame.boxes.values().filter(|b| b.center_m.z < 10.0);
+        standing.into_iter().all(|b| b.center_m.distance(at) > 12.0)
+    };
+    let places =
+        (-9..=9).flat_map(|x| (-9..=9).map(move |y| 4.0 * DVec3::new(f64::from(x), f64::from(y), 0.0)));
+    let mut free = places.filter(|at| is_far(*at) && is_bare(*at));
+    free.next().expect("a free place")
+}
+
 #[test]
 fn checks_tell_by_exit_code_and_fix() {
     let dir = Folder::new();
@@ -91,7 +112,7 @@ fn checks_tell_by_exit_code_and_fix() {
     let path = dir.save("good.loom", &scene);
     let (report, code) = run(&["check", &path]);
     assert_eq!((code, report["errors"].as_u64()), (0, Some(0)), "{report:#}");
-    // One box far above the others, one twice.
+    // One box far above free ground, one twice.
     let first = *scene.frame().boxes.values().next().expect("traffic");
     let add = |id: u32, center_m: DVec3| Edit::AddBox {
         class: first.class,
@@ -103,7 +124,8 @@ fn checks_tell_by_exit_code_and_fix() {
         label: Default::default(),
     };
     apply(&mut scene, add(900, first.center_m));
-    apply(&mut scene, add(901, first.center_m + DVec3::Z * 20.0));
+    let above = free_place(&scene) + DVec3::Z * 20.0;
+    apply(&mut scene, add(901, above));
     let path = dir.save("bad.loom", &scene);
     let (report, code) = run(&["check", &path]);
     assert_eq!((code, report["errors"].as_u64()), (1, Some(2)), "{report:#}");
@@ -120,7 +142,7 @@ fn checks_tell_by_exit_code_and_fix() {
     );
     assert_eq!(of(901)["check"], "out_of_range");
     let x = of(901)["where_m"][0].as_f64().expect("a number");
-    assert!((x - first.center_m.x).abs() < 1e-3);
+    assert!((x - above.x).abs() < 1e-3);
     // Repaired in a new file; the old one stays.
     let before = std::fs::read(&path).expect("there");
     let fixed = dir.path("fixed.loom");

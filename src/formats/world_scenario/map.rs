@@ -9,6 +9,8 @@ use super::on_ground;
 
 /// Points of a line are at most so far apart, m, so that it follows the ground.
 const STEP_M: f64 = 2.0;
+/// Slope by which crossings are tilted.
+const TILT: f64 = 1e-3;
 /// How far around a point of a lane's edge its marking is looked for, m.
 const NEAR_M: f64 = 0.8;
 
@@ -70,6 +72,17 @@ pub(crate) struct Map {
     pub(crate) stop_lines: Vec<Vec<DVec3>>,
 }
 
+/// Tilts a crossing along x by a millimetre a metre more than it is: the public renderer cuts it into triangles by y and z alone, where
+/// one on level ground is a line.
+fn tilt(corners: &mut [DVec3]) {
+    let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    let along: f64 = corners.iter().map(|c| (c.x - middle.x) * (c.z - middle.z)).sum();
+    let slope = if along < 0.0 { -TILT } else { TILT };
+    for corner in corners {
+        corner.z += slope * (corner.x - middle.x);
+    }
+}
+
 impl Map {
     /// Of a scene. Points that are not finite are left out.
     pub(crate) fn of(scene: &Scene, scenario_from_world: &Pose) -> Self {
@@ -98,7 +111,9 @@ impl Map {
                 PolylineKind::StopLine => out.stop_lines.push(lifted(&points_m)),
                 PolylineKind::PedCrossing => {
                     let corners = points_m.iter().map(|p| on_ground(scene, scenario_from_world, *p));
-                    out.crossings.push(corners.collect());
+                    let mut corners: Vec<DVec3> = corners.collect();
+                    tilt(&mut corners);
+                    out.crossings.push(corners);
                 }
                 PolylineKind::LaneCenter | PolylineKind::SpeedLimit { .. } => {}
             }
@@ -183,5 +198,40 @@ fn edge(layout: &BevLayout, at_m: DVec2) -> Edge {
         () if lane_divider => Edge::Line(Marking::LaneDivider),
         () if off_road => Edge::Boundary,
         () => Edge::Nothing,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twice the area of the triangle of the first three corners, seen along x, m2.
+    fn area(corners: &[DVec3]) -> f64 {
+        let [a, b, c] = [0, 1, 2].map(|i| DVec2::new(corners[i].y, corners[i].z));
+        (b - a).perp_dot(c - a).abs()
+    }
+
+    #[test]
+    fn no_crossing_is_a_line_seen_along_x() {
+        for slope in [
+            DVec2::ZERO,
+            DVec2::new(1e-3, 0.0),
+            DVec2::new(-1e-3, 0.0),
+            DVec2::new(0.0, 0.05),
+        ] {
+            let corner = |x: f64, y: f64| DVec3::new(x, y, slope.dot(DVec2::new(x, y)));
+            let mut corners = [
+                corner(20.0, 5.0),
+                corner(20.0, -2.0),
+                corner(23.0, -2.0),
+                corner(23.0, 5.0),
+            ];
+            let before = corners;
+            tilt(&mut corners);
+            assert!(area(&corners) > 0.02, "{slope}: {}", area(&corners));
+            for (a, b) in before.iter().zip(&corners) {
+                assert!((a.z - b.z).abs() <= 0.002 && a.truncate() == b.truncate());
+            }
+        }
     }
 }

@@ -413,6 +413,7 @@ fn the_video_has_thirty_pictures_a_second_for_each_camera() {
     let mut small = camera();
     (small.width, small.height, small.focal_px, small.center_px) = (200, 112, [100.0; 2], [100.0, 56.0]);
     let mut aside = small.clone();
+    aside.name = "ASIDE".into();
     aside.set_aim(scene::rig::Aim {
         yaw_deg: 66.0,
         pitch_deg: 0.0,
@@ -425,21 +426,27 @@ fn the_video_has_thirty_pictures_a_second_for_each_camera() {
     };
     let files = write();
     let names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
+    // Those of the rig, and the five that readers look for besides.
     assert_eq!(
-        names,
-        [
-            "a_drive_.camera_front_wide_120fov.mp4",
-            "a_drive_.camera_cross_left_120fov.mp4"
-        ]
+        (names.len(), &names[..2]),
+        (
+            7,
+            &[
+                "a_drive_.camera_front_wide_120fov.mp4",
+                "a_drive_.camera_cross_left_120fov.mp4"
+            ][..]
+        )
     );
+    let mut own = 0;
     assert_eq!(files, write(), "the same bytes");
     for file in files {
         let length = file.bytes.len() as u64;
         let movie = ::mp4::Mp4Reader::read_header(std::io::Cursor::new(file.bytes), length).expect("an MP4");
         let track = movie.tracks().values().next().expect("a track");
         assert_eq!((track.sample_count(), track.frame_rate().round()), (7, 30.0));
-        assert_eq!((track.width(), track.height()), (200, 112));
+        own += usize::from((track.width(), track.height()) == (200, 112));
     }
+    assert_eq!(own, 2, "sizes are those of the rig's cameras");
     Arc::make_mut(&mut scene.rig).cameras.clear();
     let exporter = crate::export::from_id("control-video").expect("in the table");
     let error = (exporter.write)(&scene, &mut Small).expect_err("no cameras");

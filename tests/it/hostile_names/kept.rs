@@ -13,7 +13,7 @@ fn names_of_scenes_are_lines_and_lead_no_export_out() {
     let mut place = Place::new();
     let (_, loom) = small();
     place.begin();
-    let formats: Vec<_> = ["boxes", "opendrive", "openscenario", "world-scenario", "loom"]
+    let formats: Vec<_> = ["boxes", "opendrive", "openscenario", "world-scenario"]
         .iter()
         .map(|id| export::from_id(id).expect("a format"))
         .collect();

@@ -22,7 +22,7 @@ impl Bench {
     }
 
     fn shows(&self, label: &str) -> bool {
-        self.harness.query_by_label_contains(label).is_some()
+        self.harness.query_all_by_label_contains(label).next().is_some()
     }
 
     fn all_checked(&mut self) {
@@ -174,14 +174,14 @@ fn errors(bench: &Bench) -> usize {
 }
 
 impl Bench {
-    fn planned(&mut self) {
+    pub(super) fn planned(&mut self) {
         self.wait_until("the plan", |b| {
             matches!(b.app().threads.planning.shown(), Some(Shown::Planned(_)))
         });
         self.steps(3);
     }
 
-    fn press(&mut self, label: &str) {
+    pub(super) fn press(&mut self, label: &str) {
         self.harness.get_by_label_contains(label).click();
         self.steps(3);
     }

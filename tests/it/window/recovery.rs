@@ -98,11 +98,13 @@ fn findings_lead_to_their_place_and_are_fixed() {
     bench.app().document.apply("Paint", &floats).expect("sound");
     bench.wait_until("the checks", checked);
     bench.steps(3);
-    bench.click("Fix all (2)");
+    bench.click("Fix all (2)…");
+    bench.planned();
+    bench.press("Repair ");
     assert_eq!(bench.frame().occupancy.get(30, 30, 9), Class::Free.id());
     assert_eq!(bench.frame().occupancy.get(90, 30, 9), Class::Free.id());
     assert_eq!(
         bench.history().last().map(String::as_str),
-        Some("Fix all findings")
+        Some("Repair findings")
     );
 }

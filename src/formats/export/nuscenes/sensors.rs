@@ -278,7 +278,8 @@ fn sweep(now: &Scene, products: &mut dyn Products) -> Result<LidarSweep, FormatE
     Ok(sweep)
 }
 
-/// Moves returns that are on a face of a box a hair out of it: the road under a box that stands on it.
+/// Moves returns that are on a face of a box a hair off it: out of it what is ground, the road under a box that stands on it, and in
+/// what is not.
 fn off_faces(sweep: &mut LidarSweep, now: &Scene) {
     let pose = now.frame().world_from_ego;
     let boxes: Vec<&SceneBox> = now.frame().boxes.values().collect();
@@ -297,7 +298,12 @@ fn off_faces(sweep: &mut LidarSweep, now: &Scene) {
             if let Some(axis) = face
                 && over.max_element() < OFF_FACE_M / 2.0
             {
-                local[axis] = (half[axis] + OFF_FACE_M).copysign(local[axis]);
+                let off_m = if point.class.is_ground() {
+                    OFF_FACE_M
+                } else {
+                    -OFF_FACE_M
+                };
+                local[axis] = (half[axis] + off_m).copysign(local[axis]);
                 at = b.to_ego(local);
             }
         }
