@@ -35,8 +35,8 @@ pub mod voxel_ops;
 pub mod within;
 
 pub use apply::forecast::{Forecast, forecast};
-pub use apply::off_lane::off_lane;
 pub use apply::left_standing::left_standing;
+pub use apply::off_lane::off_lane;
 pub use apply::start::{Start, remarks, traffic_drives};
 pub use apply::{Apply, apply_all};
 pub use document::{Document, Stale};

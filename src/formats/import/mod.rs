@@ -7,9 +7,9 @@ pub mod commonroad;
 mod commonroad_obstacles;
 #[cfg(test)]
 mod commonroad_tests;
-mod foreign;
 #[cfg(test)]
 mod far_tests;
+mod foreign;
 pub mod glb;
 mod importer;
 pub mod kitti;

@@ -24,8 +24,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use scene::message::shortened;
 use scene::{
-    BevLayout, Clip, Conditions, Extent, Frame, Inferred, Key, Motion, Pose, Recorded, Scene, TimeOfDay, Weather,
-    draft, infer,
+    BevLayout, Clip, Conditions, Extent, Frame, Inferred, Key, Motion, Pose, Recorded, Scene, TimeOfDay,
+    Weather, draft, infer,
 };
 
 use super::{Content, Importer, Loaded, Source};

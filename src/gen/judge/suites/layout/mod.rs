@@ -439,7 +439,7 @@ fn changed(
         prompt: &scene.prompt,
         conditions: scene.conditions,
         clip: None,
-            ego_moves: false,
+        ego_moves: false,
         length_s: 0.0,
     };
     let outcome = carry_out(reading, &open, seed);
