@@ -17,9 +17,9 @@ impl Bench {
 
 /// Presses and lets go at a widget, as a hand does.
 fn press(bench: &mut Bench, label: &str) {
-    let mut all = bench.harness.query_all_by_label(label);
-    let at = all.next().unwrap_or_else(|| panic!("no {label}")).rect().center();
-    drop(all);
+    // What is open lies on top, and comes last.
+    let all = bench.harness.query_all_by_label(label);
+    let at = all.last().unwrap_or_else(|| panic!("no {label}")).rect().center();
     bench.drag(&[at], egui::Modifiers::NONE);
     bench.steps(3);
 }
