@@ -9,7 +9,6 @@ mod desk;
 mod editing;
 mod files;
 mod guests;
-mod light;
 mod linked;
 mod objects;
 mod overdraw;
