@@ -21,7 +21,7 @@ fn changes_that_are_taken_back_leave_no_memory_behind() {
             "class": "pedestrian", "center_m": [8 + i % 20, 3, 0.9], "size_m": [0.7, 0.7, 1.8], "yaw_deg": i % 360,
         } });
         let strip = json!({ "paint_bev": {
-            "layer": "walkway", "value": i % 2 == 0,
+            "layer": "walkway", "value": i.is_multiple_of(2),
             "shape": { "rect": { "min_m": [i % 40, -12], "max_m": [i % 40 + 2, -10] } },
         } });
         talk.did("apply", json!({ "edits": [box_, strip] }));
