@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::arrange::wrapped_deg;
 use crate::lanes::nearest_lane;
 use scene::relations::overlap_m;
-use scene::{BoxId, Edit, Extent, Frame, Model, Scene, SceneBox};
+use scene::{BoxId, BoxLabel, Edit, Extent, Frame, Model, Scene, SceneBox};
 
 /// A model that is placed on the road takes the middle and the heading of a lane as near as this, m.
 const LANE_REACH_M: f64 = 3.0;
@@ -57,6 +57,16 @@ pub fn place(scene: &Scene, model: &Model, at_m: DVec2, yaw_deg: Option<f64>) ->
     })
 }
 
+/// Gives a box that is there the shape and the size of a model, and its paint where the box has none of its own.
+pub fn give(model: &Model, b: &SceneBox) -> Vec<Edit> {
+    let label = BoxLabel {
+        paint: b.label.paint.or(model.label.paint),
+        ..b.label
+    };
+    let painted = (label != b.label).then_some(Edit::LabelBox { id: b.id, label });
+    painted.into_iter().chain(model.given_to(b)).collect()
+}
+
 /// A point, and points around it in rings.
 fn near(at_m: DVec2) -> impl Iterator<Item = DVec2> {
     let ring = move |i: usize| {
@@ -99,7 +109,7 @@ mod tests {
     use super::*;
     use crate::apply_all;
     use glam::DVec3;
-    use scene::{BevLayout, BoxLabel, Class, SensorRig, draft};
+    use scene::{BevLayout, BoxLabel, Class, Paint, SensorRig, draft};
 
     /// A wedge: high at its rear, low ahead.
     fn wedge() -> Model {
@@ -207,6 +217,31 @@ mod tests {
         };
         apply_all(&[larger], &mut scene).expect("sound");
         assert!(scene.frame().own_shapes.is_empty() && !scene.clip().tracks[&id].settled);
+    }
+
+    #[test]
+    fn a_box_takes_the_paint_of_a_model_unless_it_has_its_own() {
+        let mut model = wedge();
+        model.label.paint = Some(Paint::Yellow);
+        for (own, then) in [(None, Paint::Yellow), (Some(Paint::Blue), Paint::Blue)] {
+            let mut scene = empty();
+            let placed = place(&scene, &wedge(), DVec2::new(12.0, 4.0), None).expect("room");
+            apply_all(&placed.edits[..1], &mut scene).expect("sound");
+            let mut label = scene.frame().boxes[&placed.id].label;
+            label.paint = own;
+            let id = placed.id;
+            apply_all(&[Edit::LabelBox { id, label }], &mut scene).expect("sound");
+            let edits = give(&model, &scene.frame().boxes[&id]);
+            apply_all(&edits, &mut scene).expect("sound");
+            assert_eq!(
+                scene.frame().boxes[&id].label,
+                BoxLabel {
+                    paint: Some(then),
+                    ..label
+                }
+            );
+            assert_eq!(Model::of(&scene, Some(id)).expect("there").cells, model.cells);
+        }
     }
 
     #[test]

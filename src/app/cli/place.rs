@@ -82,7 +82,7 @@ impl Place {
         if let Some(id) = self.to.map(BoxId) {
             let b = scene.frame().boxes.get(&id);
             let b = b.ok_or(editor::EditError::UnknownBox { id })?;
-            let edits: Vec<Edit> = model.given_to(b);
+            let edits: Vec<Edit> = models::give(model, b);
             return Ok(Placed { edits, id });
         }
         let at_m = self.at.unwrap_or_else(|| models::ahead_m(scene, model));

@@ -69,7 +69,7 @@ impl SceneloomApp {
         let scene = self.document.settled_scene().clone();
         if let Some(id) = reading.target {
             match scene.frame().boxes.get(&id) {
-                Some(b) => self.apply("Give the box a model's shape", &model.given_to(b)),
+                Some(b) => self.apply("Give the box a model's shape", &editor::models::give(&model, b)),
                 None => self.fail(t("Not placed: the box is gone").to_owned()),
             }
             return;

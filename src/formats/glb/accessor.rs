@@ -1,8 +1,8 @@
-//! Numbers of a glTF file: positions of corners and indices, read where they lie and checked against the bytes that are there.
+//! Numbers of a glTF file: positions of corners, their places in a picture, and indices, read where they lie and checked against the bytes that are there.
 
 use std::collections::BTreeMap;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Root, buffer};
@@ -17,6 +17,9 @@ pub(crate) struct Positions<'a> {
     numbers: Numbers<'a>,
     replaced: BTreeMap<u64, DVec3>,
 }
+
+/// Places of corners in a picture, from 0 to 1 across and down it.
+pub(crate) struct PicturePlaces<'a>(Numbers<'a>);
 
 /// Indices of corners, or simply their order.
 pub(crate) enum Indices<'a> {
@@ -103,6 +106,26 @@ impl<'a> Positions<'a> {
     }
 }
 
+impl<'a> PicturePlaces<'a> {
+    /// From an accessor. Errors in one line where it is none of two numbers each, or not within its buffer.
+    pub(crate) fn new(root: &Root, buffers: &'a Buffers<'_>, index: usize) -> Result<Self, FormatError> {
+        let accessor = get(&root.accessors, index, "accessor")?;
+        let numbers = Numbers::new(root, buffers, accessor, index)?;
+        match numbers.components == 2 && accessor.sparse.is_none() {
+            true => Ok(Self(numbers)),
+            false => Err(FormatError::new(format!(
+                "accessor {index}: expected places in a picture, of two numbers each"
+            ))),
+        }
+    }
+
+    /// One of them; `None` if there are not so many.
+    pub(crate) fn get(&self, i: u64) -> Option<DVec2> {
+        let [x, y] = self.0.parts(i)?;
+        Some(DVec2::new(x, y))
+    }
+}
+
 impl<'a> Indices<'a> {
     /// From an accessor, or of `corners` in their order without one.
     pub(crate) fn new(
@@ -156,6 +179,7 @@ impl<'a> Numbers<'a> {
         };
         let components = match &accessor.type_ {
             Checked::Valid(Type::Scalar) => 1,
+            Checked::Valid(Type::Vec2) => 2,
             Checked::Valid(Type::Vec3) => 3,
             _ => return Err(wrong(index)),
         };
@@ -222,11 +246,16 @@ impl<'a> Numbers<'a> {
     }
 
     fn vector(&self, i: u64) -> Option<DVec3> {
+        self.parts(i).map(DVec3::from_array)
+    }
+
+    /// The first numbers of an element.
+    fn parts<const N: usize>(&self, i: u64) -> Option<[f64; N]> {
         if i >= self.count {
             return None;
         }
         if self.bytes.is_none() {
-            return Some(DVec3::ZERO);
+            return Some([0.0; N]);
         }
         let element = self.element(i)?;
         let size = self.kind.size();
@@ -245,7 +274,11 @@ impl<'a> Numbers<'a> {
                 ComponentType::U32 => return None,
             })
         };
-        Some(DVec3::new(part(0)?, part(1)?, part(2)?))
+        let mut out = [0.0; N];
+        for (axis, value) in out.iter_mut().enumerate() {
+            *value = part(axis)?;
+        }
+        Some(out)
     }
 
     /// A quantised number (`KHR_mesh_quantization`).
@@ -282,7 +315,7 @@ fn component(of: &Checked<gltf::json::accessor::IndexComponentType>) -> Option<(
 }
 
 /// The bytes of a view from an offset on, and how far apart its elements lie if it says so.
-fn from<'a>(
+pub(crate) fn from<'a>(
     root: &Root,
     buffers: &'a Buffers<'_>,
     view: usize,

@@ -1,6 +1,6 @@
-//! Which class a thing has by what it is called: `Car_01`, `SM_TrafficCone`, `vehicle-truck-yellow`, `roadAsphalt`.
+//! Which class and paint a thing has by what it is called: `Car_01`, `SM_TrafficCone`, `vehicle-truck-yellow`, `roadAsphalt`.
 
-use scene::Class;
+use scene::{Class, Paint};
 
 /// Words and their class; of several words in a name the one that comes first here tells.
 const WORDS: [(&str, Class); 137] = [
@@ -188,6 +188,15 @@ pub(crate) fn said(name: &str) -> Said {
         several: SEVERAL.iter().any(|word| has(word)),
         nothing: NOTHING.iter().any(|word| has(word)),
     }
+}
+
+/// The first paint that a name tells.
+pub(crate) fn paint_said(name: &str) -> Option<Paint> {
+    let told = |word: &String| {
+        let word = if word == "gray" { "grey" } else { word };
+        Paint::ALL.into_iter().find(|paint| paint.name() == word)
+    };
+    words(name).iter().find_map(told)
 }
 
 /// The words of a name in small letters: parted at everything that is no letter, and where a capital follows a small letter.

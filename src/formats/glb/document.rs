@@ -13,13 +13,15 @@ use gltf::json::validation::Checked;
 use gltf::json::{Root, deserialize};
 use scene::message::quoted;
 
-use super::accessor::{Indices, Positions, get};
+use super::accessor::{Indices, PicturePlaces, Positions, from, get};
 use super::{container, z_up_from_y_up};
 use crate::FormatError;
 use crate::import::Source;
 
 /// Largest file beside a document, bytes.
 const LARGEST_BUFFER: u64 = 512 << 20;
+/// Largest picture of a document, bytes.
+const LARGEST_PICTURE: u64 = 64 << 20;
 /// Most triangles that are read, each as often as nodes show it.
 const MOST_TRIANGLES: u64 = 1 << 26;
 /// Most nodes that are around one another.
@@ -45,6 +47,8 @@ pub(crate) struct Document<'a> {
     /// Name of the scene; empty without one.
     pub(crate) scene_name: String,
     buffers: Vec<Cow<'a, [u8]>>,
+    /// What is beside it is read from here.
+    source: &'a Source<'a>,
 }
 
 /// A node of the scene.
@@ -86,7 +90,7 @@ impl LeftOut {
 
 impl<'a> Document<'a> {
     /// Reads a GLB file, or glTF as JSON with its buffers inside or beside it.
-    pub(crate) fn read(source: &'a Source<'_>) -> Result<Self, FormatError> {
+    pub(crate) fn read(source: &'a Source<'a>) -> Result<Self, FormatError> {
         let (json, bin) = match container::is_glb(source.bytes) {
             true => {
                 let chunks = container::split(source.bytes)?;
@@ -103,6 +107,7 @@ impl<'a> Document<'a> {
             nodes,
             scene_name,
             buffers,
+            source,
         })
     }
 
@@ -130,7 +135,7 @@ impl<'a> Document<'a> {
         let mesh = get(&self.root.meshes, mesh, "mesh")?;
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let mut broken = 0;
-            let sound = self.corners(primitive, left_out, |corners| {
+            let sound = self.corners(primitive, left_out, |corners, _| {
                 let corners = corners.map(|p| node.world_from_node.transform_point3(p));
                 match corners.iter().all(|p| p.is_finite()) {
                     true => visit(i, corners),
@@ -141,6 +146,26 @@ impl<'a> Document<'a> {
             sound?;
         }
         Ok(())
+    }
+
+    /// Where the corners of a primitive are in the pictures of that set; `None` where it does not say so.
+    pub(crate) fn picture_places(&self, primitive: &Primitive, set: u32) -> Option<PicturePlaces<'_>> {
+        let semantic = Checked::Valid(Semantic::TexCoords(set));
+        let accessor = primitive.attributes.get(&semantic)?;
+        PicturePlaces::new(&self.root, &self.buffers, accessor.value()).ok()
+    }
+
+    /// The bytes of a picture: in a buffer, in its address, or in a file beside the document. Errors in one line where they are in
+    /// none of these.
+    pub(crate) fn picture(&self, index: usize) -> Result<Cow<'_, [u8]>, FormatError> {
+        let picture = get(&self.root.images, index, "image")?;
+        match (&picture.buffer_view, &picture.uri) {
+            (Some(view), _) => Ok(Cow::Borrowed(from(&self.root, &self.buffers, view.value(), 0)?.0)),
+            (None, Some(uri)) => Ok(Cow::Owned(addressed(uri, self.source, LARGEST_PICTURE)?)),
+            (None, None) => Err(FormatError::new(format!(
+                "image {index} is nowhere: it has no address"
+            ))),
+        }
     }
 
     /// Triangles of this node as often as they are shown, at most.
@@ -175,11 +200,12 @@ impl<'a> Document<'a> {
         }
     }
 
-    fn corners(
+    /// Visits the triangles of a primitive in its node's axes, m, with the numbers of their corners.
+    pub(crate) fn corners(
         &self,
         primitive: &Primitive,
         left_out: &mut LeftOut,
-        mut visit: impl FnMut([DVec3; 3]),
+        mut visit: impl FnMut([DVec3; 3], [u64; 3]),
     ) -> Result<(), FormatError> {
         let step = match primitive.mode {
             Checked::Valid(Mode::Triangles) => 3,
@@ -204,9 +230,12 @@ impl<'a> Document<'a> {
                 (1, false) if first % 2 == 1 => [first + 1, first, first + 2],
                 _ => [first, first + 1, first + 2],
             };
-            let corner = |i: u64| positions.get(indices.get(i)?);
+            let corner = |i: u64| {
+                let i = indices.get(i)?;
+                Some((positions.get(i)?, i))
+            };
             match order.map(corner) {
-                [Some(a), Some(b), Some(c)] => visit([a, b, c]),
+                [Some(a), Some(b), Some(c)] => visit([a.0, b.0, c.0], [a.1, b.1, c.1]),
                 _ => left_out.add("triangles with corners that are not there", 1),
             }
             first += step;
@@ -248,9 +277,9 @@ fn buffers<'a>(
                     "buffer {i} is nowhere: it has no address"
                 )));
             }
-            (Some(uri), _) => {
-                Cow::Owned(addressed(uri, source).map_err(|e| e.at(&format_args!("buffer {i}")))?)
-            }
+            (Some(uri), _) => Cow::Owned(
+                addressed(uri, source, LARGEST_BUFFER).map_err(|e| e.at(&format_args!("buffer {i}")))?,
+            ),
         };
         if (bytes.len() as u64) < buffer.byte_length.0 {
             return Err(FormatError::new(format!(
@@ -265,7 +294,7 @@ fn buffers<'a>(
 }
 
 /// The bytes at an address: written into it (base64), or in a file beside the document and in no folder above it.
-fn addressed(uri: &str, source: &Source<'_>) -> Result<Vec<u8>, FormatError> {
+fn addressed(uri: &str, source: &Source<'_>, limit: u64) -> Result<Vec<u8>, FormatError> {
     if let Some(data) = uri.strip_prefix("data:") {
         let text = data.split_once(";base64,").map(|(_, text)| text);
         let text = text.ok_or_else(|| FormatError::new("a data address that is not base64"))?;
@@ -281,7 +310,7 @@ fn addressed(uri: &str, source: &Source<'_>) -> Result<Vec<u8>, FormatError> {
             "{shown:?}: expected the name of a file in the same folder or below it"
         )));
     }
-    source.beside(&relative, LARGEST_BUFFER)
+    source.beside(&relative, limit)
 }
 
 /// An address with `%20` and the like as characters.

@@ -9,10 +9,11 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use scene::{BoxId, Class, Extent, Frame, Inferred, Scene, SensorRig, VoxelGrid, infer};
 
-use super::class_words::{Said, said};
+use super::class_words::{Said, paint_said, said};
 use super::columns::{Heights, Statics};
 use super::document::{Document, LeftOut};
 use super::model::{Outline, class_by_size, may_be_one};
+use super::paint::Coats;
 use super::surface::Surface;
 use super::{own, single, work};
 use crate::FormatError;
@@ -230,15 +231,18 @@ fn map(
         layout: true,
         ..Inferred::default()
     };
+    let mut coats = Coats::new(document);
     for (number, (thing, outline)) in things.iter().zip(&outlines).enumerate() {
         let id = BoxId(boxes.len() as u32 + 1);
         match outline.to_box(id, thing.class) {
-            Some(b) if boxes.len() < Frame::MAX_BOXES => {
+            Some(mut b) if boxes.len() < Frame::MAX_BOXES => {
                 let mut heights = Heights::new(extent, &b);
                 // The nodes of a thing follow its own.
                 let of_thing = |node: &usize| abouts[*node].thing == Some(number);
-                for node in (thing.node..abouts.len()).take_while(of_thing) {
-                    let node = &document.nodes[node];
+                let end = (thing.node..abouts.len()).take_while(of_thing).count() + thing.node;
+                let nodes = &document.nodes[thing.node..end];
+                b.label.paint = coats.paint(nodes)?.or_else(|| paint_said(&nodes[0].name));
+                for node in nodes {
                     document.triangles(node, &mut LeftOut::default(), |_, corners| {
                         heights.add(place(corners))
                     })?;

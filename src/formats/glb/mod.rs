@@ -13,6 +13,7 @@ pub(crate) mod foreign;
 pub(crate) mod mesh;
 pub(crate) mod model;
 pub(crate) mod own;
+pub(crate) mod paint;
 pub(crate) mod single;
 pub(crate) mod solid;
 pub(crate) mod surface;

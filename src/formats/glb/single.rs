@@ -8,10 +8,12 @@ use scene::{
     BevLayout, BoxId, BoxLabel, BoxName, Class, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, draft,
 };
 
+use super::class_words::paint_said;
 use super::columns::{Heights, Statics};
 use super::document::{Document, LeftOut};
 use super::foreign::{About, Bounds, each_triangle, static_class};
 use super::model::Outline;
+use super::paint::Coats;
 use super::surface::Surface;
 use super::work;
 use crate::FormatError;
@@ -61,7 +63,9 @@ pub(super) fn scene(
         yaw_rad: if is_at_ego { 0.0 } else { b.yaw_rad },
         label: BoxLabel {
             name: label(name, class),
-            paint: None,
+            paint: Coats::new(document)
+                .paint(&document.nodes)?
+                .or_else(|| paint_said(name)),
         },
         ..b
     };

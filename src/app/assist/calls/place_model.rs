@@ -68,7 +68,7 @@ impl Operation for PlaceModel {
             Some(id) => {
                 let b = scene.frame().boxes.get(&id).ok_or(EditError::UnknownBox { id })?;
                 Placed {
-                    edits: model.given_to(b),
+                    edits: models::give(&model, b),
                     id,
                 }
             }
