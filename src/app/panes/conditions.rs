@@ -4,7 +4,7 @@ use egui::containers::menu::is_in_menu;
 use egui::{DragValue, Ui};
 
 use crate::command::Command;
-use crate::fields::{fields, number};
+use crate::fields::{fields, number, typed};
 use editor::Edit;
 use language::t;
 use scene::{Conditions, Scene, Sun, TimeOfDay, Weather};
@@ -31,21 +31,21 @@ pub fn conditions(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
 
 /// Every time of day and every weather, each a click away. In a menu no list can drop down: only one of both is open at a time.
 fn listed(ui: &mut Ui, time: &mut TimeOfDay, weather: &mut Weather) {
-    ui.horizontal_top(|ui| {
-        ui.vertical(|ui| {
+    widgets::menu::side_by_side(
+        ui,
+        |ui| {
             ui.label(egui::RichText::new(t("Time of day")).color(theme::text_weak()));
             for value in TimeOfDay::ALL {
                 ui.selectable_value(time, value, theme::sentence(t(value.name())));
             }
-        });
-        ui.separator();
-        ui.vertical(|ui| {
+        },
+        |ui| {
             ui.label(egui::RichText::new(t("Weather")).color(theme::text_weak()));
             for value in Weather::ALL {
                 ui.selectable_value(weather, value, theme::sentence(t(value.name())));
             }
-        });
-    });
+        },
+    );
     ui.separator();
 }
 
@@ -135,7 +135,7 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
     response |= ui
         .horizontal(|ui| {
             crate::fields::caption(ui, t("Seed"));
-            let seed = DragValue::new(&mut new.seed).speed(0.05);
+            let seed = typed(DragValue::new(&mut new.seed).speed(0.05));
             ui.add_sized([86.0, theme::ROW], seed)
                 .accessible_name(t("Seed of the pictures"))
         })
