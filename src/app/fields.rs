@@ -30,6 +30,12 @@ pub fn decimal(value: f64, decimals: usize) -> String {
     }
 }
 
+/// A field whose typed number counts when it is done: by Enter or by going elsewhere. A number that the scene gives back as
+/// another (a heading, a place along turned axes) would replace what is being typed, and each digit would be a step to undo.
+pub fn typed(field: DragValue<'_>) -> DragValue<'_> {
+    field.update_while_editing(false)
+}
+
 /// Three numbers in a row; the response of all of them.
 pub fn numbers(
     ui: &mut Ui,
@@ -49,6 +55,7 @@ pub fn numbers(
                 .range(range.clone())
                 .fixed_decimals(2)
                 .custom_formatter(|v, _| decimal(v, 2));
+            let drag = typed(drag);
             ui.add_sized([width, theme::ROW], drag)
                 .on_hover_text(format!("{name}, m"))
                 .accessible_name(name)
@@ -95,6 +102,7 @@ pub fn number(
             .fixed_decimals(decimals)
             .custom_formatter(|v, _| decimal(v, decimals))
             .suffix(suffix);
+        let drag = typed(drag);
         ui.add_sized([86.0, theme::ROW], drag).accessible_name(name)
     })
     .inner

@@ -322,6 +322,39 @@ fn replace(old: &SceneBox, new: &SceneBox) -> Vec<Edit> {
     vec![Edit::RemoveBox { id: old.id }, add_edit(new, Some(old.id))]
 }
 
+/// The edits that let a box go so fast (m/s): one that stands in the scene has that speed from then on, along its heading or the way
+/// it moves; one on a path is at that speed now and as much faster or slower on all of it. `None` where keyframes or another object
+/// say how fast it is, and where a path is at a stop.
+pub fn with_speed(scene: &Scene, id: BoxId, mps: f64) -> Option<Vec<Edit>> {
+    /// Slower is a stop, m/s.
+    const STOP_MPS: f64 = 0.05;
+    let Some(track) = scene.clip().tracks.get(&id) else {
+        let b = scene.frame().boxes.get(&id)?;
+        let way = b.velocity_mps.try_normalize().unwrap_or(b.heading());
+        let new = SceneBox {
+            velocity_mps: way * mps,
+            ..*b
+        };
+        return Some(replace(b, &new));
+    };
+    let Motion::Path(path) = &track.motion else {
+        return None;
+    };
+    let now_mps = path.along(scene.time_s()).1.abs();
+    if now_mps < STOP_MPS {
+        return None;
+    }
+    let mut path = path.clone();
+    path.speeds.iter_mut().for_each(|s| s.mps *= mps / now_mps);
+    let [from_s, to_s] = track.there_s;
+    Some(vec![Edit::SetMotion {
+        id: Some(id),
+        motion: Some(Motion::Path(path)),
+        from_s,
+        to_s,
+    }])
+}
+
 fn add_edit(b: &SceneBox, id: Option<BoxId>) -> Edit {
     Edit::AddBox {
         class: b.class,

@@ -39,6 +39,80 @@ pub(crate) fn after(frame: &Frame, edits: &[Edit]) -> Frame {
 }
 
 #[test]
+fn another_speed_keeps_place_heading_and_voxels() {
+    let mut b = car(1, 3.0, 2.0, 0.3);
+    let mut frame = frame(&[b, car(2, 12.0, 2.0, 0.0)]);
+    // Voxels that the networks drew, not those of a draft.
+    let [x, y] = frame.extent().column_at(3.0, 2.0).expect("on the map");
+    frame.occupancy.set(x, y, 9, Class::Car.id());
+    frame.source = Arc::new(scene::SourceFrame {
+        layout: frame.layout.clone(),
+        boxes: frame.boxes.clone(),
+        occupancy: frame.occupancy.clone(),
+    });
+    let still = Scene::single("test", frame.clone(), Arc::default(), 1);
+    let edits = with_speed(&still, BoxId(1), 12.5).expect("it stands in the scene");
+    let faster = after(&frame, &edits);
+    b.velocity_mps = DVec2::new(5.0, 1.0).normalize() * 12.5;
+    assert!(faster.boxes[&BoxId(1)].velocity_mps.distance(b.velocity_mps) < 1e-9);
+    let now = SceneBox {
+        velocity_mps: b.velocity_mps,
+        ..faster.boxes[&BoxId(1)]
+    };
+    assert_eq!(now, b, "nothing else changes");
+    assert_eq!(faster.occupancy, frame.occupancy);
+    assert_eq!(faster.source.boxes, faster.boxes, "nothing is to be generated");
+    // What stood goes where it looks.
+    let stopped = after(&frame, &with_speed(&still, BoxId(2), 0.0).expect("it stands"));
+    assert_eq!(stopped.boxes[&BoxId(2)].velocity_mps, DVec2::ZERO);
+    let stopped = Scene::single("test", stopped, Arc::default(), 1);
+    let again = after(
+        stopped.frame(),
+        &with_speed(&stopped, BoxId(2), 3.0).expect("it stands"),
+    );
+    assert_eq!(again.boxes[&BoxId(2)].velocity_mps, DVec2::new(3.0, 0.0));
+}
+
+#[test]
+fn a_path_is_driven_as_much_faster_as_its_speed_now_is_and_keyframes_keep_theirs() {
+    use scene::clip::{Path, Speed};
+    let frame = frame(&[car(1, 0.0, 0.0, 0.0), car(2, 0.0, 9.0, 0.0)]);
+    let speed = |time_s: f64, mps: f64| Speed { time_s, mps };
+    let path = Path {
+        points_m: vec![DVec2::ZERO, DVec2::new(30.0, 0.0)],
+        start_m: 0.0,
+        speeds: vec![speed(0.0, 4.0), speed(2.0, 2.0)],
+        rear_first: false,
+    };
+    let key = |time_s: f64, x: f64| scene::Key {
+        time_s,
+        at_m: DVec2::new(x, 9.0),
+        yaw_deg: 0.0,
+    };
+    let keys = Motion::Keys(vec![key(0.0, 0.0), key(2.0, 8.0)]);
+    let mut document = Document::new(Scene::single("test", frame, Arc::default(), 1));
+    for (id, motion) in [(1, Motion::Path(path)), (2, keys)] {
+        let edit = Edit::SetMotion {
+            id: Some(BoxId(id)),
+            motion: Some(motion),
+            from_s: None,
+            to_s: Some(1.5),
+        };
+        document.apply("motion", &edit).expect("sound");
+    }
+    let edits = with_speed(document.scene(), BoxId(1), 10.0).expect("a path");
+    assert_eq!(with_speed(document.scene(), BoxId(2), 10.0), None);
+    assert_eq!(with_speed(document.scene(), BoxId(3), 10.0), None);
+    document.apply_all("speed", &edits).expect("sound");
+    let track = &document.scene().clip().tracks[&BoxId(1)];
+    let Motion::Path(path) = &track.motion else {
+        panic!("{:?}", track.motion);
+    };
+    assert_eq!(path.speeds, [speed(0.0, 10.0), speed(2.0, 5.0)]);
+    assert_eq!(track.there_s, [None, Some(1.5)]);
+}
+
+#[test]
 fn several_are_removed_shifted_and_turned_at_once() {
     let frame = frame(&[
         car(1, 0.0, 0.0, 0.0),

@@ -13,12 +13,13 @@ use super::pane::{Pane, PaneContext, Place};
 use super::{thing_list, things};
 use crate::canvas_draw::box_color;
 use crate::command::{Command, ViewCommand};
-use crate::fields::{caption, decimal, field, fields, number, numbers};
+use crate::fields::{caption, decimal, field, fields, number, numbers, typed};
 use crate::panes::label::label_ui;
 use crate::state::{UiState, called};
 use crate::tools::{Choose, Hand, ToolCommand};
 use editor::transform::Orientation;
 use editor::{Document, Edit, arrange};
+use scene::clip::Path;
 use scene::{BoxId, Class, Frame, Members, Scene, SceneBox, Thing};
 use widgets::icons::Icon;
 use widgets::icons::{self, section};
@@ -82,7 +83,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
             match state.selected.and_then(|id| frame.boxes.get(&id)) {
                 Some(_) if state.chosen().len() > 1 => several(ui, frame, &state.tools, commands),
                 Some(b) => {
-                    inspector(ui, b, &state.tools, commands);
+                    inspector(ui, scene, b, &state.tools, commands);
                     own_shape(ui, scene, b.id, commands);
                 }
                 None if things.is_empty() => {
@@ -291,7 +292,7 @@ fn box_row(
     box_menu::of_row(&row, scene, state, b.id, commands);
 }
 
-fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>) {
+fn inspector(ui: &mut Ui, scene: &Scene, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let mut class = b.class;
         let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, theme::ROW), egui::Sense::hover());
@@ -365,9 +366,9 @@ fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>
                 .custom_formatter(|v, _| decimal(v, 1))
                 .suffix("°");
             let drag = ui
-                .add_sized([64.0, theme::ROW], drag)
+                .add_sized([64.0, theme::ROW], typed(drag))
                 .accessible_name(t("Heading"));
-            speed(ui, b);
+            speed(ui, scene, b, commands);
             drag
         })
         .inner;
@@ -413,15 +414,36 @@ fn heading_deg(yaw_rad: f64) -> f64 {
     (yaw_rad.to_degrees() + 180.0).rem_euclid(360.0) - 180.0
 }
 
-/// What cannot be set: how fast it is, and its number.
-fn speed(ui: &mut Ui, b: &SceneBox) {
-    let kmh = b.velocity_mps.length() * 3.6;
-    let text = if kmh < 0.5 {
-        t("standing").to_owned()
+/// How fast it is, which can be set where no keyframes and no other object say it, and its number.
+fn speed(ui: &mut Ui, scene: &Scene, b: &SceneBox, commands: &mut Vec<Command>) {
+    /// Most of it, km/h.
+    const MOST_KMH: f64 = Path::MAX_MPS * 3.6;
+    let mut kmh = b.velocity_mps.length() * 3.6;
+    if arrange::with_speed(scene, b.id, b.velocity_mps.length()).is_some() {
+        let drag = DragValue::new(&mut kmh)
+            .range(0.0..=MOST_KMH)
+            .speed(0.5)
+            .max_decimals(1)
+            .custom_formatter(|v, _| decimal(v, 1).trim_end_matches(".0").to_owned())
+            .suffix(" km/h");
+        let response = ui
+            .add_sized([76.0, theme::ROW], typed(drag))
+            .on_hover_text(t("Speed over ground"))
+            .accessible_name(t("Speed"));
+        let edits = || arrange::with_speed(scene, b.id, kmh / 3.6).unwrap_or_default();
+        if response.changed() || response.drag_stopped() {
+            fields(&response, "Set speed", edits(), commands);
+        }
     } else {
-        format!("{kmh:.0} km/h")
-    };
-    ui.label(text).on_hover_text(t("Speed over ground"));
+        let text = if kmh < 0.5 {
+            t("standing").to_owned()
+        } else {
+            format!("{kmh:.0} km/h")
+        };
+        ui.label(text).on_hover_text(t(
+            "Speed over ground, as its keyframes or what it is attached to have it",
+        ));
+    }
     ui.label(egui::RichText::new(format!("#{}", b.id.0)).color(theme::text_weak()));
 }
 

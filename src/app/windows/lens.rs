@@ -3,7 +3,7 @@
 use egui::{DragValue, Ui};
 
 use crate::command::Command;
-use crate::fields::{caption, field, number};
+use crate::fields::{caption, field, number, typed};
 use editor::Edit;
 use language::{t, tf};
 use scene::{Camera, Lens, ReadOut, Shutter};
@@ -133,7 +133,9 @@ fn coefficients(ui: &mut Ui, name: &str, values: &mut [f64]) -> egui::Response {
                     .range(-100.0..=100.0)
                     .max_decimals(6);
                 let named = format!("{name}{}", first + i);
-                let drag = ui.add_sized([64.0, theme::ROW], drag).accessible_name(named);
+                let drag = ui
+                    .add_sized([64.0, theme::ROW], typed(drag))
+                    .accessible_name(named);
                 all = Some(match all.take() {
                     Some(all) => all.union(drag),
                     None => drag,

@@ -119,7 +119,8 @@ fn looks(ui: &mut Ui, settings: &mut Settings) {
         let slider = egui::DragValue::new(&mut percent)
             .range(50.0..=300.0)
             .speed(5.0)
-            .suffix(" %");
+            .suffix(" %")
+            .update_while_editing(false); // what is typed into stays as large as it is meanwhile
         if ui.add(slider).on_hover_text(t("Ctrl + and Ctrl −")).changed() {
             settings.ui_scale = percent / 100.0;
             ui.ctx().set_zoom_factor(settings.ui_scale);

@@ -79,6 +79,44 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
     Ok(true)
 }
 
+/// Gives a box another velocity where two edits in a row take it out and put the same one in with that; false where they do
+/// anything else. Its voxels stay, and the source gets it too: a speed needs no generation.
+pub(super) fn respeed(taken: &Edit, put: &Edit, frame: &mut Frame) -> bool {
+    let Edit::RemoveBox { id } = taken else {
+        return false;
+    };
+    let Edit::AddBox {
+        class,
+        center_m,
+        size_m,
+        yaw_deg,
+        velocity_mps,
+        id: Some(again),
+        label,
+    } = put
+    else {
+        return false;
+    };
+    let velocity_mps = velocity_mps.unwrap_or_default();
+    let is_it = |b: &&mut SceneBox| {
+        // Degrees are not exact radians.
+        let turned = (b.yaw_rad - yaw_deg.to_radians()).abs();
+        (b.class, b.center_m, b.size_m, b.label) == (*class, *center_m, *size_m, *label) && turned < 1e-9
+    };
+    let Some(b) = frame.boxes.get_mut(id).filter(is_it) else {
+        return false;
+    };
+    let new = SceneBox { velocity_mps, ..*b };
+    if id != again || new.problem().is_some() {
+        return false;
+    }
+    let old = std::mem::replace(b, new);
+    if frame.source.boxes.get(id) == Some(&old) {
+        Arc::make_mut(&mut frame.source).boxes.insert(*id, new);
+    }
+    true
+}
+
 fn next_id(frame: &Frame) -> Result<BoxId, EditError> {
     if frame.is_taken(BoxId(u32::MAX)) {
         // No id above the highest is left: take the lowest free one.

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::gets_on::{GetsOn, gets_on};
 use super::lanes::{gap_deg, near};
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
@@ -45,6 +46,9 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             .unwrap_or(best);
         let angle = gap(best.heading_rad);
         let how = match (angle > AGAINST_DEG, b.velocity_mps != DVec2::ZERO) {
+            (true, true) if gets_on(b.class) != GetsOn::Drives => {
+                "{thing} moves against its lane, {angle} degrees from it"
+            }
             (true, true) => "{thing} drives against its lane, {angle} degrees from it",
             (true, false) => "{thing} faces against its lane, {angle} degrees from it",
             (false, _) => "{thing} stands across its lane, {angle} degrees from it",

@@ -6,6 +6,7 @@ mod box_without_occupancy;
 mod findings;
 mod floating_voxels;
 mod geometry;
+mod gets_on;
 mod lanes;
 mod occupancy_without_box;
 mod off_road;

@@ -4,11 +4,12 @@
 use std::collections::BTreeMap;
 
 use super::geometry::{area_m2, shared_area_m2, shared_height_m};
+use super::gets_on::{GetsOn, gets_on};
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::reaching::reaching;
 use crate::traffic::gap::ego_box;
 use glam::DVec2;
-use language::{t, tf};
+use language::{filled, t, tf};
 use scene::grid::NOT_PAINTED;
 use scene::raster::box_cells;
 use scene::{BoxId, Class, Extent, Motion, Recorded, SceneBox};
@@ -156,12 +157,18 @@ pub fn too_fast(context: &Context<'_>, out: &mut Findings) {
         let Some((time_s, b)) = fastest.filter(|(_, b)| speed(b) > limits(b.class).0) else {
             continue;
         };
-        let text = tf!(
-            "{thing} drives {speed} km/h at {time} s, at most {most} can be",
-            thing = called(trace, b),
-            speed = format!("{:.0}", speed(b) * 3.6),
-            time = format!("{time_s:.1}"),
-            most = format!("{:.0}", limits(b.class).0 * 3.6)
+        let says = match gets_on(b.class) {
+            GetsOn::Drives => t("{thing} drives {speed} km/h at {time} s, at most {most} can be"),
+            _ => t("{thing} moves at {speed} km/h at {time} s, at most {most} can be"),
+        };
+        let text = filled(
+            says,
+            &[
+                ("thing", &called(trace, b)),
+                ("speed", &format!("{:.0}", speed(b) * 3.6)),
+                ("time", &format!("{time_s:.1}")),
+                ("most", &format!("{:.0}", limits(b.class).0 * 3.6)),
+            ],
         );
         out.push(finding(TOO_FAST, Severity::Error, (trace, time_s, b), text));
     }
@@ -204,11 +211,12 @@ pub fn backwards(context: &Context<'_>, out: &mut Findings) {
             }
             let since = *since_s.get_or_insert(time_s);
             if time_s - since > BACKWARDS_S {
-                let text = tf!(
-                    "{thing} drives backwards from {time} s on",
-                    thing = called(trace, b),
-                    time = format!("{since:.1}")
-                );
+                let says = match gets_on(b.class) {
+                    GetsOn::Drives => t("{thing} drives backwards from {time} s on"),
+                    _ => t("{thing} moves backwards from {time} s on"),
+                };
+                let time = format!("{since:.1}");
+                let text = filled(says, &[("thing", &called(trace, b)), ("time", &time)]);
                 out.push(finding(BACKWARDS, Severity::Warning, (trace, since, b), text));
                 break;
             }
@@ -332,11 +340,17 @@ fn walls_that_are_met(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
             trace: i,
             id: trace.id,
             other: Err(class),
-            text: tf!(
-                "{thing} drives through {class} at {time} s",
-                thing = called(trace, b),
-                class = t(&class.label()),
-                time = format!("{:.1}", over_time.times_s[at])
+            text: filled(
+                match gets_on(b.class) {
+                    GetsOn::Drives => t("{thing} drives through {class} at {time} s"),
+                    GetsOn::Walks => t("{thing} walks through {class} at {time} s"),
+                    GetsOn::Moves => t("{thing} moves through {class} at {time} s"),
+                },
+                &[
+                    ("thing", &called(trace, b)),
+                    ("class", &t(&class.label())),
+                    ("time", &format!("{:.1}", over_time.times_s[at])),
+                ],
             ),
             at,
             share: 1.0,

@@ -14,10 +14,15 @@ use crate::checks::run_checks;
 
 /// Cars 1 (moving as given) and 2 (standing 30 m ahead), a wall 50 m ahead.
 fn found(motion: Motion, ego: bool) -> BTreeMap<&'static str, (String, f64)> {
+    found_of(Class::Car, motion, ego)
+}
+
+/// The same with things of another class.
+fn found_of(class: Class, motion: Motion, ego: bool) -> BTreeMap<&'static str, (String, f64)> {
     let extent = Extent::new([-50, -50], [300, 100]).expect("sound");
     let car = |id: u32, x: f64| SceneBox {
         id: BoxId(id),
-        class: Class::Car,
+        class,
         center_m: DVec3::new(x, 0.0, 0.8),
         size_m: DVec3::new(4.5, 1.9, 1.6),
         yaw_rad: 0.0,
@@ -53,6 +58,29 @@ fn path(to: [f64; 2], speeds: &[(f64, f64)], rear_first: bool) -> Motion {
             .collect(),
         rear_first,
     })
+}
+
+/// A pedestrian drove through a wall.
+#[test]
+fn only_what_has_an_engine_drives() {
+    for (class, gets_on) in [
+        (Class::Car, "drives"),
+        (Class::Truck, "drives"),
+        (Class::Pedestrian, "walks"),
+        (Class::Bicycle, "moves"),
+        (Class::Motorcycle, "moves"),
+        (Class::TrafficCone, "moves"),
+    ] {
+        let fast = path([90.0, 0.0], &[(0.0, 90.0), (0.5, 90.0)], false);
+        let back = path([-15.0, 4.0], &[(0.0, 2.0), (5.0, 2.0)], true);
+        let texts = [found_of(class, fast, false), found_of(class, back, false)];
+        let texts: Vec<String> = texts.into_iter().flatten().map(|(_, (text, _))| text).collect();
+        let says = |part: &str| texts.iter().any(|text| text.contains(part));
+        assert!(says(&format!("{gets_on} through manmade")), "{texts:?}");
+        assert!(says("324 km/h"), "{texts:?}");
+        let drives = texts.iter().any(|text| text.contains("drives"));
+        assert_eq!(drives, gets_on == "drives", "{texts:?}");
+    }
 }
 
 #[test]

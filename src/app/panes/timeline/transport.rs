@@ -5,6 +5,7 @@ use egui::{DragValue, RichText, Ui};
 use scene::{Clip, Scene, Scope};
 
 use crate::command::{Command, FileCommand, TimeCommand};
+use crate::fields::typed;
 use crate::panes::motion_menu;
 use crate::playback::Playback;
 use crate::state::UiState;
@@ -145,18 +146,17 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
     });
 }
 
-/// A button that lets things drive that only say how fast, where there are any.
+/// The button that lets things drive that only say how fast.
 fn traffic(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
     let standing = scene.canvas().boxes.values();
     let waiting = standing.filter(|b| b.velocity_mps.length() > 0.3).count();
-    if waiting == 0 {
-        return;
-    }
     let hint = tf!(
         "{n} objects have a speed but stand still: they drive along their lanes and keep their distance",
         n = waiting
     );
-    if ui.button(t("Let traffic drive")).on_hover_text(hint).clicked() {
+    // It stays where it is: the button beside it would come under the pointer.
+    let button = ui.add_enabled(waiting > 0, egui::Button::new(t("Let traffic drive")));
+    if button.on_hover_text(hint).clicked() {
         commands.push(Command::Time(TimeCommand::Traffic));
     }
 }
@@ -182,7 +182,7 @@ fn length(ui: &mut Ui, clip: &Clip, commands: &mut Vec<Command>) {
         .fixed_decimals(1)
         .prefix(t("of "))
         .suffix(" s");
-    let response = ui.add(value).on_hover_text(t("How long the scene lasts"));
+    let response = ui.add(typed(value)).on_hover_text(t("How long the scene lasts"));
     let edit = || Edit::SetLength {
         length_s,
         rate_hz: None,
@@ -199,7 +199,7 @@ fn length(ui: &mut Ui, clip: &Clip, commands: &mut Vec<Command>) {
         .speed(0.1)
         .suffix(" Hz");
     let response = ui
-        .add(value)
+        .add(typed(value))
         .on_hover_text(t("Frames per second of single steps and of what is written"));
     if response.changed() && rate_hz != clip.rate_hz {
         let edit = Edit::SetLength {
