@@ -27,15 +27,20 @@ const LIGHT: [f32; 3] = [310.0, 76.0, 36.0];
 const UPDATING: f32 = 90.0;
 const PAINTING: f32 = 170.0;
 
+/// Size of the spinner, points.
+const SPINNER: f32 = 12.0;
+
 /// That newer pictures are on their way, and how far those are that are painted, which can be stopped.
 pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec<Command>) {
     let weak = |text: String| egui::RichText::new(text).small().color(theme::text_weak());
     let paints = input.view == learned::VIEW.id;
+    // Buttons come before texts that change: they stay under the pointer.
     if paints && input.stopped {
-        ui.label(weak(t("stopped").to_owned()));
+        ui.allocate_exact_size(egui::Vec2::splat(SPINNER), egui::Sense::hover());
         if ui.small_button(t("Go on")).clicked() {
             commands.push(Command::View(ViewCommand::PaintAgain));
         }
+        ui.label(weak(t("stopped").to_owned()));
         return;
     }
     let stage = input.paint_stage.filter(|_| paints);
@@ -45,8 +50,7 @@ pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec
         Some(PaintStage::Stopping) => t("stopping after this step").to_owned(),
         None => t("updating").to_owned(),
     };
-    ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
-    ui.label(weak(text));
+    ui.add(egui::Spinner::new().size(SPINNER).color(theme::text_weak()));
     if stage.is_some_and(|stage| stage != PaintStage::Stopping) {
         let stop = ui.small_button(t("Stop"));
         let hint = t("The pictures stay as they are by now until something changes");
@@ -54,6 +58,7 @@ pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec
             commands.push(Command::View(ViewCommand::StopPainting));
         }
     }
+    ui.label(weak(text));
 }
 
 /// The menu with time of day and weather; short: its sign in place of its name.

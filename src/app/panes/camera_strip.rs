@@ -399,7 +399,7 @@ impl CameraStrip {
         let aspect = camera.width as f32 / camera.height.max(1) as f32;
         let width = (over.width() * 0.72).min((over.height() * 0.8) * aspect);
         let window = egui::Window::new(tf!("Camera: {name}", name = camera_label(&camera.name)))
-            .id(egui::Id::unique("enlarged camera"))
+            .id(enlarged_id())
             .collapsible(false)
             .resizable(false)
             .default_pos(over.center() - vec2(width, width / aspect + 60.0) / 2.0);
@@ -433,6 +433,11 @@ impl CameraStrip {
             state.cameras.enlarged = None;
         }
     }
+}
+
+/// The window of an enlarged camera.
+pub(crate) fn enlarged_id() -> egui::Id {
+    egui::Id::unique("enlarged camera")
 }
 
 /// Where in a picture a place of the world is, from 0 to 1 across it; `None` if the camera does not look there.

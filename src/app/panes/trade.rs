@@ -150,15 +150,15 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
 fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| match tuning.measuring() {
         Some((Measuring::Presets, done, all)) => {
+            if ui.button(t("Stop")).clicked() {
+                commands.push(Command::Generation(GenerationCommand::StopMeasuring));
+            }
             ui.add(egui::Spinner::new().size(13.0));
             ui.label(tf!(
                 "Calibrating, {done} of {all} presets timed, 30 s at most",
                 done = done,
                 all = all
             ));
-            if ui.button(t("Stop")).clicked() {
-                commands.push(Command::Generation(GenerationCommand::StopMeasuring));
-            }
         }
         _ => {
             let text = t("Times every preset on this computer: 30 s at most. Best while nothing else runs.");
@@ -300,15 +300,15 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         match measuring {
             Some((Measuring::Error, done, all)) => {
+                if ui.button(t("Stop")).clicked() {
+                    commands.push(Command::Generation(GenerationCommand::StopMeasuring));
+                }
                 ui.add(egui::Spinner::new().size(13.0));
                 ui.label(tf!(
                     "Measuring against the reference, step {done} of {all}",
                     done = done,
                     all = all
                 ));
-                if ui.button(t("Stop")).clicked() {
-                    commands.push(Command::Generation(GenerationCommand::StopMeasuring));
-                }
             }
             _ => {
                 let about = tuning

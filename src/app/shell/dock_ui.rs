@@ -25,8 +25,11 @@ pub const HEADER: f32 = 30.0;
 /// A panel that lacks less than this of its width is not scrolled, points.
 const NEARLY: f32 = 12.0;
 
-/// Width that controls get beside tabs, points.
+/// Width that controls get beside tabs, where choices fold into a list, points.
 const BESIDE_TABS: f32 = 104.0;
+/// Room beside the title of a tab, and width of the menu of the pane with its distance to what is beside it, points.
+const TAB_SPACING: f32 = 10.0;
+const MENU: f32 = 40.0;
 
 /// What the user asked of the dock; done after it was drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +48,8 @@ struct Drawer<'a> {
     actions: Vec<DockAction>,
     maximized: bool,
     tabbed: HashSet<TileId>,
+    /// Panes on a tab whose controls have no room beside the tabs.
+    below_tabs: HashSet<PaneId>,
 }
 
 impl Behavior<PaneId> for Drawer<'_> {
@@ -55,6 +60,9 @@ impl Behavior<PaneId> for Drawer<'_> {
         // The tab names it already, and its bar holds what the header would.
         let on_a_tab = !self.maximized && self.tabbed.contains(&tile);
         let dragged = !on_a_tab && self.header(ui, tile, *pane);
+        if on_a_tab && self.below_tabs.contains(pane) {
+            self.row(ui, *pane);
+        }
         ui.spacing_mut().item_spacing.y = 4.0;
         self.pane(ui, *pane);
         if dragged {
@@ -80,17 +88,20 @@ impl Behavior<PaneId> for Drawer<'_> {
         if let Some((tile, pane)) = active {
             ui.spacing_mut().item_spacing.x = 4.0;
             ui.add_space(4.0);
+            let titles: f32 = tabs
+                .children
+                .iter()
+                .filter_map(|tile| tiles.get_pane(tile))
+                .map(|pane| self.tab_width(ui, *pane))
+                .sum();
+            let room = ui.available_width() - MENU - titles;
             self.menu(ui, tile, pane, "");
-            ui.scope(|ui| {
-                // The tabs need the room: choices fold into a list.
-                ui.set_max_width(BESIDE_TABS);
-                self.controls(ui, pane);
-            });
+            self.beside_tabs(ui, pane, room);
         }
     }
 
     fn tab_title_spacing(&self, _visuals: &egui::Visuals) -> f32 {
-        10.0
+        TAB_SPACING
     }
 
     fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
@@ -124,6 +135,53 @@ impl Drawer<'_> {
         if let Some(pane) = self.panes.iter_mut().find(|p| p.id() == id) {
             pane.controls(ui, &mut self.cx, self.commands);
         }
+    }
+
+    /// Width of the tab of a pane, points.
+    fn tab_width(&self, ui: &Ui, pane: PaneId) -> f32 {
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        let galley = ui.painter().layout_no_wrap(self.title(pane), font, theme::text());
+        galley.size().x + 2.0 * TAB_SPACING
+    }
+
+    /// What a pane offers, beside the tabs if there is so much room (points); else in a row below them, so that no tab is covered.
+    fn beside_tabs(&mut self, ui: &mut Ui, pane: PaneId, room: f32) {
+        // As wide as they were when they were last drawn here.
+        let language = language::chosen().map_or("en", |l| &l.code);
+        let id = egui::Id::unique(("controls beside tabs", pane, language));
+        let needed: Option<f32> = ui.data(|d| d.get_temp(id));
+        if needed.is_some_and(|needed| needed > room) {
+            self.below_tabs.insert(pane);
+            return;
+        }
+        let drawn = ui.scope(|ui| {
+            ui.set_max_width(BESIDE_TABS);
+            self.controls(ui, pane);
+            ui.min_rect().width()
+        });
+        ui.data_mut(|d| d.insert_temp(id, drawn.inner));
+        if drawn.inner > room {
+            ui.ctx().request_discard("the controls go below the tabs");
+        }
+    }
+
+    /// What a pane offers, in a row of its own.
+    fn row(&mut self, ui: &mut Ui, pane: PaneId) {
+        let size = vec2(ui.available_width(), HEADER);
+        let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+        self.controls_within(ui, rect.shrink2(vec2(8.0, 2.0)), pane);
+    }
+
+    /// What a pane offers, from the right to the left; what has no room is cut off.
+    fn controls_within(&mut self, ui: &mut Ui, room: egui::Rect, pane: PaneId) {
+        if !room.is_positive() {
+            return;
+        }
+        let layout = egui::Layout::right_to_left(egui::Align::Center);
+        let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(room).layout(layout));
+        ui.set_clip_rect(ui.clip_rect().intersect(room.expand2(vec2(0.0, 2.0))));
+        ui.spacing_mut().item_spacing.x = 4.0;
+        self.controls(&mut ui, pane);
     }
 
     /// Draws a pane below its header.
@@ -167,9 +225,9 @@ impl Drawer<'_> {
                     ui.spacing_mut().item_spacing.x = 4.0;
                     let title = self.title(pane);
                     self.menu(ui, tile, pane, &title);
-                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                        self.controls(ui, pane);
-                    });
+                    // Not over the title, and not wider than the pane, which would be shifted below it.
+                    let room = ui.available_rect_before_wrap();
+                    self.controls_within(ui, room, pane);
                 });
             },
         );
@@ -265,6 +323,7 @@ impl SceneloomApp {
             actions: Vec::new(),
             maximized: maximized.is_some(),
             tabbed: dock.tabbed(),
+            below_tabs: HashSet::new(),
         };
         match maximized.and_then(|tile| Some((tile, *dock.tree.tiles.get_pane(&tile)?))) {
             Some((tile, mut pane)) => drop(drawer.pane_ui(ui, tile, &mut pane)),

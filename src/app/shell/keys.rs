@@ -29,7 +29,7 @@ pub struct Hands {
     pub dragging: bool,
     /// A new result waits for a decision.
     pub staged: bool,
-    /// Is over a window that floats over the panes: a key without Ctrl is not meant for the scene.
+    /// Is over a window that floats over the panes and shows nothing of the scene: a key without Ctrl is not meant for the scene.
     pub over_window: bool,
 }
 

@@ -103,6 +103,10 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, pointed: &Pointed, comman
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = theme::GAP;
         ui.spacing_mut().interact_size.y = 20.0;
+        // Buttons come before texts that change: they stay under the pointer.
+        if let Some((_, progress)) = input.exporting {
+            cancel_export(ui, progress);
+        }
         if let Some(running) = input.running {
             progress(ui, running, input, commands);
         } else if let Some(what) = input.busy_with {
@@ -241,12 +245,16 @@ fn exporting(ui: &mut Ui, what: &str, progress: &ExportProgress) {
         return say(ui, t("Cancelling"), theme::text());
     }
     say(ui, &text, theme::text());
-    let cancel = ui.add(egui::Button::new(t("Cancel")).small());
-    cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, t("Cancel writing")));
+    ui.ctx().request_repaint_after(REPAINT);
+}
+
+/// The button that ends what is being written.
+fn cancel_export(ui: &mut Ui, progress: &ExportProgress) {
+    let button = egui::Button::new(t("Cancel writing")).small();
+    let cancel = ui.add_enabled(!progress.is_cancelled(), button);
     if cancel.on_hover_text(t("Nothing is written")).clicked() {
         progress.cancel();
     }
-    ui.ctx().request_repaint_after(REPAINT);
 }
 
 fn progress(ui: &mut Ui, running: &Running, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
@@ -286,17 +294,6 @@ fn progress(ui: &mut Ui, running: &Running, input: &StatusInput<'_>, commands: &
         ui.ctx().request_repaint_after(REPAINT);
         return;
     }
-    say(
-        ui,
-        &format!("{what}{stage}{count}  ·  {seconds:.1} s{extent}"),
-        theme::text(),
-    );
-    if input.shows_what_comes {
-        let stop = ui.add(egui::Button::new(t("Keep this")).small());
-        if stop.on_hover_text(t("Ends here, with what is shown")).clicked() {
-            commands.push(Command::Generation(GenerationCommand::StopHere));
-        }
-    }
     let cancel = ui.add(egui::Button::new(t("Cancel")).small());
     cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, t("Cancel generation")));
     if cancel.on_hover_text("Ctrl+Backspace").clicked() {
@@ -315,6 +312,17 @@ fn progress(ui: &mut Ui, running: &Running, input: &StatusInput<'_>, commands: &
             waiting: true,
         }));
     }
+    if input.shows_what_comes {
+        let stop = ui.add(egui::Button::new(t("Keep this")).small());
+        if stop.on_hover_text(t("Ends here, with what is shown")).clicked() {
+            commands.push(Command::Generation(GenerationCommand::StopHere));
+        }
+    }
+    say(
+        ui,
+        &format!("{what}{stage}{count}  ·  {seconds:.1} s{extent}"),
+        theme::text(),
+    );
     ui.ctx().request_repaint_after(REPAINT);
 }
 

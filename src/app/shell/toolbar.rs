@@ -316,7 +316,9 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, fold: Fold, commands: &mut 
             command,
         )
     };
-    if wide_button(ui, icon, (name, named), hint, fill, label).clicked() {
+    // As wide whatever it says: what is beside it stays under the pointer.
+    let widest = [t("Cancel"), t("Inpaint"), t("Generate")];
+    if wide_button(ui, icon, (name, named), &widest, (hint, label), fill).clicked() {
         commands.push(command);
     }
     let fill = if input.live {
@@ -329,7 +331,14 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, fold: Fold, commands: &mut 
     } else {
         t("off, Ctrl+Space")
     };
-    let live = wide_button(ui, Icon::Live, (t("Live"), named), hint, fill, t("Live"));
+    let live = wide_button(
+        ui,
+        Icon::Live,
+        (t("Live"), named),
+        &[t("Live")],
+        (hint, t("Live")),
+        fill,
+    );
     if input.live {
         let dot = live.rect.right_top() + vec2(-6.0, 6.0);
         ui.painter().circle_filled(dot, 3.0, theme::good());
@@ -371,19 +380,29 @@ fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
     ));
 }
 
-/// A button with an icon and, if `named`, a name beside it; of one height with the others.
+/// A button with an icon and, if `named`, a name beside it; of one height with the others, and wide enough for each of `names`, which
+/// it may have at other times.
 fn wide_button(
     ui: &mut Ui,
     icon: Icon,
     (name, named): (&str, bool),
-    hint: &str,
+    names: &[&str],
+    (hint, label): (&str, &str),
     fill: egui::Color32,
-    label: &str,
 ) -> egui::Response {
     let font = egui::TextStyle::Button.resolve(ui.style());
-    let written = if named { name.to_owned() } else { String::new() };
-    let galley = ui.painter().layout_no_wrap(written, font, theme::text_strong());
-    let width = if named { galley.size().x + 42.0 } else { 34.0 };
+    let written = |name: &str| {
+        let text = if named { name.to_owned() } else { String::new() };
+        ui.painter()
+            .layout_no_wrap(text, font.clone(), theme::text_strong())
+    };
+    let widths = names.iter().map(|name| written(name).size().x);
+    let width = if named {
+        widths.fold(0.0, f32::max) + 42.0
+    } else {
+        34.0
+    };
+    let galley = written(name);
     let size = vec2(width, theme::ROW + 4.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label));

@@ -10,7 +10,7 @@ use crate::camera_views::Wanted;
 use crate::command::{Command, FileCommand};
 use crate::fly;
 use crate::panes;
-use crate::panes::camera_strip::CamerasInput;
+use crate::panes::camera_strip::{self, CamerasInput};
 use crate::panes::compare::CompareMode;
 use crate::panes::id::PaneId;
 use crate::shell::keys;
@@ -332,8 +332,10 @@ fn drop_hint(ui: &Ui, over: Rect) {
         theme::ON_CANVAS,
     );
 }
-/// True if the pointer is over a window, not over the panes or over the bar of a result that waits.
+/// True if the pointer is over a window that shows nothing of the scene: not over the panes, over the bar of a result that waits, or
+/// over an enlarged camera, whose boxes are chosen by a click as in a pane.
 fn is_over_window(ctx: &egui::Context) -> bool {
     let layer = ctx.pointer_latest_pos().and_then(|at| ctx.layer_id_at(at));
-    layer.is_some_and(|layer| layer.order == egui::Order::Middle && layer.id != super::staged::bar_id())
+    let of_the_scene = [super::staged::bar_id(), camera_strip::enlarged_id()];
+    layer.is_some_and(|layer| layer.order == egui::Order::Middle && !of_the_scene.contains(&layer.id))
 }

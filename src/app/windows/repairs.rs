@@ -38,12 +38,12 @@ pub fn repairs_ui(ui: &Ui, shown: &Shown, now: SceneRev, commands: &mut Vec<Comm
                         None => t("Looking for repairs…").to_owned(),
                     };
                     ui.horizontal(|ui| {
-                        ui.add(egui::Spinner::new().size(13.0));
-                        ui.label(text);
                         let hint = t("Lists what was found by then");
                         if ui.button(t("Stop")).on_hover_text(hint).clicked() {
                             commands.push(Command::Repair(RepairCommand::Stop));
                         }
+                        ui.add(egui::Spinner::new().size(13.0));
+                        ui.label(text);
                     });
                     ui.weak(t("Nothing is changed before you have seen the list."));
                 }

@@ -83,19 +83,16 @@ impl Pane for Perception {
         if let Some(problem) = &perceiving.problem {
             ui.colored_label(ui.visuals().error_fg_color, problem);
         }
-        match self.by {
-            Sensor::Cameras => {
-                if ui.button(t("Show what it sees in the cameras")).clicked() {
-                    commands.push(Command::View(ViewCommand::Cameras(perceived::VIEW.id)));
-                }
-            }
-            Sensor::Lidar => {
-                ui.checkbox(&mut self.stands, t("What stands where, over the map"));
-            }
-            Sensor::Both => {
-                ui.checkbox(&mut self.told, t("Its voxels in the 3D view"));
-                ui.checkbox(&mut self.stands, t("What stands where, over the map"));
-            }
+        let shows = Shows {
+            by: self.by,
+            stands: &mut self.stands,
+            told: &mut self.told,
+        };
+        match ui.available_width() >= shows.width(ui) {
+            true => shows.ui(ui, commands),
+            false => drop(widgets::menu::with_fields(ui, t("Show"), |ui| {
+                shows.ui(ui, commands)
+            })),
         }
         if perceiving.is_stale(cx.document.scene().rev, self.by) {
             ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
@@ -164,6 +161,51 @@ impl Pane for Perception {
                 });
             });
         });
+    }
+}
+
+/// Room that a tick or the edge of a button takes beside its text, points.
+const BESIDE_TEXT: f32 = 14.0;
+
+/// What of a network's answer can be shown in the large views.
+struct Shows<'a> {
+    by: Sensor,
+    stands: &'a mut bool,
+    told: &'a mut bool,
+}
+
+impl Shows<'_> {
+    fn texts(&self) -> &'static [&'static str] {
+        match self.by {
+            Sensor::Cameras => &["Show what it sees in the cameras"],
+            Sensor::Lidar => &["What stands where, over the map"],
+            Sensor::Both => &["Its voxels in the 3D view", "What stands where, over the map"],
+        }
+    }
+
+    /// Width that they take in a row, points.
+    fn width(&self, ui: &Ui) -> f32 {
+        let texts = self.texts().iter();
+        texts
+            .map(|text| icons::segments_width(ui, &[((), t(text), "")]) + BESIDE_TEXT)
+            .sum()
+    }
+
+    fn ui(self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        match self.by {
+            Sensor::Cameras => {
+                if ui.button(t("Show what it sees in the cameras")).clicked() {
+                    commands.push(Command::View(ViewCommand::Cameras(perceived::VIEW.id)));
+                }
+            }
+            Sensor::Lidar => {
+                ui.checkbox(self.stands, t("What stands where, over the map"));
+            }
+            Sensor::Both => {
+                ui.checkbox(self.told, t("Its voxels in the 3D view"));
+                ui.checkbox(self.stands, t("What stands where, over the map"));
+            }
+        }
     }
 }
 

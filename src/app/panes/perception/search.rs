@@ -28,12 +28,12 @@ pub(super) fn search_ui(
 ) {
     section(ui, t("Corner case"));
     if let Some((change, [k, most])) = perceiving.searching {
-        ui.horizontal(|ui| {
-            ui.add(egui::Spinner::new().size(12.0));
-            ui.label(format!("{k}/{most}  {}", words(change)));
+        ui.horizontal_wrapped(|ui| {
             if ui.button(t("Stop")).clicked() {
                 perceiving.stop();
             }
+            ui.add(egui::Spinner::new().size(12.0));
+            ui.label(format!("{k}/{most}  {}", words(change)));
         });
     }
     let chosen = cx
@@ -72,7 +72,7 @@ fn wish_ui(
     id: BoxId,
     scene: &Arc<Scene>,
 ) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(t("Vary"));
         egui::ComboBox::from_id_salt("vary")
             .selected_text(t(vary.title()))
@@ -157,7 +157,7 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
     }
     let current = cx.document.scene().rev == found.of;
     ui.add_enabled_ui(current, |ui| {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             if ui
                 .button(t("Take it"))
                 .on_hover_text(t("Changes the scene so"))
