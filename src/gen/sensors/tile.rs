@@ -286,6 +286,16 @@ mod tests {
         assert!(exp(-1e30) < 1e-37 && exp(f32::NEG_INFINITY) < 1e-37);
     }
 
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    fn loops_have_vectors_on_every_machine_that_has_any() {
+        let arch = format!("{:?}", pulp::Arch::new());
+        let has_avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+        println!("{arch}");
+        // Before, what has AVX2 but no AVX-512 computed four numbers at a time.
+        assert_eq!(arch == "Scalar", !has_avx2);
+    }
+
     /// Weights of one pixel, set by hand, and what they resolve to.
     #[test]
     fn row_42_ties_go_to_the_lowest() {

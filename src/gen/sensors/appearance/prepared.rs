@@ -77,7 +77,9 @@ pub struct Appearance {
     pub(super) field: Field,
     pub(super) ground: Ground,
     pub(super) things: Vec<Thing>,
-    lists: Vec<Vec<u16>>, // things near each block
+    /// Things near each block. A thing is listed in a rectangle of blocks, so a ray goes through those that list it in a row:
+    /// what the block before listed too has been met or missed already.
+    lists: Vec<Vec<u16>>,
     pub(super) paint: Paint,
     pub(super) lamps: Vec<Lamp>,
     pub(super) air: Air,
@@ -216,10 +218,16 @@ impl Appearance {
         let ground = self.ground.cast(o, d, limit, &anchor);
         let mut best = ground.unwrap_or(limit);
         let mut hit = ground.map(|t| (Vec3::Z, What::Ground, t));
+        let mut before: &[u16] = &[];
         self.walk(o, d, best, |index, t_in, t_out| {
-            for &i in &self.lists[index] {
+            let listed = std::mem::replace(&mut before, &self.lists[index]);
+            for &i in before {
                 let thing = &self.things[usize::from(i)];
-                if let Some(h) = thing.cast(thing.seen_from(o, after_s), d, best) {
+                let from = thing.seen_from(o, after_s);
+                if thing.is_passed(from, d) || listed.contains(&i) {
+                    continue;
+                }
+                if let Some(h) = thing.cast(from, d, best) {
                     best = h.t;
                     let what = What::Thing(u32::from(i), h.local, h.material);
                     hit = Some((thing.turn_back(h.normal), what, h.t));
@@ -309,11 +317,13 @@ impl Appearance {
     /// True if something stands between a point and the light `d`, looked for in voxels every `step` m.
     pub(super) fn occluded(&self, (o, d): (Vec3, Vec3), after_s: f32, limit: f32, step: f32) -> bool {
         let anchor = |p: Vec3| self.anchor(p);
-        let mut dark = false;
+        let (mut dark, mut before) = (false, &[] as &[u16]);
         self.walk(o, d, limit, |index, t_in, t_out| {
-            dark = self.lists[index].iter().any(|i| {
+            let listed = std::mem::replace(&mut before, &self.lists[index]);
+            dark = before.iter().any(|i| {
                 let thing = &self.things[usize::from(*i)];
-                thing.cast(thing.seen_from(o, after_s), d, limit).is_some()
+                let from = thing.seen_from(o, after_s);
+                !thing.is_passed(from, d) && !listed.contains(i) && thing.cast(from, d, limit).is_some()
             }) || self.field.block(index)
                 && self
                     .field

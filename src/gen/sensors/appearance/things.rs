@@ -216,11 +216,16 @@ impl Thing {
         Vec3::new(d.x * h.x - d.y * h.y, d.x * h.y + d.y * h.x, d.z)
     }
 
+    /// True if a ray passes beside the circle around it on the ground.
+    #[inline]
+    pub fn is_passed(&self, origin: Vec3, dir: Vec3) -> bool {
+        let (to, flat) = ((self.foot - origin).truncate(), dir.truncate());
+        to.perp_dot(flat).powi(2) > self.circle_m2 * flat.length_squared()
+    }
+
     /// The first surface nearer than `limit` m.
     pub fn cast(&self, origin: Vec3, dir: Vec3, limit: f32) -> Option<ThingHit> {
-        // Rays that pass beside the circle around it on the ground.
-        let (to, flat) = ((self.foot - origin).truncate(), dir.truncate());
-        if to.perp_dot(flat).powi(2) > self.circle_m2 * flat.length_squared() {
+        if self.is_passed(origin, dir) {
             return None;
         }
         let (o, d) = (self.to_local(origin), self.turn(dir));

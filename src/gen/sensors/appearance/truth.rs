@@ -163,12 +163,10 @@ impl Appearance {
         let camera_from_ego = camera.ego_from_camera().inverse();
         let one = |thing: &Thing| -> Option<SeenBox> {
             let of = *boxes.get(&thing.box_id)?;
-            let whole = Whole::of(thing, rays, (width, height, pixels))?;
-            let (visible_px, bounds) = visible
-                .get(&thing.box_id.0)
-                .copied()
-                .unwrap_or((0, [f64::NAN; 4]));
-            let visible_bounds_px = (visible_px > 0).then_some(bounds);
+            let seen = visible.get(&thing.box_id.0).copied();
+            // What is finer than the pixels' middles may still be what a pixel shows.
+            let whole = Whole::of(thing, rays, (width, height, pixels)).or(seen.map(Whole::as_seen))?;
+            let (visible_px, visible_bounds_px) = (seen.map_or(0, |s| s.0), seen.map(|s| s.1));
             let union =
                 |a: [f64; 4], b: [f64; 4]| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])];
             let whole_bounds_px = visible_bounds_px.map_or(whole.bounds_px, |b| union(whole.bounds_px, b));
@@ -273,7 +271,16 @@ struct Whole {
 }
 
 impl Whole {
-    /// None if it is outside the picture. Of large things every second, third, … pixel is looked at.
+    /// As many pixels as show it, with these bounds.
+    fn as_seen((pixels, bounds_px): (u32, [f64; 4])) -> Self {
+        Self {
+            pixels,
+            visibility: 1.0,
+            bounds_px,
+        }
+    }
+
+    /// None if it is outside the picture, or between the middles of all pixels. Of large things every second, third, … pixel is looked at.
     fn of(
         thing: &Thing,
         rays: &CameraRays,

@@ -349,3 +349,49 @@ fn a_rolling_shutter_stretches_what_moves_with_it() {
         "{against} {still} {with}"
     );
 }
+
+/// A box is listed for every pixel that shows it, also where only a part of a pixel does; its bounds are those of its pixels, and
+/// are left out just where there is no such pixel.
+#[test]
+fn boxes_have_bounds_as_soon_as_a_pixel_shows_them() {
+    let (mut seen, mut hidden, mut finer) = (0, 0, 0);
+    for seed in 0..6 {
+        let frame = street(seed);
+        let rig = SensorRig::default();
+        let appearance = Appearance::new(&frame, &rig, &day());
+        for camera in &rig.cameras {
+            let size = [96, 54];
+            let (_, truth) = appearance.render_truth(camera, size, Quality::Full, &frame.boxes, None);
+            let plain = appearance.truth(camera, size, &frame.boxes, None);
+            finer += truth.boxes.len() - plain.boxes.len().min(truth.boxes.len());
+            let mut pixels: BTreeMap<u32, (u32, [f64; 4])> = BTreeMap::new();
+            for (i, pixel) in truth.pixels.iter().enumerate().filter(|(_, p)| p.instance != 0) {
+                let [x, y] = [i % truth.width, i / truth.width].map(|v| v as f64);
+                let (n, b) = pixels.entry(pixel.instance).or_insert((0, [x, y, x, y]));
+                *n += 1;
+                *b = [b[0].min(x), b[1].min(y), b[2].max(x + 1.0), b[3].max(y + 1.0)];
+            }
+            for b in &truth.boxes {
+                let own = pixels.remove(&b.of.id.0);
+                assert_eq!(b.visible_px, own.map_or(0, |(n, _)| n), "{:?}", b.of.id);
+                assert_eq!(
+                    b.visible_bounds_px,
+                    own.map(|(_, bounds)| bounds),
+                    "{:?}",
+                    b.of.id
+                );
+                assert!(b.whole_px >= b.visible_px.max(1) && (0.0..=1.0).contains(&b.visibility));
+                let [left, top, right, bottom] = b.whole_bounds_px;
+                let within = |[l, t, r, m]: [f64; 4]| left <= l && top <= t && right >= r && bottom >= m;
+                assert!(b.visible_bounds_px.is_none_or(within), "{:?}", b.of.id);
+                *(if own.is_some() { &mut seen } else { &mut hidden }) += 1;
+            }
+            assert!(
+                pixels.is_empty(),
+                "pixels show boxes that are not listed: {pixels:?}"
+            );
+        }
+    }
+    println!("{seen} boxes are seen, {hidden} are not, {finer} only by parts of pixels");
+    assert!(seen > 100 && hidden > 20, "{seen} {hidden}");
+}
