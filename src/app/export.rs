@@ -1,11 +1,12 @@
 //! Takes a scene to files of other programs: what the command line and the window share. Which formats there are, and what
 //! they write, is in `formats::export`; here is what has to be made of the scene for them.
 
+mod files;
+mod progress;
+
 use std::borrow::Cow;
 use std::cell::OnceCell;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use anyhow::{Context, anyhow, bail};
 
@@ -14,13 +15,11 @@ use super::camera_views::camera_input;
 use super::picture::{ShotOptions, View3d};
 use crate::findings;
 use crate::truth;
-use formats::export::{Exporter, Observed, OutFile, Picture, Product, Products, Seen, Span};
-use formats::out_folder::OutFolder;
+use formats::FormatError;
+use formats::export::{Exporter, Observed, Picture, Products, Seen, Span};
 use formats::recipe::Recipe;
-use formats::{FormatError, atomic};
 use nets::lidar::LidarNet;
-use scene::plain_name;
-use scene::{CameraMaps, CameraTruth, GaussianScene, LidarSweep, Pose, Scene, SensorRig};
+use scene::{CameraMaps, CameraTruth, GaussianScene, LidarSweep, Pose, Scene};
 use sensors::appearance::Quality;
 use sensors::bake::{self, BakeOptions};
 use sensors::cameras::{
@@ -30,6 +29,9 @@ use sensors::learned::Drops;
 use sensors::observed;
 use sensors::rolling;
 use viewport::{ViewCamera, ViewPreset};
+
+pub use progress::ExportProgress;
+use progress::takes_pictures;
 
 /// A format that is written, a line of the table [`formats::export::all`].
 pub type Format = &'static Exporter;
@@ -58,87 +60,6 @@ impl Default for ExportOptions {
             shot: ShotOptions::default(),
             parameters: serde_json::Value::Null,
         }
-    }
-}
-
-/// How far an export has come, and whether it is still wanted. Shared between the one who writes and the one who waits.
-#[derive(Debug, Default)]
-pub struct ExportProgress {
-    done: AtomicUsize,
-    of: AtomicUsize,
-    cancelled: AtomicBool,
-}
-
-impl ExportProgress {
-    /// Begins to count what these formats take.
-    fn begin(&self, formats: &[Format], rig: &SensorRig) {
-        let of_cameras = |f: &&Format| {
-            let pictures = [Product::CameraMaps, Product::Pictures, Product::Truth];
-            f.needs.iter().any(|product| pictures.contains(product))
-        };
-        let pictures = formats.iter().filter(of_cameras).count() * rig.cameras.len();
-        self.done.store(0, Ordering::Relaxed);
-        self.of.store(pictures, Ordering::Relaxed);
-    }
-
-    /// Says how many pictures are ready, of how many.
-    pub fn count(&self, done: usize, of: usize) {
-        self.done.store(done, Ordering::Relaxed);
-        self.of.store(of, Ordering::Relaxed);
-    }
-
-    /// Asks the export to stop; it does before its next picture, and writes nothing.
-    pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::Relaxed);
-    }
-
-    /// True once it was asked to stop.
-    pub fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
-    }
-
-    /// Pictures that are ready, of how many; none while there is nothing to count.
-    pub fn pictures(&self) -> Option<(usize, usize)> {
-        let of = self.of.load(Ordering::Relaxed);
-        (of > 0).then(|| (self.done.load(Ordering::Relaxed), of))
-    }
-
-    fn go_on(&self) -> anyhow::Result<()> {
-        match self.is_cancelled() {
-            true => bail!("cancelled"),
-            false => Ok(()),
-        }
-    }
-
-    /// Renders a view for each camera, in the rig's order, and hands each picture on before the next is made; asks before
-    /// each whether to go on.
-    fn each_camera(
-        &self,
-        scene: &Scene,
-        (view, options): (ViewId, &ExportOptions),
-        mut take: impl FnMut(CameraPicture) -> anyhow::Result<()>,
-    ) -> anyhow::Result<()> {
-        let rig = &scene.rig;
-        if rig.cameras.is_empty() {
-            bail!("the rig {:?} has no camera", rig.name);
-        }
-        let source = cameras::source_of(view, options.source);
-        bounds::check(options.camera_size, source.about().bytes_per_pixel, 0)?;
-        let ready = Ready::new(source, &camera_input(scene, Detail::Full));
-        let options = RenderOptions {
-            size: options.camera_size,
-            quality: Quality::Full,
-        };
-        for camera in &rig.cameras {
-            self.go_on()?;
-            let context = RenderContext {
-                cancelled: &|| self.is_cancelled(),
-                ..RenderContext::processor()
-            };
-            take(ready.render(camera, &options, context)?)?;
-            self.done.fetch_add(1, Ordering::Relaxed);
-        }
-        Ok(())
     }
 }
 
@@ -174,7 +95,8 @@ pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
 /// Writes the current frame. One format goes to `path`: the file, or a folder for the format's usual name; formats that
 /// fill a folder make it. More go into the folder `path`. Returns the files and their sizes in bytes. Errors in one line;
 /// each file is written whole or not at all, and none before all are ready: an export that is cancelled leaves nothing
-/// behind. In a folder nothing outside it is written, and no file of a format over another of its own.
+/// behind. In a folder nothing outside it is written, and no file over another: a format that would put something else into a
+/// file of an earlier one gets a folder of its own there, called as the format.
 pub fn export_all(
     scene: &Scene,
     formats: &[Format],
@@ -195,6 +117,7 @@ pub fn export_all(
             whole: scene,
             recipe: &recipe,
             gaussians: &gaussians,
+            began: Began::new(format),
             scene: scene.with_rig_in_world(),
             options,
             progress,
@@ -204,58 +127,7 @@ pub fn export_all(
         ready.push(files);
     }
     progress.go_on()?;
-    match fills_a_folder(formats, path) {
-        true => write_into(path, &ready),
-        false => write_one(path, &ready),
-    }
-}
-
-/// True unless there is one format of one file, and the path is no folder.
-fn fills_a_folder(formats: &[Format], path: &Path) -> bool {
-    match formats {
-        [format] if format.file_name.is_some() => {
-            path.is_dir() || path.as_os_str().to_string_lossy().ends_with(['/', '\\'])
-        }
-        _ => true,
-    }
-}
-
-/// Writes the file of a format; no folder is made.
-fn write_one(path: &Path, ready: &[Vec<OutFile>]) -> anyhow::Result<Vec<(PathBuf, u64)>> {
-    let one = |file: &OutFile| {
-        atomic::write(path, &file.bytes).with_context(|| format!("write {}", path.display()))?;
-        Ok((path.to_path_buf(), file.bytes.len() as u64))
-    };
-    ready.iter().flatten().map(one).collect()
-}
-
-/// Writes the files of each format into a folder, which is made; none before it is known that all of them may be written.
-fn write_into(path: &Path, ready: &[Vec<OutFile>]) -> anyhow::Result<Vec<(PathBuf, u64)>> {
-    for files in ready {
-        let mut known: BTreeMap<String, &OutFile> = BTreeMap::new();
-        for file in files {
-            let first = known.entry(plain_name::folded(&file.name)).or_insert(file);
-            if first.bytes != file.bytes {
-                bail!(
-                    "{}: two different files would be called {}, expected sensors of less like names",
-                    path.display(),
-                    file.name
-                );
-            }
-        }
-    }
-    let mut written = Vec::new();
-    let folder = OutFolder::make(path)?;
-    let mut all = ready.iter().flatten();
-    all.try_for_each(|file| folder.check(&file.name))?;
-    // (formats that share a file, as the calibration, share it: the last one's stays)
-    for files in ready {
-        let mut folder = OutFolder::make(path)?;
-        for file in files {
-            written.push((folder.write(&file.name, &file.bytes)?, file.bytes.len() as u64));
-        }
-    }
-    Ok(written)
+    files::write(formats, &ready, path)
 }
 
 /// Makes the products of a scene for the formats that ask for them.
@@ -266,15 +138,96 @@ struct Making<'a> {
     recipe: &'a OnceCell<Recipe>,
     /// Baked when the first file asks for them, and of which moment.
     gaussians: &'a OnceCell<(f64, GaussianScene)>,
+    began: Began,
     /// The moment that products are made of, with the sensors where the ego vehicle is.
     scene: Cow<'a, Scene>,
     options: &'a ExportOptions,
     progress: &'a ExportProgress,
 }
 
+/// How the moments of a clip begin: those that a format writes are evenly spaced, so two of them tell how many there are.
+enum Began {
+    /// Nothing is to be counted, or all is.
+    Counted,
+    /// Of a clip, at this moment if there was one, s.
+    At(Option<f64>),
+}
+
+impl Began {
+    fn new(format: Format) -> Self {
+        match format.span == Span::Clip && takes_pictures(format) {
+            true => Self::At(None),
+            false => Self::Counted,
+        }
+    }
+
+    /// How many moments there are besides the first, of a clip of that length, s, once that is told by the second one.
+    fn more(&mut self, time_s: f64, length_s: f64) -> Option<usize> {
+        match *self {
+            Self::At(Some(first_s)) if time_s > first_s => {
+                *self = Self::Counted;
+                Some(((length_s - first_s) / (time_s - first_s) + 1e-6) as usize)
+            }
+            Self::At(None) => {
+                *self = Self::At(Some(time_s));
+                None
+            }
+            _ => None,
+        }
+    }
+}
+
+impl Making<'_> {
+    /// Renders a view for each camera, in the rig's order, and hands each picture on before the next is made; asks before
+    /// each whether to go on.
+    fn each_camera(
+        &self,
+        view: ViewId,
+        mut take: impl FnMut(CameraPicture) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
+        let (rig, options, progress) = (&self.scene.rig, self.options, self.progress);
+        if rig.cameras.is_empty() {
+            bail!("the rig {:?} has no camera", rig.name);
+        }
+        let source = cameras::source_of(view, options.source);
+        bounds::check(options.camera_size, source.about().bytes_per_pixel, 0)?;
+        let ready = Ready::new(source, &camera_input(&self.scene, Detail::Full));
+        let options = RenderOptions {
+            size: options.camera_size,
+            quality: Quality::Full,
+        };
+        for camera in &rig.cameras {
+            progress.go_on()?;
+            let context = RenderContext {
+                cancelled: &|| progress.is_cancelled(),
+                ..RenderContext::processor()
+            };
+            take(ready.render(camera, &options, context)?)?;
+            progress.made();
+        }
+        Ok(())
+    }
+
+    /// A sweep of the rig's first LiDAR, in the world.
+    fn swept(&self) -> anyhow::Result<LidarSweep> {
+        let scene = &*self.scene;
+        if scene.rig.lidars.is_empty() {
+            bail!("the rig {:?} has no LiDAR", scene.rig.name);
+        }
+        if self.options.lidar == LidarModel::Exact {
+            return Ok(rolling::exact(scene));
+        }
+        let net = LidarNet::bundled().context("the LiDAR network")?;
+        rolling::learned(&net, scene, Drops::Likely).context("the LiDAR network")
+    }
+}
+
 impl Products for Making<'_> {
     fn show(&mut self, time_s: f64) -> Result<(), FormatError> {
         self.progress.go_on().map_err(FormatError::new)?;
+        if let Some(moments) = self.began.more(time_s, self.whole.clip().length_s) {
+            self.progress.more(moments * self.whole.rig.cameras.len());
+        }
         if time_s != self.scene.time_s() {
             let moment = self.whole.at(time_s);
             self.scene = Cow::Owned(moment.with_rig_in_world().into_owned());
@@ -305,7 +258,7 @@ impl Products for Making<'_> {
     }
 
     fn sweep(&mut self) -> Result<LidarSweep, FormatError> {
-        let mut sweep = sweep(&self.scene, self.options.lidar).map_err(FormatError::new)?;
+        let mut sweep = self.swept().map_err(FormatError::new)?;
         sweep.place(&self.scene.rig.vehicle.inverse());
         Ok(sweep)
     }
@@ -314,13 +267,10 @@ impl Products for Making<'_> {
         &mut self,
         take: &mut dyn FnMut(CameraMaps) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
-        let view = (ViewId::SEMANTIC, self.options);
-        let each = self
-            .progress
-            .each_camera(&self.scene, view, |picture| match picture {
-                CameraPicture::Maps(maps) => Ok(take(maps)?),
-                _ => bail!("the source of classes and depths gives something else"),
-            });
+        let each = self.each_camera(ViewId::SEMANTIC, |picture| match picture {
+            CameraPicture::Maps(maps) => Ok(take(maps)?),
+            _ => bail!("the source of classes and depths gives something else"),
+        });
         each.map_err(FormatError::new)
     }
 
@@ -328,18 +278,15 @@ impl Products for Making<'_> {
         &mut self,
         take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
-        let view = (pictures::VIEW.id, self.options);
-        let each = self
-            .progress
-            .each_camera(&self.scene, view, |picture| match picture {
-                CameraPicture::Picture(image) => Ok(take(Picture {
-                    camera: image.camera,
-                    width: image.width,
-                    height: image.height,
-                    rgba: image.rgba,
-                })?),
-                _ => bail!("the source of pictures gives something else"),
-            });
+        let each = self.each_camera(pictures::VIEW.id, |picture| match picture {
+            CameraPicture::Picture(image) => Ok(take(Picture {
+                camera: image.camera,
+                width: image.width,
+                height: image.height,
+                rgba: image.rgba,
+            })?),
+            _ => bail!("the source of pictures gives something else"),
+        });
         each.map_err(FormatError::new)
     }
 
@@ -363,7 +310,7 @@ impl Products for Making<'_> {
                     rgba: image.rgba,
                 };
                 take(picture, truth)?;
-                progress.done.fetch_add(1, Ordering::Relaxed);
+                progress.made();
                 Ok(())
             },
         );
@@ -377,9 +324,10 @@ impl Products for Making<'_> {
         {
             return Ok(baked.clone());
         }
-        let go_on = |_| !self.progress.is_cancelled();
-        let baked = bake::bake_scene(&self.scene, &BakeOptions::default(), &go_on)
-            .ok_or_else(|| FormatError::new("cancelled"))?;
+        let go_on = |share| self.progress.baking(share);
+        let baked = bake::bake_scene(&self.scene, &BakeOptions::default(), &go_on);
+        self.progress.baked();
+        let baked = baked.ok_or_else(|| FormatError::new("cancelled"))?;
         // (of a second moment nothing is kept)
         let _ = self.gaussians.set((time_s, baked.clone()));
         Ok(baked)
@@ -408,23 +356,11 @@ impl Products for Making<'_> {
     }
 }
 
-fn sweep(scene: &Scene, model: LidarModel) -> anyhow::Result<LidarSweep> {
-    if scene.rig.lidars.is_empty() {
-        bail!("the rig {:?} has no LiDAR", scene.rig.name);
-    }
-    match model {
-        LidarModel::Exact => Ok(rolling::exact(scene)),
-        LidarModel::Learned => {
-            let net = LidarNet::bundled().context("the LiDAR network")?;
-            rolling::learned(&net, scene, Drops::Likely).context("the LiDAR network")
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::open;
+    use formats::export::Product;
 
     #[test]
     fn everything_that_is_cancelled_leaves_nothing_behind() {
@@ -453,15 +389,48 @@ mod tests {
             export_all(&scene, &formats, &options, &path, &progress)
         });
         assert!(written.is_err() && !path.exists(), "{written:?}");
-        let of_cameras = |f: &&Format| {
-            let pictures = [Product::CameraMaps, Product::Pictures, Product::Truth];
-            f.needs.iter().any(|product| pictures.contains(product))
-        };
-        let counted = formats.iter().filter(of_cameras).count();
+        let counted = formats.iter().filter(|f| takes_pictures(f)).count();
         assert!(counted >= 3, "{formats:?}");
         assert_eq!(
             progress.pictures().map(|p| p.1),
             Some(counted * scene.rig.cameras.len())
         );
+    }
+
+    #[test]
+    fn every_picture_of_a_clip_is_counted() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut scene = open::from_template("straight", 3).expect("a template");
+        let key = |time_s: f64, x: f64| scene::Key {
+            time_s,
+            at_m: glam::DVec2::new(x, 0.0),
+            yaw_deg: 0.0,
+        };
+        scene.change_clip(|clip| {
+            (clip.length_s, clip.rate_hz) = (1.0, 10.0);
+            clip.ego = Some(scene::Motion::Keys(vec![key(0.0, 0.0), key(1.0, 4.0)]));
+        });
+        let options = ExportOptions {
+            camera_size: [16, 9],
+            ..ExportOptions::default()
+        };
+        let cameras = scene.rig.cameras.len();
+        // Ten moments a second, two a second, and both.
+        for (ids, moments) in [
+            (vec!["mcap"], 11),
+            (vec!["nuscenes"], 3),
+            (vec!["pictures", "mcap", "nuscenes"], 15),
+        ] {
+            let formats: Vec<Format> = ids
+                .iter()
+                .map(|id| formats::export::from_id(id).expect("a format"))
+                .collect();
+            let progress = ExportProgress::default();
+            let path = folder.path().join(ids.join("-"));
+            std::fs::create_dir(&path).expect("writable");
+            export_all(&scene, &formats, &options, &path, &progress).expect("written");
+            let all = moments * cameras;
+            assert_eq!(progress.pictures(), Some((all, all)), "{ids:?}");
+        }
     }
 }

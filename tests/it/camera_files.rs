@@ -55,6 +55,36 @@ fn normal_maps_are_written_beside_other_pictures() {
 }
 
 #[test]
+fn everything_that_needs_no_card_is_written_at_once() {
+    let dir = Folder::new();
+    let (scene, out) = (dir.scene(), dir.path("out"));
+    let what = "semantic,depth,appearance,perceived,mpi,perspective,normals,truth,lidar,bev";
+    let render = |what: &str| {
+        let words = [
+            "render", &scene, "--what", what, "--size", "48x27", "-o", &out, "--json",
+        ];
+        let report = json(&sceneloom(&words));
+        let files = report["files"].as_array().expect("files").clone();
+        let names: std::collections::BTreeSet<String> = files
+            .iter()
+            .filter_map(|f| f.as_str())
+            .map(str::to_lowercase)
+            .collect();
+        assert_eq!(names.len(), files.len(), "two files of one name: {names:?}");
+    };
+    // Depths of rays and those of the truth are not the same: before, the second one was refused for its name.
+    render(what);
+    let at = |name: &str| std::fs::read(Path::new(&out).join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let [rays, truth] = ["CAM_FRONT_depth_mm.png", "truth/CAM_FRONT_depth_mm.png"].map(at);
+    assert_ne!(rays, truth);
+    at("truth/truth.json");
+    assert!(!Path::new(&out).join("truth.json").exists());
+    // Alone, the truth needs no folder of its own.
+    render("truth");
+    assert_eq!(at("CAM_FRONT_depth_mm.png"), truth);
+}
+
+#[test]
 fn what_cannot_be_had_is_told_before_anything_is_written() {
     let dir = Folder::new();
     let (scene, out) = (dir.scene(), dir.path("out"));

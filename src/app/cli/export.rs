@@ -1,11 +1,14 @@
 //! `sceneloom export`: a scene to files of other programs.
 
 use std::path::PathBuf;
-use std::time::Instant;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::Thread;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
 use serde_json::json;
 
+use super::progress::Progress;
 use super::render::{size, source};
 use super::viewpoint::Viewpoint;
 use super::{Common, Moment, Outcome, output};
@@ -14,6 +17,9 @@ use app::export::{ExportOptions, ExportProgress, Format, export_all};
 use app::open;
 use app::picture::ShotOptions;
 use sensors::cameras::SourceId;
+
+/// How often is looked how far an export is.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -55,6 +61,44 @@ pub struct Export {
 fn names() -> String {
     let ids = formats::export::all().iter().map(|f| f.id);
     ids.collect::<Vec<_>>().join(", ")
+}
+
+/// Ends the thread that shows how far an export is, also where the export panics.
+struct Watched<'a> {
+    ended: &'a AtomicBool,
+    by: &'a Thread,
+}
+
+impl Drop for Watched<'_> {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Relaxed);
+        self.by.unpark();
+    }
+}
+
+/// Runs an export and shows meanwhile how far it is.
+fn watched<T>(common: &Common, export: &ExportProgress, run: impl FnOnce() -> T) -> T {
+    let shown = Progress::new(common);
+    let ended = AtomicBool::new(false);
+    let out = std::thread::scope(|threads| {
+        let watch = threads.spawn(|| {
+            while !ended.load(Ordering::Relaxed) {
+                match (export.baked_percent(), export.pictures()) {
+                    (Some(percent), _) => shown.at("baking", percent, 100),
+                    (None, Some((done, of))) => shown.at("pictures", done, of),
+                    (None, None) => {}
+                }
+                std::thread::park_timeout(LOOK);
+            }
+        });
+        let _watched = Watched {
+            ended: &ended,
+            by: watch.thread(),
+        };
+        run()
+    });
+    shown.done();
+    out
 }
 
 impl Export {
@@ -105,7 +149,10 @@ impl Export {
             parameters: serde_json::Value::Null,
         };
         let start = Instant::now();
-        let files = export_all(&scene, &formats, &options, &path, &ExportProgress::default())?;
+        let progress = ExportProgress::default();
+        let files = watched(&self.common, &progress, || {
+            export_all(&scene, &formats, &options, &path, &progress)
+        })?;
         let bytes: u64 = files.iter().map(|(_, bytes)| bytes).sum();
         let paths: Vec<&PathBuf> = files.iter().map(|(path, _)| path).collect();
         let report = json!({ "files": paths, "bytes": bytes, "wall_s": start.elapsed().as_secs_f64() });

@@ -168,23 +168,30 @@ fn busy(ui: &mut Ui, progress: &ExportProgress) {
     {
         progress.cancel();
     }
-    match (stop, progress.pictures()) {
-        (true, Some((done, of))) => {
-            let bar = egui::ProgressBar::new(done as f32 / of as f32).desired_width(150.0);
+    if !stop {
+        ui.weak(t("Stopping…"));
+        return;
+    }
+    let (share, text) = match (progress.baked_percent(), progress.pictures()) {
+        (Some(percent), _) => (
+            percent as f32 / 100.0,
+            tf!("Baking: {percent} %", percent = percent),
+        ),
+        (None, Some((done, of))) => {
             let text = tf!("Picture {n} of {all}", n = (done + 1).min(of), all = of);
-            ui.add(bar.text(text)).accessible_name(t("Export progress"));
-            // Nobody else wakes the window while a picture is made.
-            ui.ctx()
-                .request_repaint_after(std::time::Duration::from_millis(250));
+            (done as f32 / of as f32, text)
         }
-        (true, None) => {
+        (None, None) => {
             ui.spinner();
             ui.weak(t("Exporting…"));
+            return;
         }
-        (false, _) => {
-            ui.weak(t("Stopping…"));
-        }
-    }
+    };
+    let bar = egui::ProgressBar::new(share).desired_width(150.0);
+    ui.add(bar.text(text)).accessible_name(t("Export progress"));
+    // Nobody else wakes the window while a picture is made.
+    ui.ctx()
+        .request_repaint_after(std::time::Duration::from_millis(250));
 }
 
 /// Headings of the list, and how the titles below each begin; the last takes all others.

@@ -10,6 +10,10 @@ use formats::export::{OutFile, Picture};
 use formats::sensor_names;
 use scene::Scene;
 use sensors::appearance::Quality;
+use sensors::cameras::ViewId;
+
+/// A folder for the files of the truth where `depth` has files of the same names beside them.
+const FOLDER: &str = "truth";
 
 impl Rendering {
     /// Renders and writes every camera of a scene whose sensors are in the world; `made` is called for each. Returns the seconds
@@ -25,6 +29,15 @@ impl Rendering {
         } else {
             Quality::Full
         };
+        let beside_depth = self.what.iter().any(|w| w == ViewId::DEPTH.name());
+        let placed = |file: OutFile| match beside_depth {
+            true => OutFile {
+                name: format!("{FOLDER}/{}", file.name),
+                ..file
+            },
+            false => file,
+        };
+        let place = |files: Vec<OutFile>| files.into_iter().map(placed).collect();
         let ego_from_world = scene.frame().world_from_ego.inverse();
         let (mut time_s, mut boxes) = (0.0, Vec::new());
         let mut start = Instant::now();
@@ -43,15 +56,16 @@ impl Rendering {
                     rgba: image.rgba,
                 };
                 let name = sensor_names::of_file(&scene.rig, &truth.camera.name);
-                writer.out_files(files::of_camera(writer.recipe(), &name, &picture, &truth)?)?;
+                let files = files::of_camera(writer.recipe(), &name, &picture, &truth)?;
+                writer.out_files(place(files))?;
                 boxes.push(files::boxes(&truth));
                 made()?;
                 start = Instant::now();
                 Ok(())
             },
         )?;
-        let summary: OutFile = files::summary(writer.recipe(), boxes)?;
-        writer.out_files(vec![summary])?;
+        let summary = files::summary(writer.recipe(), boxes)?;
+        writer.out_files(place(vec![summary]))?;
         Ok(time_s)
     }
 }
