@@ -124,6 +124,11 @@ fn weights_that_lack_what_was_asked_for_are_refused() {
         "2",
     ];
     refused(&generate, &["--fine-steps 2", "no refiner.safetensors"]);
+    // Before, what the folder lacked was taken from the shipped weights, and the figures were of both.
+    let forecast = ["eval", "forecast", "--frames", "1", "--weights", &weights];
+    refused(&forecast, &["occ_dit_time.safetensors"]);
+    dir.write("weights/occ_dit_time.safetensors", shipped::OCC_DIT_TIME);
+    refused(&forecast, &["time_decoder.safetensors"]);
     // A half of the fine stage is no fine stage.
     dir.write("weights/occ_vae_fine.safetensors", shipped::OCC_VAE_FINE);
     refused(&generate[..6], &["refiner.safetensors"]);

@@ -103,10 +103,12 @@ pub struct Drives<'a> {
 const SAME_CELL: &str = "occ_dit_time_same_cell.safetensors";
 
 impl<'a> Drives<'a> {
-    /// Of a folder of weights, or those that ship.
+    /// Of a folder of weights, or those that ship. Errors if the folder lacks one of the networks but the ablation, or one is
+    /// damaged.
     pub fn new(models: &'a OccModels, folder: Option<&Path>) -> anyhow::Result<Self> {
         let read = |name| -> Result<Option<Vec<u8>>, WeightsError> {
-            let path = folder.map(|f| f.join(name)).filter(|p| p.exists());
+            let path = folder.map(|f| f.join(name));
+            let path = path.filter(|p| name != SAME_CELL || p.exists());
             path.map(|p| weights::read(&p)).transpose()
         };
         let time = |name: &'static str| -> Result<Option<OccDitTime>, WeightsError> {
