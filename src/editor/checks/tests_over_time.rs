@@ -73,7 +73,8 @@ fn only_what_has_an_engine_drives() {
     ] {
         let fast = path([90.0, 0.0], &[(0.0, 90.0), (0.5, 90.0)], false);
         let back = path([-15.0, 4.0], &[(0.0, 2.0), (5.0, 2.0)], true);
-        let texts = [found_of(class, fast, false), found_of(class, back, false)];
+        let ahead = path([90.0, 0.0], &[(0.0, 10.0), (8.0, 10.0)], false);
+        let texts = [fast, back, ahead].map(|motion| found_of(class, motion, false));
         let texts: Vec<String> = texts.into_iter().flatten().map(|(_, (text, _))| text).collect();
         let says = |part: &str| texts.iter().any(|text| text.contains(part));
         assert!(says(&format!("{gets_on} through manmade")), "{texts:?}");
