@@ -4,9 +4,6 @@ use crate::tile::{Limits, Splat, SplatPixels, TILE, exp};
 
 type Row = [f32; TILE];
 
-/// A row is gone through in two halves: most splats are narrower than one, and touch one alone.
-const HALF: usize = TILE / 2;
-
 /// First pixel of a tile, and how many of its pixels lie inside the picture.
 type Place = ([usize; 2], [usize; 2]);
 
@@ -84,24 +81,18 @@ impl Light {
                     (splats, list),
                     place,
                     limits,
-                    &mut (),
                     #[inline(always)]
-                    |(), at, transmittance, color| {
-                        for half in 0..2 {
-                            if !at.touches(half) {
-                                continue;
-                            }
-                            let weights = weigh(&at, half, limits, transmittance);
-                            for (channel, out) in color.iter_mut().enumerate() {
-                                let (out, value) = (half_mut(out, half), colors[at.index][channel]);
-                                for i in 0..HALF {
-                                    out[i] += weights[i] * value;
-                                }
+                    |at, transmittance, color| {
+                        let (index, weights) = (at.index, weigh(&at, limits, transmittance));
+                        for (channel, out) in color.iter_mut().enumerate() {
+                            let value = colors[index][channel];
+                            for i in 0..TILE {
+                                out[i] += weights[i] * value;
                             }
                         }
                     },
                     #[inline(always)]
-                    |(), _| {},
+                    |_| {},
                 );
             }
         }
@@ -134,33 +125,28 @@ impl Light {
                 let Gather(light, splats, (list, of), place, limits, tile, sums) = self;
                 // Sums of the splat at hand, lane by lane.
                 let mut lanes = [[0.0f32; TILE]; 4];
+                let cell = std::cell::Cell::from_mut(&mut lanes);
                 light.walk(
                     (splats, list),
                     place,
                     limits,
-                    &mut lanes,
                     #[inline(always)]
-                    |lanes, at, transmittance, _| {
-                        for half in 0..2 {
-                            if !at.touches(half) {
-                                continue;
-                            }
-                            let weights = weigh(&at, half, limits, transmittance);
-                            for (lane, values) in lanes.iter_mut().zip(&tile.values[at.row]) {
-                                let (lane, values) = (half_mut(lane, half), half_of(values, half));
-                                for i in 0..HALF {
-                                    lane[i] += weights[i] * values[i];
-                                }
-                            }
-                            let lane = half_mut(&mut lanes[3], half);
-                            for i in 0..HALF {
-                                lane[i] += weights[i] * weights[i];
+                    |at, transmittance, _| {
+                        let weights = weigh(&at, limits, transmittance);
+                        let mut lanes = cell.get();
+                        for (lane, values) in lanes.iter_mut().zip(&tile.values[at.row]) {
+                            for i in 0..TILE {
+                                lane[i] += weights[i] * values[i];
                             }
                         }
+                        for i in 0..TILE {
+                            lanes[3][i] += weights[i] * weights[i];
+                        }
+                        cell.set(lanes);
                     },
                     #[inline(always)]
-                    |lanes, index| {
-                        let lanes = std::mem::replace(lanes, [[0.0; TILE]; 4]);
+                    |index| {
+                        let lanes = cell.replace([[0.0; TILE]; 4]);
                         let out = &mut sums[of[index] as usize];
                         for channel in 0..4 {
                             out[channel] += lanes[channel].iter().sum::<f32>();
@@ -198,24 +184,28 @@ impl Light {
                 let Backward(light, (splats, colors, list), place, limits, (slope, picture), out) = self;
                 light.color = [[[0.0; TILE]; 3]; TILE];
                 let mut lanes = [[0.0f32; TILE]; 9];
+                let cell = std::cell::Cell::from_mut(&mut lanes);
                 light.walk(
                     (splats, list),
                     place,
                     limits,
-                    &mut lanes,
                     #[inline(always)]
-                    |lanes, at, transmittance, color| {
-                        let sides = (&slope.values[at.row], &picture.values[at.row]);
-                        let own = &colors[at.index];
-                        for half in 0..2 {
-                            if at.touches(half) {
-                                slope_half((&at, half), own, limits, sides, (transmittance, color), lanes);
-                            }
-                        }
+                    |at, transmittance, color| {
+                        let mut lanes = cell.get();
+                        slope_row(
+                            &at,
+                            &colors[at.index],
+                            limits,
+                            (&slope.values[at.row], &picture.values[at.row]),
+                            transmittance,
+                            color,
+                            &mut lanes,
+                        );
+                        cell.set(lanes);
                     },
                     #[inline(always)]
-                    |lanes, index| {
-                        let lanes = std::mem::replace(lanes, [[0.0; TILE]; 9]);
+                    |index| {
+                        let lanes = cell.replace([[0.0; TILE]; 9]);
                         for (out, lane) in out[index].iter_mut().zip(lanes) {
                             *out += lane.iter().sum::<f32>();
                         }
@@ -227,16 +217,15 @@ impl Light {
     }
 
     /// Walks the splats near to far: `row_of` is called for each row that a splat may touch, with the row's light and colours;
-    /// `done` after the last row of each splat that touches any. Both are given `sums`.
+    /// `done` after the last row of each splat.
     #[inline(always)]
-    fn walk<T>(
+    fn walk(
         &mut self,
         (splats, list): (&[SplatPixels], &[u32]),
         (origin_px, size): Place,
         limits: Limits,
-        sums: &mut T,
-        mut row_of: impl FnMut(&mut T, At<'_>, &mut Row, &mut [Row; 3]),
-        mut done: impl FnMut(&mut T, usize),
+        mut row_of: impl FnMut(At<'_>, &mut Row, &mut [Row; 3]),
+        mut done: impl FnMut(usize),
     ) {
         self.transmittance = [[0.0; TILE]; TILE];
         for row in self.transmittance.iter_mut().take(size[1]) {
@@ -252,7 +241,6 @@ impl Light {
             let end = usize::from(bounds[1][1])
                 .saturating_sub(origin_px[1])
                 .min(size[1]);
-            let mut touched = false;
             for (row, live) in live.iter().enumerate().take(end).skip(first) {
                 let dy = (origin_px[1] + row) as f32 + 0.5 - splat.mean_px[1];
                 let from_y = splat.across * dy * dy;
@@ -267,12 +255,9 @@ impl Light {
                     dy,
                     from_y,
                 };
-                touched = true;
-                row_of(sums, at, &mut self.transmittance[row], &mut self.color[row]);
+                row_of(at, &mut self.transmittance[row], &mut self.color[row]);
             }
-            if touched {
-                done(sums, index);
-            }
+            done(index);
             until_look -= 1;
             if until_look == 0 {
                 until_look = LOOK;
@@ -303,38 +288,12 @@ struct At<'a> {
     from_y: f32,
 }
 
-impl At<'_> {
-    /// True unless the splat is too faint to be seen in all of a half of the row.
-    #[inline(always)]
-    fn touches(&self, half: usize) -> bool {
-        let [first, last] = [0, HALF - 1].map(|i| self.u + (half * HALF + i) as f32);
-        let nearest = match first < 0.0 && last > 0.0 {
-            true => 0.0,
-            false => first.abs().min(last.abs()),
-        };
-        let most = self.splat.along * nearest * nearest + self.from_y;
-        // The slack leaves the decision at the threshold itself to alpha.
-        most >= self.splat.min_exponent - 1e-3
-    }
-}
-
-/// A half of a row.
+/// Weights of a splat over a row of pixels, whose light it takes.
 #[inline(always)]
-fn half_of(row: &Row, half: usize) -> &[f32; HALF] {
-    &row.as_chunks().0[half]
-}
-
-#[inline(always)]
-fn half_mut(row: &mut Row, half: usize) -> &mut [f32; HALF] {
-    &mut row.as_chunks_mut().0[half]
-}
-/// Weights of a splat over a half of a row of pixels, whose light it takes.
-#[inline(always)]
-fn weigh(at: &At<'_>, half: usize, limits: Limits, transmittance: &mut Row) -> [f32; HALF] {
-    let transmittance = half_mut(transmittance, half);
-    let mut weights = [0.0; HALF];
-    for i in 0..HALF {
-        let u = at.u + (half * HALF + i) as f32;
+fn weigh(at: &At<'_>, limits: Limits, transmittance: &mut Row) -> Row {
+    let mut weights = [0.0; TILE];
+    for i in 0..TILE {
+        let u = at.u + i as f32;
         let exponent = at.splat.along * u * u + at.from_y;
         let alpha = (at.splat.opacity * exp(exponent)).min(limits.alpha_max);
         let t = transmittance[i];
@@ -346,25 +305,19 @@ fn weigh(at: &At<'_>, half: usize, limits: Limits, transmittance: &mut Row) -> [
     weights
 }
 
-/// A half of a row of [`Light::backward`].
+/// One row of [`Light::backward`].
 #[inline(always)]
-fn slope_half(
-    (at, half): (&At<'_>, usize),
+fn slope_row(
+    at: &At<'_>,
     own: &[f32; 3],
     limits: Limits,
     (slope, picture): (&[Row; 3], &[Row; 3]),
-    (transmittance, color): (&mut Row, &mut [Row; 3]),
+    transmittance: &mut Row,
+    color: &mut [Row; 3],
     lanes: &mut [Row; 9],
 ) {
-    let transmittance = half_mut(transmittance, half);
-    let color = color.each_mut().map(|row| half_mut(row, half));
-    let lanes = lanes.each_mut().map(|row| half_mut(row, half));
-    let (slope, picture) = (
-        slope.each_ref().map(|row| half_of(row, half)),
-        picture.each_ref().map(|row| half_of(row, half)),
-    );
-    for i in 0..HALF {
-        let u = at.u + (half * HALF + i) as f32;
+    for i in 0..TILE {
+        let u = at.u + i as f32;
         let exponent = at.splat.along * u * u + at.from_y;
         let raw = at.splat.opacity * exp(exponent);
         let alpha = raw.min(limits.alpha_max);
@@ -393,52 +346,5 @@ fn slope_half(
         lanes[6][i] += p * u;
         lanes[7][i] += p * at.dy;
         lanes[8][i] += p;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use world::draw::Draw;
-
-    #[test]
-    fn what_is_left_out_of_a_row_would_not_be_seen() {
-        let mut draw = Draw::new(7, "splats");
-        let mut between = |from: f64, to: f64| draw.range(from, to) as f32;
-        let alpha_min = 1.0 / 255.0f32;
-        let (mut left_out, mut seen) = (0, 0);
-        for _ in 0..20_000 {
-            let opacity = between(0.01, 0.99);
-            let splat = Splat {
-                mean_px: [0.0; 2],
-                along: -between(0.001, 2.0),
-                shear: 0.0,
-                across: -between(0.001, 2.0),
-                opacity,
-                min_exponent: (alpha_min / opacity).ln(),
-                depth_m: 1.0,
-                id: 0,
-            };
-            let dy = between(-4.0, 4.0);
-            let at = At {
-                splat: &splat,
-                index: 0,
-                row: 0,
-                u: between(-24.0, 8.0),
-                dy,
-                from_y: splat.across * dy * dy,
-            };
-            for half in 0..2 {
-                let alpha = |i: usize| {
-                    let u = at.u + (half * HALF + i) as f32;
-                    splat.opacity * exp(splat.along * u * u + at.from_y)
-                };
-                let is_seen = (0..HALF).any(|i| alpha(i) >= alpha_min);
-                assert!(at.touches(half) || !is_seen, "{splat:?} at {}, {dy}", at.u);
-                seen += usize::from(is_seen);
-                left_out += usize::from(!at.touches(half));
-            }
-        }
-        assert!(left_out > 10_000 && seen > 5_000, "{left_out} {seen}");
     }
 }
