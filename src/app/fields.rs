@@ -30,10 +30,32 @@ pub fn decimal(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A field whose typed number counts when it is done: by Enter or by going elsewhere. A number that the scene gives back as
-/// another (a heading, a place along turned axes) would replace what is being typed, and each digit would be a step to undo.
-pub fn typed(field: DragValue<'_>) -> DragValue<'_> {
-    field.update_while_editing(false)
+/// A field of a number as `shown`, whose typed number counts when it is done: by Enter or by going elsewhere. A number that the
+/// scene gives back as another (a heading, a place along turned axes) would replace what is being typed, and each digit would be a
+/// step to undo. A text that is left as it was shown means the exact number behind it.
+pub fn typed<'a>(value: &'a mut f64, shown: impl Fn(f64) -> String + Copy + 'a) -> DragValue<'a> {
+    let exact = *value;
+    DragValue::new(value)
+        .update_while_editing(false)
+        .custom_formatter(move |v, _| shown(v))
+        .custom_parser(move |text| read(text, exact, shown))
+}
+
+fn read(text: &str, exact: f64, shown: impl Fn(f64) -> String) -> Option<f64> {
+    let text: String = text.split_whitespace().collect::<String>().replace('−', "-");
+    match text == shown(exact) {
+        true => Some(exact),
+        false => text.parse().ok(),
+    }
+}
+
+/// A number with at most so many decimals.
+pub fn short(value: f64, decimals: usize) -> String {
+    let text = decimal(value, decimals);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
 }
 
 /// Three numbers in a row; the response of all of them.
@@ -50,12 +72,10 @@ pub fn numbers(
         caption(ui, title);
         let width = ((ui.available_width() - 6.0) / 3.0).clamp(40.0, 90.0);
         let mut fields = names.into_iter().enumerate().map(|(axis, name)| {
-            let drag = DragValue::new(&mut value[axis])
+            let drag = typed(&mut value[axis], |v| decimal(v, 2))
                 .speed(speed)
                 .range(range.clone())
-                .fixed_decimals(2)
-                .custom_formatter(|v, _| decimal(v, 2));
-            let drag = typed(drag);
+                .fixed_decimals(2);
             ui.add_sized([width, theme::ROW], drag)
                 .on_hover_text(format!("{name}, m"))
                 .accessible_name(name)
@@ -96,13 +116,11 @@ pub fn number(
 ) -> egui::Response {
     ui.horizontal(|ui| {
         caption(ui, title);
-        let drag = DragValue::new(value)
+        let drag = typed(value, move |v| decimal(v, decimals))
             .speed(0.5 * 10f64.powi(-(decimals as i32)).max(0.02))
             .range(range)
             .fixed_decimals(decimals)
-            .custom_formatter(|v, _| decimal(v, decimals))
             .suffix(suffix);
-        let drag = typed(drag);
         ui.add_sized([86.0, theme::ROW], drag).accessible_name(name)
     })
     .inner
@@ -119,5 +137,19 @@ mod tests {
         assert_eq!(decimal(-0.06, 1), "-0.1");
         assert_eq!(decimal(12.34, 0), "12");
         assert_eq!(decimal(-10.0, 0), "-10");
+    }
+
+    #[test]
+    fn what_is_left_as_it_was_shown_is_the_number_behind_it() {
+        let two = |v| decimal(v, 2);
+        assert_eq!(read("-22.78", -22.7834, two), Some(-22.7834));
+        assert_eq!(read(" −22.78 ", -22.7834, two), Some(-22.7834));
+        assert_eq!(read("-22.79", -22.7834, two), Some(-22.79));
+        assert_eq!(read("0.00", -0.001, two), Some(-0.001));
+        assert_eq!(read("two", 2.0, two), None);
+        assert_eq!(
+            (short(30.0, 1), short(0.12, 1), short(-0.04, 1)),
+            ("30".into(), "0.1".into(), "0".into())
+        );
     }
 }

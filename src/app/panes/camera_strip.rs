@@ -26,6 +26,9 @@ use sensors::march::{MarchHit, MarchScene};
 use sensors::rays::CameraRays;
 use widgets::theme;
 
+/// Share of the window's width from which a picture is large enough to choose boxes in it; smaller ones are enlarged by a click.
+const LARGE: f32 = 0.5;
+
 /// Textures of the pictures.
 #[derive(Default)]
 pub struct CameraStrip {
@@ -300,7 +303,7 @@ impl CameraStrip {
     }
 
     fn picture(
-        &self,
+        &mut self,
         ui: &Ui,
         rect: Rect,
         index: usize,
@@ -367,7 +370,11 @@ impl CameraStrip {
             commands.push(Command::View(ViewCommand::Inspect(None)));
             commands.push(Command::View(ViewCommand::LookThrough(index)));
         } else if response.clicked() {
-            commands.push(Command::View(ViewCommand::Inspect((!chosen).then_some(index))));
+            let is_large = rect.width() >= LARGE * ui.ctx().content_rect().width();
+            commands.push(match part.filter(|_| is_large) {
+                Some(part) => Command::Select(self.hit(scene, camera, part).and_then(|hit| hit.box_id)),
+                None => Command::View(ViewCommand::Inspect((!chosen).then_some(index))),
+            });
         }
         part
     }

@@ -4,7 +4,7 @@ use egui::containers::menu::is_in_menu;
 use egui::{DragValue, Ui};
 
 use crate::command::Command;
-use crate::fields::{fields, number, typed};
+use crate::fields::{fields, number};
 use editor::Edit;
 use language::t;
 use scene::{Conditions, Scene, Sun, TimeOfDay, Weather};
@@ -135,7 +135,9 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
     response |= ui
         .horizontal(|ui| {
             crate::fields::caption(ui, t("Seed"));
-            let seed = typed(DragValue::new(&mut new.seed).speed(0.05));
+            let seed = DragValue::new(&mut new.seed)
+                .speed(0.05)
+                .update_while_editing(false);
             ui.add_sized([86.0, theme::ROW], seed)
                 .accessible_name(t("Seed of the pictures"))
         })

@@ -1,6 +1,6 @@
 //! The right pane: the chosen box in numbers, the list of boxes.
 
-use egui::{DragValue, Ui};
+use egui::Ui;
 use glam::DVec3;
 
 use language::{t, tf};
@@ -13,7 +13,7 @@ use super::pane::{Pane, PaneContext, Place};
 use super::{thing_list, things};
 use crate::canvas_draw::box_color;
 use crate::command::{Command, ViewCommand};
-use crate::fields::{caption, decimal, field, fields, number, numbers, typed};
+use crate::fields::{caption, decimal, field, fields, number, numbers, short, typed};
 use crate::panes::label::label_ui;
 use crate::state::{UiState, called};
 use crate::tools::{Choose, Hand, ToolCommand};
@@ -360,13 +360,12 @@ fn inspector(ui: &mut Ui, scene: &Scene, b: &SceneBox, hand: &Hand, commands: &m
     let turned = ui
         .horizontal(|ui| {
             caption(ui, t("Heading"));
-            let drag = DragValue::new(&mut yaw_deg)
+            let drag = typed(&mut yaw_deg, |v| decimal(v, 1))
                 .speed(0.5)
                 .fixed_decimals(1)
-                .custom_formatter(|v, _| decimal(v, 1))
                 .suffix("°");
             let drag = ui
-                .add_sized([64.0, theme::ROW], typed(drag))
+                .add_sized([64.0, theme::ROW], drag)
                 .accessible_name(t("Heading"));
             speed(ui, scene, b, commands);
             drag
@@ -420,14 +419,13 @@ fn speed(ui: &mut Ui, scene: &Scene, b: &SceneBox, commands: &mut Vec<Command>) 
     const MOST_KMH: f64 = Path::MAX_MPS * 3.6;
     let mut kmh = b.velocity_mps.length() * 3.6;
     if arrange::with_speed(scene, b.id, b.velocity_mps.length()).is_some() {
-        let drag = DragValue::new(&mut kmh)
+        let drag = typed(&mut kmh, |v| short(v, 1))
             .range(0.0..=MOST_KMH)
             .speed(0.5)
             .max_decimals(1)
-            .custom_formatter(|v, _| decimal(v, 1).trim_end_matches(".0").to_owned())
             .suffix(" km/h");
         let response = ui
-            .add_sized([76.0, theme::ROW], typed(drag))
+            .add_sized([76.0, theme::ROW], drag)
             .on_hover_text(t("Speed over ground"))
             .accessible_name(t("Speed"));
         let edits = || arrange::with_speed(scene, b.id, kmh / 3.6).unwrap_or_default();

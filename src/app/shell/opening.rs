@@ -8,6 +8,7 @@ use super::app::{SceneloomApp, one_line};
 use super::files::{Arrived, Left, Next, Opening};
 use super::toasts::Level;
 use super::versions::Opened;
+use crate::panes::compare::CompareMode;
 use editor::Document;
 use job::Named;
 use job::inpaint::InpaintMask;
@@ -158,6 +159,7 @@ impl SceneloomApp {
         self.threads.checking.forget();
         self.threads.planning.close();
         self.views.compare.forget();
+        self.state.compare.mode = CompareMode::Off;
         self.state.shown.finding_marks = None;
         self.state.shown.detection_marks = None;
         crate::panes::checks::forget(ctx);

@@ -1,9 +1,9 @@
 //! Lens and shutter of a camera, as rows of the window *Sensors*.
 
-use egui::{DragValue, Ui};
+use egui::Ui;
 
 use crate::command::Command;
-use crate::fields::{caption, field, number, typed};
+use crate::fields::{caption, field, number, short, typed};
 use editor::Edit;
 use language::{t, tf};
 use scene::{Camera, Lens, ReadOut, Shutter};
@@ -128,14 +128,12 @@ fn coefficients(ui: &mut Ui, name: &str, values: &mut [f64]) -> egui::Response {
             };
             caption(ui, &text);
             for (i, value) in values.iter_mut().enumerate() {
-                let drag = DragValue::new(value)
+                let drag = typed(value, |v| short(v, 6))
                     .speed(0.001)
                     .range(-100.0..=100.0)
                     .max_decimals(6);
                 let named = format!("{name}{}", first + i);
-                let drag = ui
-                    .add_sized([64.0, theme::ROW], typed(drag))
-                    .accessible_name(named);
+                let drag = ui.add_sized([64.0, theme::ROW], drag).accessible_name(named);
                 all = Some(match all.take() {
                     Some(all) => all.union(drag),
                     None => drag,

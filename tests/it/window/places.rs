@@ -244,6 +244,10 @@ fn numbers_of_a_box_are_typed_and_are_one_step_each() {
     let b = |bench: &Bench| bench.frame().boxes[&BoxId(7)];
     types(&mut bench, "Heading", "33.37");
     assert!((b(&bench).yaw_rad.to_degrees() - 33.37).abs() < 1e-9);
+    // It shows 33.4; opened and left, it is what it was, and nothing was done.
+    types(&mut bench, "Heading", "");
+    assert!((b(&bench).yaw_rad.to_degrees() - 33.37).abs() < 1e-9);
+    assert_eq!(bench.history().len(), steps + 1);
     types(&mut bench, "Speed", "42.5");
     assert!((b(&bench).velocity_mps.length() * 3.6 - 42.5).abs() < 1e-9);
     assert!(b(&bench).velocity_mps.normalize().distance(b(&bench).heading()) < 1e-9);

@@ -1,11 +1,11 @@
 //! Buttons that play and step, the time in numbers, and what edits mean for other moments.
 
-use egui::{DragValue, RichText, Ui};
+use egui::{RichText, Ui};
 
 use scene::{Clip, Scene, Scope};
 
 use crate::command::{Command, FileCommand, TimeCommand};
-use crate::fields::typed;
+use crate::fields::{decimal, short, typed};
 use crate::panes::motion_menu;
 use crate::playback::Playback;
 use crate::state::UiState;
@@ -176,13 +176,13 @@ pub(super) fn forecast(ui: &mut Ui, commands: &mut Vec<Command>) {
 
 fn length(ui: &mut Ui, clip: &Clip, commands: &mut Vec<Command>) {
     let mut length_s = clip.length_s;
-    let value = DragValue::new(&mut length_s)
+    let value = typed(&mut length_s, |v| decimal(v, 1))
         .range(0.0..=Clip::MAX_LENGTH_S)
         .speed(0.1)
         .fixed_decimals(1)
         .prefix(t("of "))
         .suffix(" s");
-    let response = ui.add(typed(value)).on_hover_text(t("How long the scene lasts"));
+    let response = ui.add(value).on_hover_text(t("How long the scene lasts"));
     let edit = || Edit::SetLength {
         length_s,
         rate_hz: None,
@@ -194,12 +194,12 @@ fn length(ui: &mut Ui, clip: &Clip, commands: &mut Vec<Command>) {
         commands.push(Command::Commit("Set length"));
     }
     let mut rate_hz = clip.rate_hz;
-    let value = DragValue::new(&mut rate_hz)
+    let value = typed(&mut rate_hz, |v| short(v, 2))
         .range(1.0..=60.0)
         .speed(0.1)
         .suffix(" Hz");
     let response = ui
-        .add(typed(value))
+        .add(value)
         .on_hover_text(t("Frames per second of single steps and of what is written"));
     if response.changed() && rate_hz != clip.rate_hz {
         let edit = Edit::SetLength {
