@@ -145,7 +145,7 @@ struct Making<'a> {
     progress: &'a ExportProgress,
 }
 
-/// How the moments of a clip begin: those that a format writes are evenly spaced, so two of them tell how many there are.
+/// How the moments of a clip begin: those that a format takes pictures of are evenly spaced, so two of them tell how many there are.
 enum Began {
     /// Nothing is to be counted, or all is.
     Counted,
@@ -178,6 +178,13 @@ impl Began {
 }
 
 impl Making<'_> {
+    /// Counts the pictures of the moments to come, as soon as pictures of a second one are asked for.
+    fn count_moments(&mut self) {
+        if let Some(moments) = self.began.more(self.scene.time_s(), self.whole.clip().length_s) {
+            self.progress.more(moments * self.whole.rig.cameras.len());
+        }
+    }
+
     /// Renders a view for each camera, in the rig's order, and hands each picture on before the next is made; asks before
     /// each whether to go on.
     fn each_camera(
@@ -225,9 +232,6 @@ impl Making<'_> {
 impl Products for Making<'_> {
     fn show(&mut self, time_s: f64) -> Result<(), FormatError> {
         self.progress.go_on().map_err(FormatError::new)?;
-        if let Some(moments) = self.began.more(time_s, self.whole.clip().length_s) {
-            self.progress.more(moments * self.whole.rig.cameras.len());
-        }
         if time_s != self.scene.time_s() {
             let moment = self.whole.at(time_s);
             self.scene = Cow::Owned(moment.with_rig_in_world().into_owned());
@@ -267,6 +271,7 @@ impl Products for Making<'_> {
         &mut self,
         take: &mut dyn FnMut(CameraMaps) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
+        self.count_moments();
         let each = self.each_camera(ViewId::SEMANTIC, |picture| match picture {
             CameraPicture::Maps(maps) => Ok(take(maps)?),
             _ => bail!("the source of classes and depths gives something else"),
@@ -278,6 +283,7 @@ impl Products for Making<'_> {
         &mut self,
         take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
+        self.count_moments();
         let each = self.each_camera(pictures::VIEW.id, |picture| match picture {
             CameraPicture::Picture(image) => Ok(take(Picture {
                 camera: image.camera,
@@ -294,6 +300,7 @@ impl Products for Making<'_> {
         &mut self,
         take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
+        self.count_moments();
         let (progress, ego_from_world) = (self.progress, self.world_from_ego().inverse());
         let told = truth::each_camera(
             &self.scene,
