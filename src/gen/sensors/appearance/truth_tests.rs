@@ -355,7 +355,7 @@ fn a_rolling_shutter_stretches_what_moves_with_it() {
 #[test]
 fn boxes_have_bounds_as_soon_as_a_pixel_shows_them() {
     let (mut seen, mut hidden, mut finer) = (0, 0, 0);
-    for seed in 0..6 {
+    for seed in 0..9 {
         let frame = street(seed);
         let rig = SensorRig::default();
         let appearance = Appearance::new(&frame, &rig, &day());
