@@ -26,6 +26,7 @@ use super::state::{UiState, called, position_text};
 use super::tools::ToolState;
 use super::views_shown::ViewsShown;
 use super::{detection_marks, fly, no_adapter, place_marks, thing_outlines, track_marks, unsettled_marks};
+use crate::fields::decimal;
 use crate::panes::id::PaneId;
 use crate::shell::live::Bounds;
 use widgets::software_ui;
@@ -563,7 +564,7 @@ fn register(gpu: &mut Gpu, samples: u32) -> egui::TextureId {
 fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
     let p = point_of(hit, ray);
     let mut parts = vec![
-        format!("{}  z {:.1}", position_text(p.truncate()), p.z + 0.0),
+        format!("{}  z {}", position_text(p.truncate()), decimal(p.z, 1)),
         tf!("{distance} m away", distance = format!("{:.1}", p.length())),
     ];
     match hit {

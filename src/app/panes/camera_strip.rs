@@ -16,6 +16,7 @@ use super::camera_legend;
 use super::id::PaneId;
 use crate::camera_views::{CameraView, CamerasShown, camera_label, march};
 use crate::command::{Command, ViewCommand};
+use crate::fields::decimal;
 use crate::place_marks;
 use crate::sensing::{PaintStage, Sensing};
 use crate::state::UiState;
@@ -297,9 +298,9 @@ impl CameraStrip {
         let name = hit.box_id.map_or(name.clone(), |id| format!("{name} #{}", id.0));
         let p = pose.translation_m + ray * hit.t;
         place_marks::point(state, PaneId::CAMERAS, p);
-        let (x, y, z) = (p.x + 0.0, p.y + 0.0, p.z + 0.0);
+        let [x, y, z] = p.to_array().map(|v| decimal(v, 1));
         let away = tf!("{distance} m away", distance = format!("{:.1}", hit.t));
-        format!("{label}  ·  {name}  ·  {away}  ·  {x:.1}, {y:.1}, {z:.1} m")
+        format!("{label}  ·  {name}  ·  {away}  ·  {x}, {y}, {z} m")
     }
 
     fn picture(
