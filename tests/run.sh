@@ -25,19 +25,16 @@ if [ "${#need[@]}" -gt 0 ]; then
   fi
 fi
 
-# The release profile throughout: libraries build once, and networks run at full speed.
+# One profile throughout, so that libraries build once: optimised as a release, with the overflow and debug assertions of the rooms.
 cargo fmt --all --check
-cargo clippy --release --workspace --all-targets --quiet -- -D warnings
-RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --document-private-items --quiet
-cargo test --release --workspace
-
-# Overflow and debug assertions: the rooms without networks and window, whose tests are quick without optimisation.
-cargo test --profile checked --lib --quiet -p sceneloom-numeric -p sceneloom-scene -p sceneloom-editor -p sceneloom-formats \
-  -p sceneloom-diffusion -p sceneloom-place
+cargo clippy --profile checked --workspace --all-targets --quiet -- -D warnings
+RUSTDOCFLAGS="-D warnings" cargo doc --profile checked --workspace --no-deps --document-private-items --quiet
+# No comment holds an example to run, so doc tests, which would read every room again, are left out.
+cargo test --profile checked --workspace --lib --bins --tests
 
 # The Python package, with the program that was just built.
 if python3 -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
-  SCENELOOM="$(realpath "${CARGO_TARGET_DIR:-target}")/release/sceneloom" python3 -m unittest discover -s python/tests
+  SCENELOOM="$(realpath "${CARGO_TARGET_DIR:-target}")/checked/sceneloom" python3 -m unittest discover -s python/tests
 else
   echo "tests of the Python package: not run, no Python 3.10 here"
 fi

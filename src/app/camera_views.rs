@@ -47,6 +47,8 @@ pub struct OwnCamera {
     pub legend: bool,
     /// Above 0 the pane was drawn in one of the last frames.
     pub drawn: u8,
+    /// The pane was so large that its picture is rendered large.
+    pub large: bool,
 }
 
 impl Default for CamerasShown {
@@ -115,6 +117,17 @@ impl CamerasShown {
         out
     }
 
+    /// What is rendered large: the enlarged camera, else that of a large pane.
+    fn large(&self, count: usize) -> Option<(SourceId, usize)> {
+        let of_pane = || {
+            let mut large = self.own.iter().filter(|(_, own)| own.drawn > 0 && own.large);
+            large.next().map(|(pane, _)| self.of_pane(*pane, count))
+        };
+        let enlarged = self.enlarged.map(|camera| (camera, self.view));
+        let (camera, view) = enlarged.or_else(of_pane)?;
+        Some((cameras::source_of(view, self.source).id(), camera))
+    }
+
     /// After a camera was taken away, those behind it move up.
     pub fn forget(&mut self, camera: usize) {
         let below = (1u32 << camera.min(31)) - 1;
@@ -158,8 +171,8 @@ pub struct Wanted {
     pub source: SourceId,
     /// Bit per camera that is not rendered.
     pub hidden: u32,
-    /// The camera that is rendered large as well.
-    pub enlarged: Option<usize>,
+    /// The camera that is rendered large as well, and the source of its picture.
+    pub large: Option<(SourceId, usize)>,
     /// How the LiDAR sweep comes about.
     pub lidar: LidarModel,
     /// Echoes that a real sensor would rather lose are in the learned sweep.
@@ -199,11 +212,18 @@ impl Wanted {
         Self {
             source: cameras.shown_source().id(),
             hidden: cameras.hidden & !cameras.in_panes(count),
-            enlarged: cameras.enlarged,
+            large: cameras.large(count),
             lidar: lidar.model,
             lost_echoes: lidar.colors == LidarColorMode::Drop,
             others: cameras.others(count),
         }
+    }
+
+    /// The camera whose picture of that source is rendered large.
+    pub fn large_of(&self, source: SourceId) -> Option<usize> {
+        self.large
+            .filter(|(of, _)| *of == source)
+            .map(|(_, camera)| camera)
     }
 
     /// What decides the strip of pictures.

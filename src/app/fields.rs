@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use crate::command::Command;
 use editor::Edit;
+use numeric::decimal::decimal;
 use widgets::theme;
 
 /// What the fields to its right are.
@@ -19,15 +20,6 @@ pub fn label(ui: &mut Ui, text: &str, width_points: f32) {
     let at = rect.left_center();
     ui.painter()
         .text(at, egui::Align2::LEFT_CENTER, text, font, theme::text_weak());
-}
-
-/// A number with so many decimals; never a zero with a sign.
-pub fn decimal(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.to_owned(),
-        _ => text,
-    }
 }
 
 /// A field of a number as `shown`, whose typed number counts when it is done: by Enter or by going elsewhere. A number that the
@@ -129,15 +121,6 @@ pub fn number(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn no_zero_has_a_sign() {
-        assert_eq!(decimal(-0.04, 1), "0.0");
-        assert_eq!(decimal(-0.0, 2), "0.00");
-        assert_eq!(decimal(-0.06, 1), "-0.1");
-        assert_eq!(decimal(12.34, 0), "12");
-        assert_eq!(decimal(-10.0, 0), "-10");
-    }
 
     #[test]
     fn what_is_left_as_it_was_shown_is_the_number_behind_it() {

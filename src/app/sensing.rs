@@ -437,29 +437,7 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     if source.id() == learned::ID {
         return other_sources(request, kept, ctx);
     }
-    let (mut ready, graphics) = (None, &mut kept.graphics);
-    // Errors are pictures that are too large for the bounds, which these sizes never are.
-    let mut view = |camera: usize, size, quick| -> Option<CameraView> {
-        let (ready, on_card) = ready.get_or_insert_with(|| {
-            let ready = Ready::new(source, &camera_input(scene, Detail::Live));
-            let on_card = ready.upload_to(|| {
-                let card = graphics.get_or_insert_with(Graphics::find).as_mut();
-                card.map(|card| card as &mut dyn Card)
-            });
-            (ready, on_card)
-        });
-        let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| *on_card);
-        let options = RenderOptions {
-            size,
-            quality: if quick { Quality::Preview } else { Quality::Full },
-        };
-        let context = RenderContext {
-            card: card.map(|card| card as &mut dyn Card),
-            ..RenderContext::processor()
-        };
-        let picture = ready.render(rig.cameras.get(camera)?, &options, context).ok()?;
-        Some(CameraView::new(camera, picture).colored(source))
-    };
+    let mut of_scene = Views::new(source, scene, &mut kept.graphics);
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
     let mut render = |quick: bool| -> Option<Vec<CameraView>> {
         let size = if quick { PREVIEW_SIZE } else { VIEW_SIZE };
@@ -470,13 +448,13 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
             if !quick && ctx.should_stop() {
                 return None;
             }
-            views.push(view(i, size, quick)?);
+            views.push(of_scene.view(i, size, quick)?);
         }
         Some(views)
     };
     // What is there already is not rendered again because another camera is enlarged.
     let kept_views = kept.views.as_ref().filter(|(of, _)| *of == key);
-    let mut views = match kept_views.map(|(_, views)| views.clone()) {
+    let views = match kept_views.map(|(_, views)| views.clone()) {
         Some(views) => views,
         None => {
             // Camera pictures take their time: a coarse one comes first.
@@ -494,12 +472,9 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         }
     };
     ctx.tell(News::Cameras(scene.rev, *wanted, views.clone()));
-    let enlarged = wanted.enlarged.filter(|i| rig.cameras.len() > *i && shown(i));
-    if let Some(large) = enlarged.and_then(|i| views.iter_mut().find(|v| v.camera == i))
-        && !ctx.should_stop()
-        && let Some(view) = view(large.camera, LARGE_SIZE, false)
+    if let Some(camera) = wanted.large_of(source.id()).filter(shown)
+        && let Some(views) = of_scene.with_large(&views, camera, ctx)
     {
-        *large = view;
         ctx.tell(News::Cameras(scene.rev, *wanted, views));
     }
     other_sources(request, kept, ctx);
@@ -513,56 +488,109 @@ fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         preview,
     } = request;
     for (id, mask) in wanted.others.iter().filter(|(id, _)| *id != learned::ID) {
-        let is_known = |o: &&(SceneRev, SourceId, u32, _)| (o.0, o.1, o.2) == (scene.rev, id, mask);
-        if let Some((.., views)) = kept.others.iter().find(is_known) {
-            ctx.tell(News::Other(scene.rev, id, views.clone()));
-            continue;
-        }
         let source = sensors::cameras::source(id).unwrap_or(&sensors::cameras::shapes::Shapes);
-        let ready = Ready::new(source, &camera_input(scene, Detail::Live));
-        let graphics = &mut kept.graphics;
-        let on_card = ready.upload_to(|| {
-            let card = graphics.get_or_insert_with(Graphics::find).as_mut();
-            card.map(|card| card as &mut dyn Card)
-        });
+        let mut of_scene = Views::new(source, scene, &mut kept.graphics);
+        let is_known = |o: &&(SceneRev, SourceId, u32, _)| (o.0, o.1, o.2) == (scene.rev, id, mask);
+        let known = kept.others.iter().find(is_known).map(|(.., views)| views.clone());
         let mut render = |quick: bool| -> Option<Vec<CameraView>> {
-            let options = RenderOptions {
-                size: if quick { PREVIEW_SIZE } else { VIEW_SIZE },
-                quality: if quick { Quality::Preview } else { Quality::Full },
-            };
-            let chosen = scene
-                .rig
-                .cameras
-                .iter()
-                .enumerate()
-                .take(32)
-                .filter(|(i, _)| mask >> i & 1 == 1);
+            let size = if quick { PREVIEW_SIZE } else { VIEW_SIZE };
             let mut views = Vec::new();
-            for (i, camera) in chosen {
+            for i in (0..scene.rig.cameras.len().min(32)).filter(|i| mask >> i & 1 == 1) {
                 if !quick && ctx.should_stop() {
                     return None;
                 }
-                let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| on_card);
-                let context = RenderContext {
-                    card: card.map(|card| card as &mut dyn Card),
-                    ..RenderContext::processor()
-                };
-                let picture = ready.render(camera, &options, context).ok()?;
-                views.push(CameraView::new(i, picture).colored(source));
+                views.push(of_scene.view(i, size, quick)?);
             }
             Some(views)
         };
-        if (*preview || source.about().previews)
-            && let Some(views) = render(true)
+        let views = match known {
+            Some(views) => views,
+            None => {
+                if (*preview || source.about().previews)
+                    && let Some(views) = render(true)
+                {
+                    ctx.tell(News::Other(scene.rev, id, views));
+                }
+                if *preview {
+                    continue;
+                }
+                let Some(views) = render(false) else { return };
+                kept.others.retain(|(_, of, ..)| *of != id);
+                kept.others.push((scene.rev, id, mask, views.clone()));
+                views
+            }
+        };
+        ctx.tell(News::Other(scene.rev, id, views.clone()));
+        if let Some(camera) = wanted.large_of(id)
+            && let Some(views) = of_scene.with_large(&views, camera, ctx)
         {
             ctx.tell(News::Other(scene.rev, id, views));
         }
-        if *preview {
-            continue;
+    }
+}
+
+/// Views of one scene from one source, which is made ready when the first of them is asked for.
+struct Views<'a> {
+    source: &'static dyn CameraSource,
+    scene: &'a Scene,
+    graphics: &'a mut Option<Option<Graphics>>,
+    ready: Option<(Ready<'a>, bool)>,
+}
+
+impl<'a> Views<'a> {
+    fn new(
+        source: &'static dyn CameraSource,
+        scene: &'a Scene,
+        graphics: &'a mut Option<Option<Graphics>>,
+    ) -> Self {
+        Self {
+            source,
+            scene,
+            graphics,
+            ready: None,
         }
-        let Some(views) = render(false) else { return };
-        ctx.tell(News::Other(scene.rev, id, views.clone()));
-        kept.others.retain(|(_, of, ..)| *of != id);
-        kept.others.push((scene.rev, id, mask, views));
+    }
+
+    /// The view of one camera; `None` without such a camera, or where the picture is too large for the bounds.
+    fn view(&mut self, camera: usize, size: [u32; 2], quick: bool) -> Option<CameraView> {
+        let (scene, source) = (self.scene, self.source);
+        let graphics = &mut *self.graphics;
+        let (ready, on_card) = self.ready.get_or_insert_with(|| {
+            let ready = Ready::new(source, &camera_input(scene, Detail::Live));
+            let on_card = ready.upload_to(|| {
+                let card = graphics.get_or_insert_with(Graphics::find).as_mut();
+                card.map(|card| card as &mut dyn Card)
+            });
+            (ready, on_card)
+        });
+        let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| *on_card);
+        let options = RenderOptions {
+            size,
+            quality: if quick { Quality::Preview } else { Quality::Full },
+        };
+        let context = RenderContext {
+            card: card.map(|card| card as &mut dyn Card),
+            ..RenderContext::processor()
+        };
+        let picture = ready
+            .render(scene.rig.cameras.get(camera)?, &options, context)
+            .ok()?;
+        Some(CameraView::new(camera, picture).colored(source))
+    }
+
+    /// `views` with that of `camera` rendered large; `None` if it is not among them, or if the work should stop.
+    fn with_large(
+        &mut self,
+        views: &[CameraView],
+        camera: usize,
+        ctx: &Ctx<'_, News>,
+    ) -> Option<Vec<CameraView>> {
+        let place = views.iter().position(|v| v.camera == camera)?;
+        let large = self
+            .view(camera, LARGE_SIZE, false)
+            .filter(|_| !ctx.should_stop())?;
+        let mut views = views.to_vec();
+        *views.get_mut(place)? = large;
+        Some(views)
     }
 }

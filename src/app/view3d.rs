@@ -11,6 +11,7 @@ use editor::pick::{self, Hit, Ray};
 use editor::pick_things;
 use editor::tools::{Mark, View, ViewKind, Wants, point_of, select};
 use language::{t, tf};
+use numeric::decimal::decimal;
 use scene::{BoxId, Class, Extent, LidarSweep, Scene, SceneBox};
 use viewport::{
     BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
@@ -26,7 +27,6 @@ use super::state::{UiState, called, position_text};
 use super::tools::ToolState;
 use super::views_shown::ViewsShown;
 use super::{detection_marks, fly, no_adapter, place_marks, thing_outlines, track_marks, unsettled_marks};
-use crate::fields::decimal;
 use crate::panes::id::PaneId;
 use crate::shell::live::Bounds;
 use widgets::software_ui;

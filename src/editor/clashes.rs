@@ -1,5 +1,7 @@
 //! What stands in each other or meets in the course of the clip, as sentences: for whoever changed a scene and did not look.
 
+use std::collections::HashSet;
+
 use scene::Scene;
 
 use crate::checks::{meetings, overlaps};
@@ -8,9 +10,11 @@ use crate::checks::{meetings, overlaps};
 pub fn clashes(scene: &Scene) -> Vec<String> {
     let standing = overlaps(scene).into_iter().map(|f| f.text);
     let meeting = meetings(scene).into_iter().map(|m| m.text);
-    let mut out: Vec<String> = standing.chain(meeting).collect();
-    out.dedup();
-    out
+    let mut said = HashSet::new();
+    standing
+        .chain(meeting)
+        .filter(|text| said.insert(text.clone()))
+        .collect()
 }
 
 /// Those of the scene after a change that were not there before it.

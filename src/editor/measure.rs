@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use numeric::decimal::decimal;
 use scene::Frame;
 
 /// Points that the user measures between, ego frame, m: none, one, two (a distance) or three (an angle too).
@@ -56,13 +57,13 @@ impl Measure {
         if points.len() == 2 {
             let d = *last - *first;
             text += &format!(
-                "  ·  {:.1}°  ·  x {:.2}  y {:.2}",
-                d.truncate().to_angle().to_degrees() + 0.0,
-                d.x + 0.0,
-                d.y + 0.0
+                "  ·  {}°  ·  x {}  y {}",
+                decimal(d.truncate().to_angle().to_degrees(), 1),
+                decimal(d.x, 2),
+                decimal(d.y, 2)
             );
             if d.z != 0.0 {
-                text += &format!("  z {:.2}", d.z);
+                text += &format!("  z {}", decimal(d.z, 2));
             }
         } else {
             text += &format!(" = {:.2} m", lengths.iter().sum::<f64>());
@@ -118,6 +119,11 @@ mod tests {
         assert_eq!(
             m.text(Some(DVec3::new(4.0, 5.0, 13.0))).as_deref(),
             Some("13.00 m  ·  53.1°  ·  x 3.00  y 4.00  z 12.00")
+        );
+        // A little to the other side of an axis is no zero with a sign.
+        assert_eq!(
+            m.text(Some(DVec3::new(4.0, 0.998, 1.0))).as_deref(),
+            Some("3.00 m  ·  0.0°  ·  x 3.00  y 0.00")
         );
         assert_eq!(angle_deg(DVec3::ONE, DVec3::ONE, DVec3::X), None);
         let straight = angle_deg(DVec3::NEG_X, DVec3::ZERO, DVec3::X).expect("two ways");

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use numeric::decimal::decimal;
 use scene::{Frame, SceneBox};
 
 use super::Edit;
@@ -259,15 +260,10 @@ impl Transform {
         match self.kind {
             TransformKind::Move => {
                 let d = self.delta_m(pull.delta_m, snap);
-                format!(
-                    "{axis}{:.2} m  ({:.2}, {:.2}, {:.2})",
-                    d.length(),
-                    d.x + 0.0,
-                    d.y + 0.0,
-                    d.z + 0.0
-                )
+                let [x, y, z] = d.to_array().map(|v| decimal(v, 2));
+                format!("{axis}{:.2} m  ({x}, {y}, {z})", d.length())
             }
-            TransformKind::Turn => format!("{:.1}°", wrapped_deg(pull.turn_deg)),
+            TransformKind::Turn => format!("{}°", decimal(wrapped_deg(pull.turn_deg), 1)),
             TransformKind::Scale => format!("{axis}× {:.2}", pull.factor),
         }
     }

@@ -58,8 +58,9 @@ fn lies(sample: &[u8]) -> Vec<Vec<u8>> {
         &[0xff; 8],
         &[0, 0, 0, 0, 1, 0, 0, 0], // 4 GiB
     ];
-    let step = if sample.len() > MIB { 20 } else { 2 };
-    for at in (0..sample.len().min(400)).step_by(step) {
+    let (near, far) = if sample.len() > MIB { (20, 20) } else { (2, 6) };
+    let places = (0..100).step_by(near).chain((100..400).step_by(far));
+    for at in places.take_while(|at| *at < sample.len()) {
         for pattern in patterns {
             let mut lie = sample.to_vec();
             let end = (at + pattern.len()).min(lie.len());
@@ -70,7 +71,7 @@ fn lies(sample: &[u8]) -> Vec<Vec<u8>> {
     if let Ok(text) = std::str::from_utf8(sample) {
         let mut at = 0;
         while let Some(from) = text[at..].find(|c: char| c.is_ascii_digit()).map(|i| at + i)
-            && out.len() < 1200
+            && out.len() < 600
         {
             let digits = text[from..].bytes().take_while(u8::is_ascii_digit).count();
             for number in ["4294967296", "1e308", "-1", "\"x\"", "NaN"] {

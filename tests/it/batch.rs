@@ -78,7 +78,7 @@ const SWEEP: &str = r#"{
     {"name": "place", "values": [[], {"base": {"template": "straight"}}]},
     {"name": "weather", "values": [{"conditions": {"weather": "rain"}}, {"conditions": {"time": "night", "weather": "clear"}}]},
     {"name": "pedestrians", "values": [{"count": {"class": "pedestrian", "n": 0}}, {"count": {"class": "pedestrian", "n": 4}}]},
-    {"name": "seed", "seeds": {"from": 5, "count": 3}}
+    {"name": "seed", "seeds": {"from": 5, "count": 1}}
   ],
   "check": false,
   "write": [{"format": "boxes"}, {"format": "occ3d"}, {"format": "loom"}]
@@ -92,13 +92,13 @@ fn a_batch_that_is_killed_twice_gives_the_bytes_of_one_that_is_not() {
     let report = run(&plan, &whole, &[]);
     assert_eq!(
         (&report["variants"], &report["made"], &report["open"]),
-        (&24.into(), &24.into(), &0.into())
+        (&8.into(), &8.into(), &0.into())
     );
     let expected = hashes(&whole);
-    assert!(expected.contains_key("index.parquet") && expected.contains_key("000023/occ3d/labels.npz"));
+    assert!(expected.contains_key("index.parquet") && expected.contains_key("000007/occ3d/labels.npz"));
 
     let killed = folder.path().join("killed");
-    for variants in [3, 9] {
+    for variants in [1, 3] {
         killed_after(
             program(&plan, &killed, &[]).spawn().expect("started"),
             &killed,
@@ -106,10 +106,10 @@ fn a_batch_that_is_killed_twice_gives_the_bytes_of_one_that_is_not() {
         );
     }
     // What a killed run left half done, and what somebody else's would look like.
-    std::fs::create_dir_all(killed.join(".making-000020/occ3d")).expect("made");
+    std::fs::create_dir_all(killed.join(".making-000006/occ3d")).expect("made");
     let report = run(&plan, &killed, &[]);
     assert!(
-        report["kept"].as_u64() >= Some(9) && report["kept"].as_u64() < Some(24),
+        report["kept"].as_u64() >= Some(3) && report["kept"].as_u64() < Some(8),
         "{report}"
     );
     assert_eq!(hashes(&killed), expected);
@@ -145,11 +145,11 @@ fn frames_of_two_processes_are_all_there() {
         r#"{
           "format": "sceneloom_batch", "version": 1, "base": {"template": "straight"},
           "sweep": [
-            {"name": "drive", "values": [[{"edits": [{"set_length": {"length_s": 3.9, "rate_hz": 10.0}}, {"let_move": {"template": "follow", "mps": 8.0}}]}]]},
+            {"name": "drive", "values": [[{"edits": [{"set_length": {"length_s": 1.9, "rate_hz": 10.0}}, {"let_move": {"template": "follow", "mps": 8.0}}]}]]},
             {"name": "offset", "values": [[], {"offset": {"box": 999999, "by_m": [1.0, 0.0]}}]},
-            {"name": "seed", "seeds": {"from": 0, "count": 6}}
+            {"name": "seed", "seeds": {"from": 0, "count": 3}}
           ],
-          "write": [{"format": "boxes"}], "frames_hz": 10.0, "pack": 4
+          "write": [{"format": "boxes"}], "frames_hz": 10.0, "pack": 2
         }"#,
     );
     let output = folder.path().join("out");
@@ -160,7 +160,7 @@ fn frames_of_two_processes_are_all_there() {
     };
     let (a, b) = (shard("0/2"), shard("1/2"));
     for child in [a, b] {
-        // Six of twelve name a box that is not there.
+        // Three of six name a box that is not there.
         let done = child.wait_with_output().expect("ended");
         assert_eq!(
             done.status.code(),
@@ -187,7 +187,7 @@ fn frames_of_two_processes_are_all_there() {
             frames += usize::from(name.ends_with(".boxes.boxes.json"));
         }
     }
-    assert_eq!(frames, 6 * 40);
+    assert_eq!(frames, 3 * 20);
     let records = std::fs::read_to_string(output.join("shard-000002.json")).expect("records");
     assert!(records.contains("box 999999 does not exist"), "{records}");
 }

@@ -145,7 +145,7 @@ fn what_cannot_be_had_is_told_before_anything_is_written() {
 /// beyond that of one with small ones.
 #[test]
 fn a_run_takes_the_memory_that_its_source_states() {
-    const SIZE: [u32; 2] = [1280, 720];
+    const SIZE: [u32; 2] = [800, 450];
     let dir = Folder::new();
     let (scene, out) = (dir.scene(), dir.path("out"));
     let one = rig(&dir, "one.json", |r| r.cameras.truncate(1));

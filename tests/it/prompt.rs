@@ -206,13 +206,11 @@ fn odd_prompts_get_one_clear_answer() {
 /// worse, and little goes wrong without a word.
 #[test]
 fn sentences_are_read_no_worse() {
-    for (file, part, right, silent) in [
-        ("dev/exam_13", "edited", 0.8, 0.06),
-        ("dev/exam_9", "edited", 0.85, 0.05),
-        ("dev/everyday", "edited", 0.5, 0.2),
-        ("dev/everyday", "made", 0.6, 0.1),
-        ("heldout", "made", 0.74, 0.05),
-        ("heldout", "edited", 0.72, 0.1),
+    for (file, parts) in [
+        ("dev/exam_13", &[("edited", 0.8, 0.06)][..]),
+        ("dev/exam_9", &[("edited", 0.85, 0.05)]),
+        ("dev/everyday", &[("edited", 0.5, 0.2), ("made", 0.6, 0.1)]),
+        ("heldout", &[("made", 0.74, 0.05), ("edited", 0.72, 0.1)]),
     ] {
         let path = format!("tests/words/{file}.jsonl");
         let judged = sceneloom(&[
@@ -225,18 +223,21 @@ fn sentences_are_read_no_worse() {
             "--json",
         ]);
         assert_eq!(judged.status.code(), Some(0));
-        let found = &report(&judged)[part];
-        let share = |name: &str| found[name]["share"].as_f64().expect("a share");
-        assert!(
-            share("wholly_right") >= right,
-            "{file}, {part}: {}",
-            found["wholly_right"]
-        );
-        assert!(
-            share("silently_wrong") <= silent,
-            "{file}, {part}: {}",
-            found["silently_wrong"]
-        );
+        let judged = report(&judged);
+        for (part, right, silent) in parts {
+            let found = &judged[part];
+            let share = |name: &str| found[name]["share"].as_f64().expect("a share");
+            assert!(
+                share("wholly_right") >= *right,
+                "{file}, {part}: {}",
+                found["wholly_right"]
+            );
+            assert!(
+                share("silently_wrong") <= *silent,
+                "{file}, {part}: {}",
+                found["silently_wrong"]
+            );
+        }
     }
     let nowhere = sceneloom(&["eval", "layout", "--prompts", "nowhere.jsonl"]);
     let error = String::from_utf8_lossy(&nowhere.stderr);

@@ -5,7 +5,7 @@ use egui::Ui;
 use scene::Scene;
 
 use super::camera_header::light_menu;
-use super::camera_strip::CameraStrip;
+use super::camera_strip::{CameraStrip, is_large};
 use super::cameras::{Strips, compared};
 use super::conditions::conditions;
 use super::id::PaneId;
@@ -150,6 +150,8 @@ impl Pane for Camera {
         let (camera, view) = cx.state.cameras.of_pane(self.index, count);
         let own = cx.state.cameras.own.entry(self.index).or_default();
         own.drawn = FRAMES;
+        let room = ui.available_size();
+        own.large = is_large(ui, room.x.min(room.y * 16.0 / 9.0));
         self.strip.set_legend(own.legend.then_some(camera));
         // A camera that the vehicle has not is said to be missing.
         let camera = if usize::from(self.index) < count {

@@ -16,11 +16,11 @@ use super::camera_legend;
 use super::id::PaneId;
 use crate::camera_views::{CameraView, CamerasShown, camera_label, march};
 use crate::command::{Command, ViewCommand};
-use crate::fields::decimal;
 use crate::place_marks;
 use crate::sensing::{PaintStage, Sensing};
 use crate::state::UiState;
 use language::{t, tf};
+use numeric::decimal::decimal;
 use scene::{Camera, Class, Scene, SceneRev, SensorRig};
 use sensors::cameras::ViewId;
 use sensors::march::{MarchHit, MarchScene};
@@ -29,6 +29,11 @@ use widgets::theme;
 
 /// Share of the window's width from which a picture is large enough to choose boxes in it; smaller ones are enlarged by a click.
 const LARGE: f32 = 0.5;
+
+/// True if a picture so wide, points, is large enough to choose boxes in it.
+pub(crate) fn is_large(ui: &Ui, width: f32) -> bool {
+    width >= LARGE * ui.ctx().content_rect().width()
+}
 
 /// Textures of the pictures.
 #[derive(Default)]
@@ -371,7 +376,7 @@ impl CameraStrip {
             commands.push(Command::View(ViewCommand::Inspect(None)));
             commands.push(Command::View(ViewCommand::LookThrough(index)));
         } else if response.clicked() {
-            let is_large = rect.width() >= LARGE * ui.ctx().content_rect().width();
+            let is_large = is_large(ui, rect.width());
             commands.push(match part.filter(|_| is_large) {
                 Some(part) => Command::Select(self.hit(scene, camera, part).and_then(|hit| hit.box_id)),
                 None => Command::View(ViewCommand::Inspect((!chosen).then_some(index))),

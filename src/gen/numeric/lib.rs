@@ -3,6 +3,7 @@
 //! Which generator to use: [`philox`] computes a number from (seed, purpose, cell), in any order; the samplers take their
 //! noise from it. [`splitmix`] gives one number after another; worlds and tests use it.
 
+pub mod decimal;
 pub mod hash;
 pub mod linear;
 pub mod philox;

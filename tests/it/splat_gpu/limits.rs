@@ -120,7 +120,7 @@ fn row_63_device() {
     let cameras = [camera.clone(), camera.clone()];
     // More touches than there is room for at first: 25 x 15 tiles, 3,000 times.
     let layers: Vec<_> = (0..3000u16)
-        .map(|i| sheet(1.0 + f32::from(i) * 0.01, 0.004, (i / 300) as u8))
+        .map(|i| sheet(1.0 + f32::from(i) * 0.01, 0.05, (i / 300) as u8))
         .collect();
     let got = draw(&layers, &camera, &options);
     assert_same(

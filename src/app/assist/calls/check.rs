@@ -53,7 +53,7 @@ pub struct Checked {
 pub struct Found {
     /// Name of the check.
     check: String,
-    /// `error` or `warning`.
+    /// `error`, `warning` or `info`.
     severity: String,
     /// Where, world frame, m.
     where_m: [f64; 3],

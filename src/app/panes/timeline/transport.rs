@@ -2,10 +2,11 @@
 
 use egui::{RichText, Ui};
 
+use numeric::decimal::decimal;
 use scene::{Clip, Scene, Scope};
 
 use crate::command::{Command, FileCommand, TimeCommand};
-use crate::fields::{decimal, short, typed};
+use crate::fields::{short, typed};
 use crate::panes::motion_menu;
 use crate::playback::Playback;
 use crate::state::UiState;
