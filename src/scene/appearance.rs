@@ -111,11 +111,11 @@ impl FieldShape {
 pub enum Section {
     /// Softened occupancy `[x][y][z]`, four bytes a word.
     Weight,
-    /// Labels, the same.
+    /// Labels `[x][y][z]`, four bytes a word.
     Label,
     /// Cells that may hold a surface, bits along z, two words a column.
     Mask,
-    /// Their union by block, two words each.
+    /// Union of the masks of each block, two words each.
     Blocks,
     /// Structure of each column: 0 for none, else its number + 1.
     StructureOf,

@@ -108,7 +108,8 @@ impl Clip {
         self.ego.is_none() && self.tracks.is_empty()
     }
 
-    /// True if nothing is ever elsewhere: whatever is a track stands where it is, all the time.
+    /// True if nothing ever changes its place: the ego vehicle has no motion, and every track stands where it is all
+    /// the time.
     pub fn stands(&self) -> bool {
         self.ego.is_none() && self.tracks.values().all(Track::stands)
     }
