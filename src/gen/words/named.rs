@@ -13,7 +13,7 @@ macro_rules! named {
             pub fn name(self) -> &'static str {
                 match self { $(Self::$variant => $text),+ }
             }
-            /// The one of that name.
+            /// The value of that name.
             pub fn of(name: &str) -> Option<Self> {
                 match name { $($text => Some(Self::$variant),)+ _ => None }
             }
