@@ -1,12 +1,13 @@
-//! Edits that make a map larger, and what stands beside the roads on the new ground.
+//! Edits that make a map larger, and the scenery on the new ground.
 
 use super::scenery::SceneryWish;
 use editor::{Edit, apply_all};
 use job::inpaint::InpaintMask;
 use scene::Scene;
 
-/// Edits that may make a map larger, and what stands beside the new roads where something stands beside the old ones. Whoever
-/// applies edits of a user (window, command line, assistants, batches) takes them from here.
+/// Edits that may make a map larger, followed by edits that draw scenery beside the new roads if there is scenery
+/// beside the old ones. Every place that applies edits of a user (window, command line, assistants, batches) takes them
+/// from here.
 pub fn with_scenery(scene: &Scene, mut edits: Vec<Edit>) -> Vec<Edit> {
     let mut larger = scene.clone();
     if edits.iter().any(may_grow) && apply_all(&edits, &mut larger).is_ok() {
@@ -24,7 +25,7 @@ fn may_grow(edit: &Edit) -> bool {
     }
 }
 
-/// Edits that draw what stands beside the roads where a map has become larger; none where nothing stood beside the roads before.
+/// Edits that draw scenery where a map has become larger; none if there was no scenery before.
 pub fn beside_new_ground(before: &Scene, larger: &Scene) -> Vec<Edit> {
     let (old, new) = (before.canvas().extent(), larger.canvas().extent());
     if old == new || !before.background.describes_place() {

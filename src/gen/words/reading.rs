@@ -143,7 +143,7 @@ pub enum What {
         /// The other.
         other: Box<Thing>,
     },
-    /// Somebody or something moves in the course of time.
+    /// Things that move in the course of time.
     Go {
         /// The things that move; the ego vehicle if the list is empty.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -277,7 +277,7 @@ pub enum Quantity {
     The,
     /// So many certain ones: "the two cars".
     TheN(u32),
-    /// All that fit, without a number.
+    /// Every thing that fits, without a number.
     All,
     /// In an anchor: each of the things that fit has its own: "a worker behind each bus".
     Each,
