@@ -13,7 +13,7 @@ use super::{
     BevLayout, BoxId, Clip, Frame, Motion, Polyline, Scene, SceneBox, SensorRig, SourceFrame, Track,
 };
 
-/// Memory of a map of boxes beside the boxes themselves, bytes a box.
+/// Memory of a map of boxes beside the boxes themselves: about so many bytes a box.
 const NODE_BYTES: usize = 32;
 
 type OwnShapes = BTreeMap<BoxId, OwnShape>;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{BoxId, Extent, Recorded};
 
-/// Bit set beside the 16 bits per bin of a column: it is known which bins were observed. A column of 0 is unknown.
+/// Bit beside the 16 bits of a column's observed bins: set if these are known. A column of 0 is unknown.
 pub const KNOWN: u32 = 1 << Extent::NZ;
 
 /// Voxels that no sensor of a data set observed: free there means unknown. One word per column `[x][y]` of a map, one

@@ -236,7 +236,7 @@ fn on_the_map(map: Extent, window: Extent, flags: &[bool]) -> Vec<[usize; 2]> {
 struct Paved {
     /// Road, car park and boxes.
     driven: Vec<bool>,
-    /// The same columns and walkways.
+    /// These and walkways.
     all: Vec<bool>,
 }
 
