@@ -200,7 +200,7 @@ impl AppearanceData {
 mod tests {
     use super::*;
 
-    /// The numbers that were constants when every map was a window.
+    /// The shape of a window equals the constants from before maps had an extent.
     #[test]
     fn a_window_has_the_shape_it_always_had() {
         let shape = FieldShape::of(Extent::WINDOW);

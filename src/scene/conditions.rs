@@ -325,7 +325,7 @@ mod tests {
         let set = Conditions { sun, ..rain };
         assert_eq!(set.at(TimeOfDay::Day).sun, sun);
         assert_eq!(set.at(TimeOfDay::Dusk).sun, None);
-        // The way to metres and back gives the very numbers that the pictures were tuned with.
+        // Conversion to metres and back gives the exact numbers that the pictures were tuned with.
         let fog = Conditions::usual(TimeOfDay::Day, Weather::Fog, 0);
         assert_eq!(fog.lost_per_m() as f32, 0.042_f32);
         assert_eq!(Conditions::default().lost_per_m() as f32, 0.0011_f32);

@@ -188,7 +188,7 @@ mod tests {
     use crate::background::{Form, Tree, TreeKind};
     use crate::{BevLayer, Class, VoxelGrid};
 
-    /// What a history that counted less would keep for nothing: 4096 steps of a street of 1000 trees are 400 MB.
+    /// Memory that an incomplete count would miss in the history: 4096 steps of a street of 1000 trees are 400 MB.
     #[test]
     fn whatever_an_edit_copies_counts() {
         let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());

@@ -558,7 +558,7 @@ mod tests {
         }
     }
 
-    /// A barrel distortion turns back on itself: beyond that nothing is seen, and nothing is shown twice.
+    /// A barrel distortion folds back: beyond the fold nothing is seen, and nothing is shown twice.
     #[test]
     fn lenses_end_where_they_would_fold() {
         let lens = Lens::Distorted {
@@ -570,7 +570,7 @@ mod tests {
         assert!(optics.project(DVec3::new(0.9, 0.0, 1.0)).is_some());
         assert!(optics.project(DVec3::new(0.93, 0.0, 1.0)).is_none());
         assert_eq!(optics.direction(1599.5, 899.5), DVec3::ZERO);
-        // A fisheye sees what is beside and a little behind it.
+        // A fisheye sees points beside it and a little behind it.
         let optics = Optics::new(&camera(lenses()[3]));
         assert!(optics.project(DVec3::new(1.0, 0.0, -0.05)).is_some());
         assert!(optics.project(DVec3::new(0.1, 0.0, -1.0)).is_none());

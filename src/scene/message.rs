@@ -39,8 +39,8 @@ pub fn of_error(error: &(dyn Error + 'static)) -> String {
     shortened(&text, LONGEST)
 }
 
-/// A piece of a file, made safe to quote: control characters become spaces, and what is longer than `most` characters
-/// ends in `…`.
+/// A piece of a file, made safe to quote: control characters become spaces, and a text of more than `most` characters
+/// is cut and ends in `…`.
 pub fn quoted(text: &str, most: usize) -> String {
     let plain = |c: char| if is_hidden(c) { ' ' } else { c };
     let mut out: String = text.chars().take(most).map(plain).collect();

@@ -372,7 +372,8 @@ mod tests {
         }
     }
 
-    /// Before, every cell of the rectangle around a segment was looked at: 16 million for one line across a large map.
+    /// An earlier version visited every cell of the rectangle around a segment: 16 million for one line across a large
+    /// map.
     #[test]
     fn a_line_across_a_large_map_costs_its_own_cells() {
         let extent = Extent::new([-2048, -2048], [4096, 4096]).expect("sound");

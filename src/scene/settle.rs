@@ -89,7 +89,7 @@ mod tests {
         assert!(heights(&frame)[1] != 0.0);
         assert_eq!(held(&frame), [1, 2, 3]);
         assert_eq!(frame.source.layout, frame.layout);
-        // One that was taken away from beyond the map is gone everywhere.
+        // A box that was removed beyond the map is settled everywhere.
         frame.boxes.remove(&BoxId(1));
         frame.settle_within(Extent::new([300, -20], [40, 40]).expect("sound"));
         assert_eq!(held(&frame), [1, 2, 3]);

@@ -459,13 +459,13 @@ mod tests {
             sight(document.scene(), id, Sensor::Cameras).expect("a sight"),
             last.sight
         );
-        // It can be ended, and a box that is not there is named.
+        // The search can be ended, and an unknown box is named in the error.
         let ended = search(&scene, id, Vary::Offset, Sensor::Cameras, |_, _| {
             ControlFlow::Break(())
         });
         let ended = ended.expect("the shipped network");
         assert!(ended.tried.len() == 1 && ended.found.is_none() && ended.stopped);
-        // Nothing moves a locked box: that is said, not that it is always seen.
+        // A locked box cannot be moved: the search reports that, and not that the box is always seen.
         let mut document = Document::new(scene.clone());
         let lock = Edit::Arrange {
             boxes: vec![id],
@@ -504,7 +504,7 @@ mod tests {
         });
         let found = found.expect("the shipped network");
         let last = found.tried.last().expect("tries").sight;
-        // In the end it is missed, or has too few returns to be judged, or it was moved as far as the search goes.
+        // In the end it is missed, has too few returns to be judged, or was moved as far as the search goes.
         assert!(last.is_missed() || !last.is_judged() || found.tried.len() > 30);
         assert!(found.tried[0].sight.visible > last.visible && last.by == Sensor::Lidar);
         assert!(!Sensor::Lidar.varies().contains(&Vary::Fog));
@@ -556,7 +556,7 @@ mod tests {
         let then = document.scene().at(after_a_sweep(&scene));
         let after = then.frame().boxes[&b.id];
         assert!(after.center_m.distance(b.center_m) < 0.05, "{}", after.center_m);
-        // Now that it moves while the LiDAR turns the sweep differs.
+        // The box moves while the LiDAR turns, so the sweep differs.
         let sweep = |scene: &Scene| {
             sensors::rolling::of_voxels(&scene.with_rig_in_world())
                 .points

@@ -240,7 +240,7 @@ impl Shard for Drive {
 mod tests {
     use super::*;
 
-    /// What stands still is the same voxels in every frame, seen from elsewhere; what moves, moves.
+    /// Standing objects have the same voxels in every frame, seen from elsewhere; moving objects move.
     #[test]
     fn a_drive_shows_one_world() {
         let scene = drive_scene(9, 1, |_| None);

@@ -172,7 +172,7 @@ mod tests {
     use scene::{BevLayer, Class};
     use world::template;
 
-    /// On a map that is the window, it is the world that it always was.
+    /// On a map of one window, the world is that of the window.
     #[test]
     fn a_map_of_one_window_is_that_window() {
         let layout = template::layout("straight", 5).expect("a template");
@@ -216,7 +216,7 @@ mod tests {
         assert_eq!(again, grid);
     }
 
-    /// A map with 30,075 things was made for 104 s and then refused.
+    /// An earlier version worked for 104 s on a map with 30,075 things and then refused it.
     #[test]
     fn more_than_a_scene_holds_is_thinned_evenly() {
         let tree = |x: usize| {

@@ -52,7 +52,7 @@ mod tests {
     use crate::open;
     use scene::Class;
 
-    /// A larger map has scenery on its new ground whoever asked for it, and none where none stood before.
+    /// A larger map has scenery on its new ground, whatever enlarged it, but none if the old ground had none.
     #[test]
     fn new_ground_has_scenery_where_the_old_one_has() {
         let scene = open::from_template("straight", 7).expect("a template");
@@ -79,7 +79,7 @@ mod tests {
             stands && frame.extent().center(*x, *y, 0).x > 42.0
         });
         assert!(standing.count() > 500);
-        // The new things are drawn ones, and what was there is as it was.
+        // The new things are drawn ones, and the old things are unchanged.
         let new = larger.background.iter().filter(|t| t.form.middle_m().x > 40.0);
         assert!(new.into_iter().all(|t| !t.placed));
         assert!(

@@ -333,7 +333,7 @@ mod tests {
         assert!(after.len() > 1);
     }
 
-    /// What a hand, words or a file placed or moved stands as it was; what comes keeps clear of it.
+    /// Things that were placed or moved by hand, words or a file stay unchanged; new things keep clear of them.
     #[test]
     fn what_was_placed_stands_when_scenery_is_drawn_anew() {
         let mut document = Document::new(open::from_template("straight", 7).expect("a template"));
@@ -398,7 +398,7 @@ mod tests {
             changed += usize::from(differs);
         }
         assert!(changed > 500, "{changed}");
-        // Nothing waits for the networks.
+        // The networks have nothing left to generate.
         let region = job::region::Region::of_edit(after.frame(), 2);
         assert!(region.is_empty());
         document.undo();
@@ -407,7 +407,7 @@ mod tests {
 
     #[test]
     fn scenery_without_things_goes_and_none_can_be_asked_for() {
-        // Buildings that no thing accounts for, as in a scene of generated voxels.
+        // Buildings that belong to no thing, as in a scene of generated voxels.
         let mut scene = open::from_template("straight", 7).expect("a template");
         scene.background = Default::default();
         assert!(scenery_voxels(&scene.frame().occupancy) > 1000);
@@ -514,7 +514,7 @@ mod tests {
         let forms = |s: &Scene| s.background.iter().map(|t| t.form.clone()).collect::<Vec<_>>();
         assert_eq!(forms(&drawn(by_network(5, 1.0))), forms(&first));
         assert_ne!(forms(&drawn(by_network(6, 1.0))), forms(&first));
-        // Much or nothing of what grows, as it is asked for; what reaches out of the region stays.
+        // Many plants or none, as asked for; plants that reach out of the region stay.
         let plants = |s: &Scene| {
             let forms = s.background.iter().map(|t| t.form.clone());
             forms

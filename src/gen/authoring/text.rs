@@ -418,7 +418,7 @@ mod tests {
         assert!(scene.frame().boxes.is_empty());
     }
 
-    /// What words add or move on a grade stands on its ground.
+    /// Boxes that words add or move on a grade stand on its ground.
     #[test]
     fn words_know_the_ground() {
         let prompted = read("a parked car 12 m ahead, a bus 25 m ahead").expect("a scene");

@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(SplitMix64::new(3).below(0), 0);
     }
 
-    /// The draws of a concern are what they were when worlds were made for the trained networks.
+    /// The draws of a concern are those with which worlds were made for the trained networks.
     #[test]
     fn draws_stay_what_they_were() {
         for (seed, concern) in [(0, ""), (7, "cars"), (u64::MAX, "bushes")] {
@@ -187,7 +187,7 @@ mod tests {
         assert_eq!([0; 3].map(|_| draw.bits()), DRAWN);
     }
 
-    /// Of the commit before the generators became one.
+    /// Numbers from the commit before the generators were merged.
     const DRAWN: [u64; 3] = [
         15_942_172_136_308_383_990,
         11_755_036_119_052_946_428,

@@ -357,7 +357,8 @@ mod tests {
     use super::*;
     use crate::to_graph::to_graph;
 
-    /// Three lanes each way of a motorway are there, or it is said that they are not; so many as nobody could tell are not denied.
+    /// A motorway has three lanes each way, or a missing one is reported. Numbers of lanes that nobody can see are not
+    /// reported as missing.
     #[test]
     fn lanes_that_a_road_lacks_are_said() {
         let of = |kind, lanes, seed| {

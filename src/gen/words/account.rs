@@ -137,7 +137,7 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
             let tells = is_english(&t.text) && !is_other_thing(&t.text);
             (word && !known && !tells).then_some(Why::Unknown)
         };
-        // (what was said before a correction is not meant)
+        // (words before a correction are not meant)
         let taken_back = i < corrected && why == Some(Why::NotCarriedOut);
         if let Some(why) = why.filter(|_| !taken_back) {
             let span = t.span.to(tokens[end - 1].span);

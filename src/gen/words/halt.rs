@@ -94,7 +94,7 @@ fn noun_at(tokens: &[Token], i: usize) -> Option<(Noun, usize)> {
 pub(super) fn set_right(reading: &mut Reading, text: &str, tokens: &[Token], mode: Mode) -> Option<Missing> {
     let halt = find(tokens)?;
     let span = tokens[halt.at.0].span.to(tokens[halt.at.1 - 1].span);
-    // (nobody may be read as no person, no vehicle and nothing)
+    // (the reader may take "nobody" for no person, no vehicle or nothing)
     let is_anybody = |n: Noun| {
         let general = matches!(
             n,
@@ -174,7 +174,7 @@ mod tests {
                 "remove the bus ; no person",
                 "remove the bus ; set all thing waiting",
             ),
-            // Nobody is there, which is another thing.
+            // This says that nobody is there, which is a different request.
             (
                 "nobody on the crossing",
                 "no person ( on crossing )",

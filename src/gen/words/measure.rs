@@ -320,7 +320,7 @@ mod tests {
     use super::super::tokens::tokens;
     use super::*;
 
-    /// Every unit that people write, each with what it is.
+    /// Every unit that people write, with its quantity.
     #[test]
     fn every_unit_has_its_kind() {
         for (text, kind, value) in [

@@ -294,7 +294,7 @@ mod tests {
         write(&reading)
     }
 
-    /// Every kind of number in every slot: it stays where it is of that kind, and goes where it is not.
+    /// Every kind of number in every slot: it stays where the kinds match, and is removed where they do not.
     #[test]
     fn a_number_stays_only_where_it_is_of_its_kind() {
         // The number is 7 throughout; the slot, the line with it and the line without it.

@@ -162,7 +162,7 @@ mod tests {
     use super::*;
     use scene::Extent;
 
-    /// On a slope the ray must end on the ground, and where a fine march says.
+    /// On a slope the ray must end on the ground, at the distance that a fine march finds.
     #[test]
     fn rays_meet_uneven_ground_where_it_is() {
         let mut layout = BevLayout::default();

@@ -287,7 +287,7 @@ impl Placer<'_> {
         if cells.is_empty() {
             return;
         }
-        // The same number per 80 m of a long road.
+        // Equal numbers per 80 m of a long road.
         let windows = (self.layout.extent().columns() as f64 / Window::COLUMNS as f64).max(1.0);
         let busy = (self.draw.unit().powi(2) * 40.0 * amount * windows) as usize + 1;
         // Sometimes a crowd: an event, a stop, a school.

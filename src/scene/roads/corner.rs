@@ -142,7 +142,7 @@ fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners
             set_back(out, seen, left, end);
         }
     }
-    // Where corners of sharp angles lie wide apart, the middle between them belongs to none of them.
+    // The middle between corners of sharp angles that lie wide apart belongs to none of them.
     let middle: Vec<DVec2> = arms
         .iter()
         .flat_map(|a| [true, false].map(|left| a.kerb(left).first().copied()))

@@ -109,7 +109,7 @@ mod tests {
 
     use super::*;
 
-    /// Columns are sampled once and levels once; here every sample of every voxel is asked.
+    /// Tests every sample of every voxel; the code itself samples columns and levels once each.
     #[test]
     fn a_prism_fills_what_each_of_its_samples_says() {
         let corners = |turn: f64, n: usize, far: f64, near: f64| -> Vec<DVec2> {

@@ -1,5 +1,5 @@
-//! Analytic solids that a world is made of: tapered boxes, upright frustums, ellipsoids, prisms.
-//! Each answers two questions: is this point inside, and where does a ray enter.
+//! Analytic solids that a world is made of: tapered boxes, upright frustums, ellipsoids, prisms. Each can test whether
+//! a point is inside, and find where a ray enters.
 
 pub mod fill;
 mod prism;

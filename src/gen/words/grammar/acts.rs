@@ -77,7 +77,7 @@ impl Grammar<'_> {
                     "road" if prompt => What::Road {
                         what: Road::ALL.iter().copied().find(|x| named(x.name()))?,
                     },
-                    // (a car park that is more than the place of something)
+                    // (a car park as the kind of road, not as the place of something)
                     "place" if prompt && s.symbol == "carpark" => What::Road { what: Road::Parking },
                     "env" if prompt => What::Env {
                         what: Environment::ALL.iter().copied().find(|x| named(x.name()))?,

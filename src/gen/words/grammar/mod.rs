@@ -89,7 +89,7 @@ impl Grammar<'_> {
                     });
                     i = self.separators(end);
                 }
-                // (a sentence that is not read to its end is dropped)
+                // (a sentence that is not read to its end is left to the learned reader)
                 None => {
                     out.left_over.push(self.tokens[i].span);
                     return;

@@ -123,7 +123,7 @@ fn lots(setting: Setting) -> Option<Lots> {
 /// Puts buildings along every road.
 pub(super) fn buildings(site: &mut Site<'_>) {
     let mut draw = Draw::new(site.seed, "buildings");
-    // Both sides have the same setback where their settings are alike, so that one line serves both.
+    // The setback is the same on both sides where their settings are alike, so that one line serves both.
     let setback = draw.unit();
     for row in 0..2 {
         for setting in Setting::ALL {

@@ -219,7 +219,7 @@ mod tests {
         assert!((0.1..0.8).contains(&share(&found.by_camera, false)));
         assert!((0.02..0.5).contains(&share(&found.by_lidar, true)));
         assert!(found.by_camera.iter().zip(&found.by_lidar).all(|(c, l)| !c || *l));
-        // Without cameras nothing is seen, and what the LiDAR observed is the same.
+        // Without cameras nothing is seen by them, and the LiDAR's observations are unchanged.
         let blind = SensorRig {
             cameras: Vec::new(),
             ..rig
