@@ -1,5 +1,5 @@
-//! A frame made ready for camera pictures, as plain numbers: what the renderers on processor and graphics card share.
-//! `sensors::appearance` fills it, `viewport::appearance` draws from it.
+//! A frame prepared for camera pictures, as plain numbers: the data that the renderers on the processor and on the
+//! graphics card share. `sensors::appearance` fills it, `viewport::appearance` draws from it.
 
 use glam::{Vec2, Vec3};
 
@@ -21,37 +21,40 @@ pub const LEAVES: f32 = 0.85;
 pub const TRUNK: u8 = 100;
 /// Height of a sidewalk, m.
 pub const KERB_M: f32 = 0.13;
-/// Nothing of the ground is higher, m.
+/// Height that no ground exceeds, m.
 pub const HIGHEST_M: f32 = 0.2;
-/// Width of kerbstones, m, for when they are seen.
+/// Width of kerbstones where they are drawn, m.
 pub const KERB_SEEN_M: f32 = 0.2;
-/// A kerb's edge is at least this soft, m.
+/// Least softness of a kerb's edge, m.
 pub const KERB_EDGE_M: f32 = 0.008;
 /// Farthest shadow caster, m.
 pub const SHADOW_M: f32 = 45.0;
-/// Light of a head lamp falls off with 1 / (distance^2 + this), m^2: its reflector is wide and aims ahead, so that it
-/// does not burn out what is near.
+/// Added to the squared distance to a head lamp, m^2: its light falls off with 1 / (distance^2 + this). The reflector
+/// is wide and aims ahead, so that near surfaces are not overexposed.
 pub const HEAD_NEAR_M2: f32 = 60.0;
-/// Light of a lamp on a surface, times exposure, from which on its shadow is looked for.
+/// Least light of a lamp on a surface, times exposure, at which its shadows are traced.
 pub const LAMP_SHADOW_LIGHT: f32 = 0.02;
-/// Nothing this near to a lamp keeps its light back, m: it sits in a vehicle.
+/// Distance from a lamp within which nothing casts a shadow in its light, m: a head lamp sits in a vehicle, a street
+/// lamp hangs beside its post.
 pub const LAMP_CLEAR_M: f32 = 0.6;
-/// What keeps a lamp's light back is looked for this often along the way, m: posts near a lamp throw long shadows.
+/// Step between the places along a ray to a lamp that are tested for shadow casters, m: posts near a lamp throw long
+/// shadows.
 pub const LAMP_STEP_M: f32 = 0.05;
 /// Farthest mirrored thing, m.
 pub const MIRROR_M: f32 = 60.0;
-/// Nothing of the map is seen from farther away, m.
+/// Farthest distance from which the map is seen, m.
 pub const FAR_M: f32 = 400.0;
 /// A pixel gets more samples if its tone differs from a neighbour's by more than this.
 pub const CONTRAST: f32 = 0.10;
-/// Words of a thing and of a part in [`AppearanceData::words`].
+/// Number of words of a thing in [`AppearanceData::words`].
 pub const THING_WORDS: usize = 20;
-/// See [`THING_WORDS`].
+/// Number of words of a part; see [`THING_WORDS`].
 pub const PART_WORDS: usize = 12;
 
-/// What stands on the horizon stands in circles of these radii around a map, m; wider ones around a wider map.
+/// Radii of the circles around a map on which the skyline stands, m; larger for a larger map, see
+/// [`FieldShape::skyline`].
 pub const SKYLINE_M: [f32; 3] = [72.0, 150.0, 320.0];
-/// From the middle to a corner of the map that [`SKYLINE_M`] is made for, m.
+/// Distance from the middle to a corner of the map that [`SKYLINE_M`] is made for, m.
 const SKYLINE_AROUND_M: f64 = 40.0 * std::f64::consts::SQRT_2;
 
 /// How the field and the lists of an appearance cover a map.
@@ -59,7 +62,7 @@ const SKYLINE_AROUND_M: f64 = 40.0 * std::f64::consts::SQRT_2;
 pub struct FieldShape {
     /// The map.
     pub extent: Extent,
-    /// Voxels of the field along x, with a free ring around.
+    /// Voxels of the field along x, with a ring of free voxels around.
     pub nx: usize,
     /// Along y.
     pub ny: usize,
@@ -78,7 +81,7 @@ pub struct FieldShape {
 }
 
 impl FieldShape {
-    /// For a map.
+    /// The shape for a map.
     pub fn of(extent: Extent) -> Self {
         let [nx, ny] = [extent.nx() + 2, extent.ny() + 2];
         let (low, high) = (extent.min_m(), extent.max_m());
@@ -96,7 +99,7 @@ impl FieldShape {
         }
     }
 
-    /// Place of a voxel in arrays `[x][y][z]` of the field.
+    /// Index of a voxel in arrays `[x][y][z]` of the field.
     #[inline(always)]
     pub fn at(&self, x: usize, y: usize, z: usize) -> usize {
         (x * self.ny + y) * NZ + z
@@ -108,13 +111,13 @@ impl FieldShape {
 pub enum Section {
     /// Softened occupancy `[x][y][z]`, four bytes a word.
     Weight,
-    /// Labels, the same.
+    /// Labels `[x][y][z]`, four bytes a word.
     Label,
     /// Cells that may hold a surface, bits along z, two words a column.
     Mask,
-    /// Their union by block, two words each.
+    /// Union of the masks of each block, two words each.
     Blocks,
-    /// Structure of each column, 0 for none, else its number + 1.
+    /// Structure of each column: 0 for none, else its number + 1.
     StructureOf,
     /// Axis (2), columns, height, id, thin, 2 unused.
     Structures,
@@ -157,25 +160,25 @@ pub enum Section {
 /// How many entries [`AppearanceData::at`] has.
 pub const SECTIONS: usize = 24;
 
-/// A frame under certain conditions.
+/// A frame under given conditions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AppearanceData {
     /// The map that it covers.
     pub extent: Extent,
-    /// Everything that is looked up by place.
+    /// Arrays that are looked up by place, section by section.
     pub words: Vec<u32>,
-    /// Where each [`Section`] begins in `words`; the two counts.
+    /// Start of each [`Section`] in `words`; the last two entries are the counts.
     pub at: [u32; SECTIONS],
     /// to_sun, clouds | sun, haze per m | zenith, wet | horizon, snow | ambient, dust | bounce, lamps | haze, exposure
     /// | to_sun in the ego frame, greatest height in m.
     pub air: [[f32; 4]; 8],
-    /// Rotation from the ego frame to where textures stay (x, y, z, w).
+    /// Rotation from the ego frame to the frame in which textures are fixed (x, y, z, w).
     pub turn: [f32; 4],
-    /// And the way, m.
+    /// Translation from the ego frame to the frame in which textures are fixed, m.
     pub shift_m: [f32; 3],
-    /// Where the vehicle stands: rain and snow fall around it, m.
+    /// Place of the vehicle, m: rain and snow fall around it.
     pub vehicle_m: [f32; 2],
-    /// Varies textures.
+    /// Seed that varies textures.
     pub seed: u32,
 }
 
@@ -197,7 +200,7 @@ impl AppearanceData {
 mod tests {
     use super::*;
 
-    /// The numbers that were constants when every map was a window.
+    /// The shape of a window equals the constants from before maps had an extent.
     #[test]
     fn a_window_has_the_shape_it_always_had() {
         let shape = FieldShape::of(Extent::WINDOW);

@@ -1,5 +1,4 @@
-//! How a user keeps objects together and out of the way: groups, what is hidden, what is locked. No sensor and no network
-//! knows of it.
+//! Arrangement of objects by the user: groups, hidden objects, locked objects. Sensors and networks do not see it.
 
 use std::collections::BTreeSet;
 
@@ -21,7 +20,7 @@ pub struct Members {
 }
 
 impl Members {
-    /// Of lists.
+    /// The members of two lists.
     pub fn of(boxes: impl IntoIterator<Item = BoxId>, things: impl IntoIterator<Item = ThingId>) -> Self {
         Self {
             boxes: boxes.into_iter().collect(),
@@ -29,23 +28,23 @@ impl Members {
         }
     }
 
-    /// How many there are.
+    /// Number of members.
     pub fn len(&self) -> usize {
         self.boxes.len() + self.things.len()
     }
 
-    /// True if there is none.
+    /// True if there are no members.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Takes others in.
+    /// Adds the members of others.
     pub fn add(&mut self, others: &Self) {
         self.boxes.extend(&others.boxes);
         self.things.extend(&others.things);
     }
 
-    /// Leaves others out.
+    /// Removes the members of others.
     pub fn remove(&mut self, others: &Self) {
         self.boxes.retain(|id| !others.boxes.contains(id));
         self.things.retain(|id| !others.things.contains(id));
@@ -56,7 +55,7 @@ impl Members {
         !self.boxes.is_disjoint(&others.boxes) || !self.things.is_disjoint(&others.things)
     }
 
-    /// True if others have all of it.
+    /// True if others have all of its members.
     pub fn is_within(&self, others: &Self) -> bool {
         self.boxes.is_subset(&others.boxes) && self.things.is_subset(&others.things)
     }
@@ -68,33 +67,33 @@ impl Members {
     }
 }
 
-/// Objects that are chosen and moved together.
+/// Objects that are selected and moved together.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Group {
     /// Its name; empty means none.
     #[serde(default, skip_serializing_if = "BoxName::is_empty")]
     pub name: BoxName,
-    /// What is in it: at least two.
+    /// Its members; at least two.
     pub members: Members,
 }
 
-/// Groups, what is hidden, what is locked.
+/// Groups, hidden objects, locked objects.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Arranged {
-    /// No object is in two of them.
+    /// The groups; no object is in two of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub groups: Vec<Group>,
-    /// Not drawn in the large views, nor chosen there. Sensors see it.
+    /// Objects that are neither drawn nor selectable in the large views. Sensors see them.
     #[serde(skip_serializing_if = "Members::is_empty")]
     pub hidden: Members,
-    /// Edits leave it as it is.
+    /// Objects that edits do not change.
     #[serde(skip_serializing_if = "Members::is_empty")]
     pub locked: Members,
 }
 
-/// What is done to the arrangement of objects.
+/// A change of the arrangement of objects.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Arrangement {
@@ -123,7 +122,7 @@ impl Arranged {
         *self == Self::default()
     }
 
-    /// Arranges objects.
+    /// Applies a change to objects.
     pub fn arrange(&mut self, members: &Members, how: &Arrangement) {
         match how {
             Arrangement::Hide => self.hidden.add(members),
@@ -153,7 +152,7 @@ impl Arranged {
         self.groups.iter().find(|g| g.members.things.contains(&id))
     }
 
-    /// With all that is in a group with one of them.
+    /// The members, with all members of every group that one of them is in.
     pub fn with_groups(&self, members: &Members) -> Members {
         let mut out = members.clone();
         let theirs = self.groups.iter().filter(|g| g.members.meets(members));
@@ -161,7 +160,7 @@ impl Arranged {
         out
     }
 
-    /// Without what a scene does not have any more.
+    /// Drops the members that a scene no longer has.
     pub fn keep(&mut self, scene: &Scene) {
         for members in [&mut self.hidden, &mut self.locked] {
             members.keep(scene);
@@ -170,7 +169,7 @@ impl Arranged {
         self.groups.retain(|g| g.members.len() > 1);
     }
 
-    /// What is wrong with it, in one line.
+    /// The first problem with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         let mut seen = Members::default();
         for (i, group) in self.groups.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What a box is called beyond its class: a name ("taxi", "school bus") and the colour of its paint.
+//! Label of a box beyond its class: a name ("taxi", "school bus") and the colour of its paint.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ impl BoxName {
     /// Longest name, bytes of UTF-8.
     pub const MOST_BYTES: usize = 31;
 
-    /// The name, without blanks around it, blanks for control characters; what is too long is cut at a character.
+    /// The name, trimmed, with control characters replaced by blanks; a longer text is cut at a character.
     pub fn new(text: &str) -> Self {
         let mut out = Self::default();
         for c in text.trim().chars().map(|c| if c.is_control() { ' ' } else { c }) {
@@ -28,13 +28,13 @@ impl BoxName {
         out
     }
 
-    /// As text.
+    /// The name as text.
     pub fn as_str(&self) -> &str {
-        // (whole characters only were put in)
+        // (`new` stores whole characters only)
         std::str::from_utf8(&self.bytes[..usize::from(self.len)]).unwrap_or_default()
     }
 
-    /// True if there is none.
+    /// True if it is empty.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -162,7 +162,7 @@ impl Paint {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct BoxLabel {
-    /// What it is called; empty means by its class.
+    /// Name of the box; empty means that its class names it.
     #[serde(skip_serializing_if = "BoxName::is_empty")]
     #[schemars(with = "String")]
     pub name: BoxName,
@@ -177,7 +177,7 @@ impl BoxLabel {
         *self == Self::default()
     }
 
-    /// In words, `class` where there is no name: `red taxi`.
+    /// The label in words, with `class` where there is no name: `red taxi`.
     pub fn called(&self, class: &str) -> String {
         let name = if self.name.is_empty() {
             class

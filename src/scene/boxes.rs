@@ -15,7 +15,7 @@ pub struct BoxId(pub u32);
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneBox {
-    /// Its name within the scene.
+    /// Its id within the scene.
     pub id: BoxId,
     /// One of [`Class::OBJECTS`].
     pub class: Class,
@@ -28,7 +28,7 @@ pub struct SceneBox {
     /// Velocity over ground in the ego frame's axes, m/s.
     #[serde(default)]
     pub velocity_mps: DVec2,
-    /// What it is called and how it is painted. No voxel follows from it.
+    /// Name and paint. They change no voxel.
     #[serde(default, skip_serializing_if = "BoxLabel::is_empty")]
     pub label: BoxLabel,
 }
@@ -39,12 +39,12 @@ impl SceneBox {
     /// Largest edge that a box may have, m.
     pub const MAX_SIZE_M: f64 = 1000.0;
 
-    /// What it is called: its name and paint, or its class.
+    /// Its name and paint in words; the class where it has no name.
     pub fn called(&self) -> String {
         self.label.called(&self.class.label())
     }
 
-    /// What is wrong with this box, if anything: class, finite numbers, positive size.
+    /// The first problem with this box (class, finite numbers, positive size); `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         let id = self.id.0;
         if !self.class.is_object() {

@@ -21,7 +21,7 @@ pub enum TimeOfDay {
     Night,
 }
 
-/// What is in the air and on the ground.
+/// Weather: state of the air and of the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Weather {
@@ -102,10 +102,10 @@ impl Weather {
     }
 }
 
-/// At the distance of visibility a contrast of 2 % is left (Koschmieder 1924): -ln 0.02.
+/// Extinction times visibility: at the distance of visibility a contrast of 2 % is left (Koschmieder 1924), -ln 0.02.
 const LOSS_AT_VISIBILITY: f64 = 3.912;
 
-/// A choice by name: the value, or in one line which names there are.
+/// The value of a name; else an error in one line that lists the names.
 fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, name: &str) -> Result<T, String> {
     let found = all.iter().copied().find(|v| name_of(*v) == name);
     let names: Vec<&str> = all.iter().map(|v| name_of(*v)).collect();
@@ -126,7 +126,8 @@ impl FromStr for Weather {
     }
 }
 
-// By hand: derived, each documented name would become a schema of its own, which endpoints understand less well.
+// Written by hand: with a derive, each documented name would become a schema of its own, which endpoints understand
+// less well.
 impl JsonSchema for TimeOfDay {
     fn schema_name() -> Cow<'static, str> {
         "TimeOfDay".into()
@@ -155,7 +156,7 @@ pub struct Sun {
     pub elevation_deg: f64,
 }
 
-/// All that decides how a scene looks besides what is in it.
+/// Light and air of a scene: its look, apart from the objects in it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Conditions {
@@ -196,14 +197,14 @@ impl Conditions {
         }
     }
 
-    /// The same at another time; the sun goes where it usually stands then.
+    /// These conditions at another time; the sun moves to its usual place then.
     #[must_use]
     pub fn at(self, time: TimeOfDay) -> Self {
         let sun = self.sun.filter(|_| time == self.time);
         Self { time, sun, ..self }
     }
 
-    /// The same in another weather; ground and air become as usual in it.
+    /// These conditions in another weather; ground and air become as usual in it.
     #[must_use]
     pub fn under(self, weather: Weather) -> Self {
         if weather == self.weather {
@@ -217,12 +218,12 @@ impl Conditions {
         }
     }
 
-    /// Share of light that the air takes, per m.
+    /// Share of light that the air absorbs, per m.
     pub fn lost_per_m(&self) -> f64 {
         LOSS_AT_VISIBILITY / self.visibility_m
     }
 
-    /// What is not sound, in one line; `None` if all is well.
+    /// The first problem with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         // Written so that NaN fails too.
         if !(0.0..=1.0).contains(&self.wetness) {
@@ -324,7 +325,7 @@ mod tests {
         let set = Conditions { sun, ..rain };
         assert_eq!(set.at(TimeOfDay::Day).sun, sun);
         assert_eq!(set.at(TimeOfDay::Dusk).sun, None);
-        // The way to metres and back gives the very numbers that the pictures were tuned with.
+        // Conversion to metres and back gives the exact numbers that the pictures were tuned with.
         let fog = Conditions::usual(TimeOfDay::Day, Weather::Fog, 0);
         assert_eq!(fog.lost_per_m() as f32, 0.042_f32);
         assert_eq!(Conditions::default().lost_per_m() as f32, 0.0011_f32);

@@ -1,31 +1,31 @@
-//! What a frame is made of, in four numbers: a condition of the generation, and what its sliders mean.
-//! Twin of `named` in `training/data.py`.
+//! Contents of a frame in four numbers: a condition of the generation, and the meaning of its sliders. Twin of `named`
+//! in `training/data.py`.
 
 use super::{BevLayer, Class, VoxelGrid};
 
 /// Man-made things that stay below this bin, 2.2 m above the ground, are clutter; others are buildings.
 const LOW: usize = 8;
 
-/// How much stands beside the road, and how completely it is known; each 0 to 1.
+/// Amount of scenery, and share of the frame that is known; each 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Density {
     /// Trees and bushes: twice the root of the share of columns off the road that hold any.
     pub vegetation: f32,
-    /// Man-made things above 2.2 m: 1.6 times that root.
+    /// Man-made things above 2.2 m: 1.6 times the root of their share of those columns.
     pub building: f32,
-    /// Lower man-made things and `others`: 6 times that root.
+    /// Lower man-made things and `others`: 6 times the root of their share.
     pub clutter: f32,
     /// Share of all columns that hold anything: 1 for complete worlds, about 0.4 for labels made from LiDAR.
     pub completeness: f32,
 }
 
 impl Density {
-    /// Of a frame's labels; `bev` are its layout's bits per column, `[x][y]`.
+    /// The density of a frame's labels; `bev` are its layout's bits per column, `[x][y]`.
     pub fn of(grid: &VoxelGrid, bev: &[u32]) -> Self {
         Self::of_columns(grid, bev, |_, _| true)
     }
 
-    /// The same of some columns alone; all 0 if there are none.
+    /// The density of some columns alone; all 0 if there are none.
     pub fn of_columns(grid: &VoxelGrid, bev: &[u32], counts: impl Fn(usize, usize) -> bool) -> Self {
         let (extent, mut columns) = (grid.extent(), 0u32);
         let [mut off_road, mut vegetation, mut building, mut clutter, mut any] = [0u32; 5];

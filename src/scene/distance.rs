@@ -66,8 +66,8 @@ pub fn nearest_source(extent: Extent, source: impl Fn(usize) -> bool) -> Option<
     any.then_some(out)
 }
 
-/// Distance from every column's centre to the border of the set, m: negative inside, positive outside; beyond the
-/// grid belongs to neither. 1000 m and more where there is no border.
+/// Distance from every column's centre to the border of the set, m: negative inside, positive outside. Space beyond the
+/// grid counts as neither. 1000 m and more where there is no border.
 pub fn signed_distance_m(extent: Extent, inside: impl Fn(usize) -> bool) -> Vec<f32> {
     const NO_BORDER_M: f32 = 1000.0;
     let ny = extent.ny();
@@ -77,7 +77,7 @@ pub fn signed_distance_m(extent: Extent, inside: impl Fn(usize) -> bool) -> Vec<
             dx as f32 - (to as usize / ny) as f32,
             dy as f32 - (to as usize % ny) as f32,
         );
-        // Between a cell of the set and one beside it runs the border, half a cell from both centres.
+        // The border runs between a cell of the set and one beside it, half a cell from both centres.
         ((dx * dx + dy * dy).sqrt() - 0.5) * Extent::VOXEL_M as f32
     };
     let (set, rest) = (

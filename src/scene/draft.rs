@@ -1,6 +1,6 @@
-//! A layout extruded naively to voxels: ground by class, boxes by a rough profile of their class.
-//! What an edit shows at once, and a condition of the diffusion transformer. Weights were trained
-//! with this very rule: changing it means training again.
+//! A layout extruded simply to voxels: ground by class, boxes by a rough profile of their class. It is what an edit
+//! shows at once, and a condition of the diffusion transformer. Weights were trained with exactly this rule: changing
+//! it requires new training.
 
 use glam::DVec3;
 

@@ -1,5 +1,5 @@
-//! Every change of a scene as a value, with its errors and its JSON: what tools, words, command line and files all
-//! produce. The editor applies them.
+//! Every change of a scene as a value, with its errors and its JSON: the common output of tools, words, command line
+//! and files. The editor applies them.
 
 use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
@@ -43,7 +43,7 @@ pub enum Edit {
         /// Its number; none means the next one free.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         id: Option<BoxId>,
-        /// What it is called and how it is painted.
+        /// Name and paint.
         #[serde(default, skip_serializing_if = "BoxLabel::is_empty")]
         label: BoxLabel,
     },
@@ -78,7 +78,7 @@ pub enum Edit {
         /// The things.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         things: Vec<ThingId>,
-        /// What is done to them.
+        /// Change of their arrangement.
         how: Arrangement,
     },
     /// Turns a box into another class; its size and paint stay, its name goes.
@@ -92,19 +92,19 @@ pub enum Edit {
     PaintBev {
         /// One of the eight map layers.
         layer: BevLayer,
-        /// Where.
+        /// Cells to set or clear.
         shape: Shape,
         /// True sets, false clears.
         value: bool,
     },
     /// Puts things beside the road, and their voxels. They stay when scenery is drawn anew.
     AddThings {
-        /// What and where, world frame.
+        /// Kinds and places, world frame.
         forms: Vec<Form>,
     },
-    /// The same with scenery that a seed drew: it goes when scenery is drawn anew.
+    /// Puts scenery drawn by a seed beside the road, and its voxels. It goes when scenery is drawn anew.
     DrawScenery {
-        /// What and where, world frame.
+        /// Kinds and places, world frame.
         forms: Vec<Form>,
     },
     /// Takes things out, and their voxels.
@@ -134,24 +134,24 @@ pub enum Edit {
     ChangeThing {
         /// The thing.
         id: ThingId,
-        /// What and where from now on, world frame.
+        /// Its new kind and place, world frame.
         form: Form,
     },
     /// Takes man-made and plant voxels out that belong to no thing, and lays the ground where they stood. Painted voxels stay.
     ClearScenery {
-        /// Where; everywhere if left out.
+        /// Area to clear; everywhere if left out.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         shape: Option<Shape>,
     },
     /// Puts lines on the ground: lane centres, and dividers, stop lines and crossings with the cells of their layer.
     AddPolylines {
-        /// What they mean and where they run, world frame, m; at least two vertices each.
+        /// Kinds and vertices of the lines, world frame, m; at least two vertices each.
         lines: Vec<Polyline>,
     },
     /// Changes the road network. What it draws differently from before is drawn anew: layers, lines, ground. In a scene that has
     /// no network yet, what is painted is recognised first.
     ChangeRoads {
-        /// What is changed.
+        /// Change to apply.
         change: RoadChange,
     },
     /// Sets voxels to a class (`free` removes them) and locks them.
@@ -189,7 +189,7 @@ pub enum Edit {
         /// For which moments a moving object changes its place; the whole track if left out.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         scope: Option<Scope>,
-        /// What is changed there.
+        /// Edit to apply there.
         edit: Box<Edit>,
     },
     /// Gives a box voxels of its own, in place of those of its class: they go wherever it goes and are not generated. Another
@@ -276,7 +276,7 @@ pub enum Edit {
         /// The box it is about, if it is about one.
         #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
         box_id: Option<BoxId>,
-        /// Where it was found, world frame, m.
+        /// Place of the finding, world frame, m.
         #[schemars(with = "[f64; 3]")]
         where_m: DVec3,
         /// Why it may stay; not empty.
@@ -289,7 +289,7 @@ pub enum Edit {
         /// The box it is about, if it is about one.
         #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
         box_id: Option<BoxId>,
-        /// Where it was found, world frame, m.
+        /// Place of the finding, world frame, m.
         #[schemars(with = "[f64; 3]")]
         where_m: DVec3,
     },
@@ -316,7 +316,7 @@ pub enum Edit {
     /// Takes a generated occupancy as the frame's own and as the source of what comes. Not in JSON.
     #[serde(skip)]
     AdoptResult {
-        /// What was generated for the current state.
+        /// Occupancy generated for the current state.
         occupancy: VoxelGrid,
     },
 }
@@ -325,7 +325,7 @@ fn is_zero(number: &f64) -> bool {
     *number == 0.0
 }
 
-/// Why an edit was refused; the scene is then as before. One line each.
+/// Reason why an edit was refused; the scene is unchanged then. One line each.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EditError {
     /// No box of that id.
@@ -361,16 +361,16 @@ pub enum EditError {
     /// The thing that would result is not sound; see [`Form::problem`].
     #[error("{0}")]
     BadThing(String),
-    /// A change of roads that cannot be.
+    /// A change of roads that is not possible.
     #[error("{0}")]
     BadRoads(String),
     /// A map that is too large.
     #[error("{0}")]
     BadMap(String),
-    /// As many boxes as a frame holds are there.
+    /// The frame holds the largest number of boxes already.
     #[error("this frame holds {} boxes already, expected at most {}", .0, Frame::MAX_BOXES)]
     TooManyBoxes(usize),
-    /// As many waivers as a frame holds are there.
+    /// The frame holds the largest number of waivers already.
     #[error("this frame holds {} waivers already, expected at most {}", .0, Frame::MAX_WAIVERS)]
     TooManyWaivers(usize),
     /// No id is left for a new box.
@@ -388,10 +388,10 @@ pub enum EditError {
     /// Layers of objects come from boxes.
     #[error("layer {:?} shows boxes and cannot be painted, expected one of the eight map layers", .0.name())]
     ObjectLayer(BevLayer),
-    /// What is corrected was edited before, and that edit is not generated yet.
+    /// The item to correct was edited before, and that edit is not generated yet.
     #[error("{0} has an edit that is not generated yet, expected none under a correction")]
     Unsettled(String),
-    /// Voxels and the prompt are not inferred.
+    /// Voxels and the prompt are not inferred, so they cannot be corrected.
     #[error("only boxes and map layers can be corrected")]
     NoCorrection,
     /// A number that cannot be used.
@@ -401,7 +401,7 @@ pub enum EditError {
         field: &'static str,
         /// Its value.
         found: String,
-        /// What would do.
+        /// Values that are accepted.
         expected: &'static str,
     },
     /// A list that is too short.
@@ -425,9 +425,9 @@ pub enum EditError {
     /// A result of another map than the frame's.
     #[error("a result of {found} is no result of this frame, expected {expected}")]
     OtherExtent {
-        /// Of the result.
+        /// Extent of the result.
         found: Extent,
-        /// Of the frame.
+        /// Extent of the frame.
         expected: Extent,
     },
     /// A shape that misses the grid or every cell centre.
@@ -436,7 +436,7 @@ pub enum EditError {
     /// A waiver of no check, without a place or without a reason.
     #[error("{0}")]
     BadWaiver(String),
-    /// A moment that the clip does not have, or none.
+    /// A moment that the clip does not have, or no moment.
     #[error("{0}")]
     BadMoment(String),
     /// A shape that is not sound; see [`ObjectVoxels::of_cells`](crate::clip::ObjectVoxels::of_cells).
@@ -488,7 +488,7 @@ impl Edit {
         }
     }
 
-    /// True if it changes a box.
+    /// True if the edit changes a box.
     pub fn is_of_a_box(&self) -> bool {
         matches!(
             self,
@@ -500,7 +500,7 @@ impl Edit {
         )
     }
 
-    /// True if it changes things of the background.
+    /// True if the edit changes things of the background.
     pub fn is_of_things(&self) -> bool {
         matches!(
             self,
@@ -515,7 +515,7 @@ impl Edit {
 }
 
 impl From<SceneBox> for Edit {
-    /// Puts this very box in, with its id.
+    /// An edit that adds exactly this box, with its id.
     fn from(b: SceneBox) -> Self {
         Self::AddBox {
             class: b.class,

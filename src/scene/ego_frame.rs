@@ -1,5 +1,6 @@
-//! A scene as the ego vehicle sees it: grids along its axes, for exports that want them and for words such as "20 m ahead",
-//! and edits made there put back into the world frame. Sensors do not need it: they work in the world frame.
+//! A scene in the frame of the ego vehicle: grids along its axes, for exports that need them and for words such as "20
+//! m ahead", and edits made there converted back into the world frame. Sensors do not need it: they work in the world
+//! frame.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -12,12 +13,12 @@ use crate::{
     SourceFrame, Unobserved, VoxelGrid, VoxelPaint,
 };
 
-/// How far around the vehicle it reaches, columns: 100 m.
+/// Reach of its grids around the vehicle, columns: 100 m.
 const REACH: i32 = 250;
 
 impl Scene {
-    /// The scene of the moment that is shown in the ego frame, standing still; itself if the ego vehicle is at the origin of
-    /// the world frame and nothing moves. Grids are resampled (nearest voxel). The revisions stay.
+    /// The scene at the moment that is shown, in the ego frame, standing still. The scene itself if the ego vehicle is
+    /// at the origin of the world frame and nothing moves. Grids are resampled (nearest voxel). The revisions stay.
     pub fn in_ego(&self) -> Cow<'_, Scene> {
         let frame = self.frame();
         let pose = frame.world_from_ego;
@@ -53,8 +54,9 @@ impl Scene {
         scene
     }
 
-    /// The scene with its sensors where the ego vehicle is, in the world frame: what cameras and LiDARs are computed from.
-    /// Itself if the vehicle is at the origin. Of a scene whose sensors are in the world already it is the same again.
+    /// The scene with its sensors at the place of the ego vehicle, in the world frame: the input for cameras and
+    /// LiDARs. The scene itself if the sensors are at that pose already (as with a vehicle at the origin) and the
+    /// vehicle does not move.
     pub fn with_rig_in_world(&self) -> Cow<'_, Scene> {
         let pose = self.frame().world_from_ego;
         let moving = self.clip().ego_moving(self.time_s());
@@ -73,7 +75,7 @@ impl Scene {
 }
 
 impl Scene {
-    /// How fast the ego vehicle turns to the left at the moment that is shown, rad/s; 0 if it does not move.
+    /// Turn rate of the ego vehicle to the left at the moment that is shown, rad/s; 0 if it does not move.
     fn yaw_rate_rps(&self) -> f64 {
         const STEP_S: f64 = 0.05;
         let at = |time_s: f64| self.clip().ego_moving(time_s).map(|m| m.yaw_rad);
@@ -136,7 +138,7 @@ fn in_ego(frame: &Frame, extent: Extent) -> Frame {
     }
 }
 
-/// Which column of a map each column of another frame's map shows.
+/// The column of another frame's map that each column of a map shows.
 struct Source {
     extent: Extent,
     /// `[x][y]`: place in the map, by column; none beyond it.
@@ -346,7 +348,7 @@ impl Shape {
                 width_m,
             },
             Self::Cells(cells) => {
-                // Looked up the other way round, so that no cell between is left out.
+                // Looked up in the other direction, so that no cell between is left out.
                 let held: std::collections::BTreeSet<[usize; 2]> = cells.into_iter().collect();
                 let back = to_from_here.inverse();
                 let inside = |[x, y]: &[usize; 2]| {
@@ -360,7 +362,7 @@ impl Shape {
 }
 
 impl VoxelGrid {
-    /// The same voxels under another name: as if the map's lower corner were at column `from`.
+    /// These voxels with the map's lower corner at column `from`.
     pub fn moved_to(&self, from: [i32; 2]) -> Result<VoxelGrid, String> {
         let size = [self.extent().nx(), self.extent().ny()];
         Ok(self.relabelled(Extent::new(from, size)?))

@@ -1,4 +1,4 @@
-//! How much memory one state of a scene takes beside another one: what both share counts once.
+//! Memory that one state of a scene takes beside another one: parts that both share count once.
 
 use std::collections::BTreeMap;
 use std::mem::size_of;
@@ -13,7 +13,7 @@ use super::{
     BevLayout, BoxId, Clip, Frame, Motion, Polyline, Scene, SceneBox, SensorRig, SourceFrame, Track,
 };
 
-/// A map of boxes keeps about this much beside the boxes themselves, each.
+/// Memory of a map of boxes beside the boxes themselves: about so many bytes a box.
 const NODE_BYTES: usize = 32;
 
 type OwnShapes = BTreeMap<BoxId, OwnShape>;
@@ -35,8 +35,8 @@ impl Scene {
             + self.view_bytes(other)
     }
 
-    /// Of the moment that is shown, where that is not the canvas: it shares with the canvas, or with the moment that the other
-    /// state shows.
+    /// Bytes of the moment that is shown, where it is not the canvas: it shares memory with the canvas, or with the
+    /// moment that the other state shows.
     fn view_bytes(&self, other: &Scene) -> usize {
         let view = self.frame();
         match Arc::ptr_eq(view, self.canvas()) {
@@ -48,7 +48,7 @@ impl Scene {
     }
 }
 
-/// Nothing where both are one memory, else what it takes.
+/// Bytes of `own`; 0 where both are the same memory.
 fn beside<T: ?Sized>(own: &Arc<T>, other: &Arc<T>, bytes: impl FnOnce(&T) -> usize) -> usize {
     match Arc::ptr_eq(own, other) {
         true => 0,
@@ -145,7 +145,7 @@ fn own_shapes(shapes: &OwnShapes, other: Option<&OwnShapes>) -> usize {
     shapes.iter().map(shape).sum()
 }
 
-/// A source shares with the one before it, or with its own frame.
+/// Bytes of a source, which shares memory with the one before it, or with its own frame.
 fn source(source: &SourceFrame, frame: &Frame, other: Option<&SourceFrame>) -> usize {
     let beside = |of: Option<&SourceFrame>| {
         grid(&source.occupancy, of.map(|s| &s.occupancy)) + layout(&source.layout, of.map(|s| &s.layout))
@@ -188,7 +188,7 @@ mod tests {
     use crate::background::{Form, Tree, TreeKind};
     use crate::{BevLayer, Class, VoxelGrid};
 
-    /// What a history that counted less would keep for nothing: 4096 steps of a street of 1000 trees are 400 MB.
+    /// Memory that an incomplete count would miss in the history: 4096 steps of a street of 1000 trees are 400 MB.
     #[test]
     fn whatever_an_edit_copies_counts() {
         let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());

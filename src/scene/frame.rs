@@ -1,4 +1,4 @@
-//! A frame: what is there at a moment, and what its occupancy was generated from.
+//! A frame: the objects, layout and voxels of a moment, and the state that its occupancy was generated from.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -8,8 +8,8 @@ use crate::{
     BevLayout, BoxId, Class, Extent, Inferred, Pose, SceneBox, VoxelGrid, VoxelPaint, Waiver, raster,
 };
 
-/// The state in which a frame's occupancy was last generated, imported or accepted. The next generation inpaints what
-/// differs between it and the frame; all else stays bit-identical.
+/// The state in which a frame's occupancy was last generated, imported or accepted. The next generation inpaints the
+/// differences between it and the frame; the rest stays bit-identical.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceFrame {
     /// Map layers and polylines the occupancy belongs to.
@@ -82,8 +82,8 @@ impl Frame {
         self.layout.extent()
     }
 
-    /// True in a column of which the source knows nothing, no mask of labels either, and in which the frame holds a draft of its
-    /// ground: the map was made larger there.
+    /// True in a column whose ground in the frame is a draft and of which neither the source nor a mask of labels knows
+    /// anything: the map was made larger there.
     pub fn is_new_ground(&self, x: usize, y: usize) -> bool {
         let holds = |grid: &VoxelGrid| grid.column(x, y).iter().any(|l| *l != Class::FREE);
         let masks = self.inferred.unobserved.as_ref();

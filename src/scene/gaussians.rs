@@ -1,4 +1,4 @@
-//! A scene as anisotropic Gaussians with colours: what is baked from a scene, and what splat files hold.
+//! A scene as coloured anisotropic Gaussians: the result of baking a scene, and the contents of splat files.
 
 use glam::DQuat;
 
@@ -22,7 +22,7 @@ pub struct SceneGaussian {
     /// sRGB-coded colour, red, green, blue: 0 to 1 is what a screen shows, and it may lie a little outside, since pictures are
     /// sums of such colours.
     pub color: [f32; 3],
-    /// What it shows.
+    /// Class of the surface that it shows.
     pub class: TruthClass,
     /// The box it belongs to; 0 where it belongs to none.
     pub instance: u32,
@@ -59,7 +59,7 @@ pub struct Baking {
     pub views: u32,
     /// Size of each, px.
     pub size_px: [u32; 2],
-    /// Surfaces, skyline and sky that rays met.
+    /// Hits of rays on surfaces, skyline and sky.
     pub samples: u64,
     /// Most Gaussians that were allowed.
     pub most: u32,

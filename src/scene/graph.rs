@@ -48,7 +48,7 @@ pub struct ObjectNode {
     /// Its size beside that of its class, if anything was said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<SizeHint>,
-    /// What it is called and how it is painted, if anything was said. No geometry follows from it.
+    /// Name and paint, if any were stated. No geometry follows from it.
     #[serde(default, skip_serializing_if = "BoxLabel::is_empty")]
     pub label: BoxLabel,
 }
@@ -118,7 +118,7 @@ impl LaneRole {
     ];
 }
 
-/// What a node stands for.
+/// Kind of a node.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NodeKind {
@@ -148,9 +148,9 @@ pub enum NodeKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Locked {
-    /// Of an object.
+    /// Box of an object.
     Box(SceneBox),
-    /// Of a lane (in driving direction) or a crossing (outline), ego frame, m.
+    /// Line of a lane (in driving direction) or a crossing (outline), ego frame, m.
     Line(Vec<DVec2>),
 }
 
@@ -158,17 +158,17 @@ pub enum Locked {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Node {
-    /// Its name within the graph.
+    /// Its id within the graph.
     pub id: u32,
-    /// What it stands for.
+    /// Kind.
     pub kind: NodeKind,
     /// Geometry to keep; `None` is to be placed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub locked: Option<Locked>,
 }
 
-/// How one node stands to another. Left, right, front and behind are those of the other's heading where it
-/// has one (ego, vehicles and two-wheelers, lanes), else those of the ego vehicle; thresholds in `relations.rs`.
+/// Relation of one node to another. Left, right, front and behind are those of the other's heading where it has one
+/// (ego, vehicles and two-wheelers, lanes), else those of the ego vehicle; thresholds in `relations.rs`.
 #[expect(missing_docs, reason = "relations.rs defines each of them")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -251,9 +251,9 @@ impl RelationKind {
 pub struct Edge {
     /// Which relation.
     pub relation: RelationKind,
-    /// Whose place is described.
+    /// Node whose place is described.
     pub from: u32,
-    /// The node it is described by.
+    /// Node that it is described by.
     pub to: u32,
     /// The second node of `between`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -277,13 +277,13 @@ impl Edge {
     }
 }
 
-/// Nodes and what is said about them.
+/// Nodes and the statements about them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneGraph {
-    /// With different ids; at most one is the ego vehicle.
+    /// Nodes, with different ids; at most one is the ego vehicle.
     pub nodes: Vec<Node>,
-    /// Between nodes of the graph.
+    /// Statements between nodes of the graph.
     pub edges: Vec<Edge>,
 }
 
@@ -298,7 +298,7 @@ impl SceneGraph {
         graph
     }
 
-    /// Adds a node and answers its id: one more than the largest.
+    /// Adds a node and returns its id: one more than the largest.
     pub fn add(&mut self, kind: NodeKind) -> u32 {
         let id = self
             .nodes
@@ -340,7 +340,7 @@ impl SceneGraph {
         })
     }
 
-    /// What is wrong with the graph, if anything: one line.
+    /// The first problem with the graph, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         let mut seen = std::collections::BTreeSet::new();
         for node in &self.nodes {

@@ -1,11 +1,11 @@
-//! What a frame from a data set did not carry and was guessed.
+//! Parts of a frame from a data set that were guessed because the data set does not carry them.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::{BoxId, Extent, Recorded};
 
-/// Set beside a bit per observed bin of a column: it is known which were. A column of 0 says nothing.
+/// Bit beside the 16 bits of a column's observed bins: set if these are known. A column of 0 is unknown.
 pub const KNOWN: u32 = 1 << Extent::NZ;
 
 /// Voxels that no sensor of a data set observed: free there means unknown. One word per column `[x][y]` of a map, one
@@ -17,7 +17,8 @@ pub struct Unobserved {
 }
 
 impl Unobserved {
-    /// From what was observed of a window, `[x][y][z]`; `None` unless there is one flag per voxel.
+    /// The unobserved voxels of a window, from flags of what was observed, `[x][y][z]`; `None` unless there is one flag
+    /// per voxel.
     pub fn from_observed(observed: &[bool]) -> Option<Self> {
         let word = |column: &[bool]| {
             let bits = column.iter().enumerate().filter(|(_, seen)| !**seen);
@@ -29,7 +30,7 @@ impl Unobserved {
         })
     }
 
-    /// From the words of a map; `None` unless there is one per column.
+    /// The unobserved voxels of a map, from its words; `None` unless there is one per column.
     pub fn from_words(extent: Extent, words: Vec<u16>) -> Option<Self> {
         (words.len() == extent.columns()).then(|| Self {
             extent,
@@ -58,7 +59,7 @@ impl Unobserved {
         &self.words
     }
 
-    /// What was observed: per column `[x][y]` one bit per bin and [`KNOWN`].
+    /// The observed voxels: per column `[x][y]` one bit per bin and [`KNOWN`].
     pub fn observed(&self) -> Vec<u32> {
         self.words.iter().map(|word| u32::from(!word) | KNOWN).collect()
     }
@@ -68,31 +69,31 @@ impl Unobserved {
         f64::from(self.words[self.extent.index(x, y)].count_ones()) / Extent::NZ as f64
     }
 
-    /// Share of all voxels.
+    /// Share of all voxels that nothing observed, 0 to 1.
     pub fn total(&self) -> f64 {
         let bits: u32 = self.words.iter().map(|w| w.count_ones()).sum();
         f64::from(bits) / self.extent.voxels() as f64
     }
 }
 
-/// Guesses of a frame. A box that the user edits or corrects (`Edit::Correct`) is a guess no more; the map layers are
-/// until the user confirms them.
+/// Guesses of a frame. A box that the user edits or corrects (`Edit::Correct`) is no longer a guess; the map layers are
+/// guesses until the user confirms them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inferred {
-    /// The map layers were read off ground voxels.
+    /// True if the map layers were read off ground voxels.
     pub layout: bool,
-    /// Boxes that were fitted to voxels and not touched since.
+    /// Boxes that were fitted to voxels and not changed since.
     pub boxes: BTreeSet<BoxId>,
-    /// The things of the background were fitted to voxels.
+    /// True if the things of the background were fitted to voxels.
     pub background: bool,
-    /// What the data set's masks say, if it has any.
+    /// Voxels that the data set's masks mark as unobserved, if it has masks.
     pub unobserved: Option<Unobserved>,
-    /// What is as a recording has it: no guess, and nobody's mistake.
+    /// Parts that are as a recording has them: neither guesses nor mistakes of a designer.
     pub recorded: Arc<Recorded>,
 }
 
 impl Inferred {
-    /// True if there is a guess left.
+    /// True if any guess is left.
     pub fn any(&self) -> bool {
         self.layout || self.background || !self.boxes.is_empty()
     }

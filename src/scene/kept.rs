@@ -1,23 +1,23 @@
-//! What a project keeps beside its scene: versions to go back to, and what was typed.
+//! Parts of a project beside its scene: versions to return to, and the texts that were typed.
 
 use std::sync::Arc;
 
 /// Versions and typed words. They belong to a file, not to a state of the scene: undo leaves them as they are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Kept {
-    /// The oldest first.
+    /// The versions, the oldest first.
     pub versions: Vec<KeptVersion>,
-    /// What was typed in the prompt field, the oldest first, whatever came of it.
+    /// Texts typed in the prompt field, the oldest first, whether or not they had an effect.
     pub typed: Vec<String>,
 }
 
 impl Kept {
     /// Most versions of a file.
     pub const MAX_VERSIONS: usize = 1000;
-    /// Most lines typed.
+    /// Most texts that were typed.
     pub const MAX_TYPED: usize = 1000;
 
-    /// True if there is nothing.
+    /// True if there are neither versions nor texts.
     pub fn is_empty(&self) -> bool {
         self.versions.is_empty() && self.typed.is_empty()
     }
@@ -26,30 +26,30 @@ impl Kept {
 /// A state of the scene that is kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeptVersion {
-    /// Given by the user; empty if none was.
+    /// Name given by the user; empty if none was.
     pub name: String,
-    /// The edit that led there.
+    /// The edit that led to it.
     pub label: String,
-    /// What generating it took; on a second line what it was made with, as JSON.
+    /// Note on what generating it took; on a second line the settings it was made with, as JSON.
     pub note: String,
-    /// The user wants to keep it.
+    /// True if the user wants to keep it.
     pub starred: bool,
-    /// The scene as a `.loom` file that keeps nothing itself.
+    /// The scene as a `.loom` file that has no versions and texts itself.
     pub loom: Arc<Vec<u8>>,
 }
 
 impl KeptVersion {
-    /// What generating it took, for a person.
+    /// The note on what generating it took, for a person.
     pub fn said(&self) -> &str {
         self.note.lines().next().unwrap_or_default()
     }
 
-    /// What it was made with, as JSON, if that is known.
+    /// The settings it was made with, as JSON, if they are known.
     pub fn made(&self) -> Option<&str> {
         self.note.lines().nth(1)
     }
 
-    /// What it is called: its name, else what led there.
+    /// Its title: its name, else the edit that led to it.
     pub fn title(&self) -> &str {
         if self.name.is_empty() {
             &self.label

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{BevLayer, Extent, Relief};
 
-/// What a polyline means.
+/// Kind of a polyline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PolylineKind {
@@ -30,7 +30,7 @@ pub enum PolylineKind {
 }
 
 impl PolylineKind {
-    /// Number of a kind of line where lines are drawn (`shaders/appearance/paint.wgsl`): 0 for those that are not.
+    /// Number of a kind of line for drawing (`shaders/appearance/paint.wgsl`); 0 for kinds that are not drawn.
     pub fn drawn_as(self) -> u32 {
         match self {
             Self::LaneCenter | Self::SpeedLimit { .. } => 0,
@@ -46,7 +46,7 @@ impl PolylineKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Polyline {
-    /// What it means.
+    /// Kind of the line.
     pub kind: PolylineKind,
     /// Vertices, m; a closed outline does not repeat its first vertex.
     #[schemars(with = "Vec<[f64; 2]>")]
@@ -90,8 +90,8 @@ impl BevLayout {
         Self::from_cells_over(Extent::WINDOW, cells, polylines)
     }
 
-    /// From cells `[x][y]` of a map on flat ground; bits of object layers are dropped. Errors with the length found if it is
-    /// another one.
+    /// A layout from cells `[x][y]` of a map on flat ground; bits of object layers are dropped. Errors with the length
+    /// found if it is another one.
     pub fn from_cells_over(
         extent: Extent,
         mut cells: Vec<u32>,
@@ -114,8 +114,8 @@ impl BevLayout {
         self.extent
     }
 
-    /// The part of it that lies in another extent, with all polylines; no layer is set and the ground goes on level where
-    /// this one has no columns.
+    /// The part of it that lies in another extent, with all polylines. Where this one has no columns, no layer is set
+    /// and the ground continues level.
     pub fn crop(&self, extent: Extent) -> Self {
         if extent == self.extent {
             return self.clone();
@@ -128,7 +128,8 @@ impl BevLayout {
         }
     }
 
-    /// The part of it that lies in another extent; beyond its border everything goes on as it is there.
+    /// The part of it that lies in another extent; beyond its border layers and ground continue as they are at the
+    /// border.
     pub fn crop_continued(&self, extent: Extent) -> Self {
         let mut out = self.crop(extent);
         if extent == self.extent {
@@ -144,7 +145,7 @@ impl BevLayout {
         out
     }
 
-    /// The same cells and heights over another extent of the same size; polylines stay where they are.
+    /// These cells and heights over another extent of the same size; polylines stay where they are.
     pub(crate) fn relabelled(&self, extent: Extent) -> Self {
         assert_eq!(extent.columns(), self.extent.columns(), "another size");
         Self {

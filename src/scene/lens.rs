@@ -1,8 +1,8 @@
-//! How a camera's lens bends rays: pinhole, OpenCV's distortion, fisheye (Kannala and Brandt), f-theta; and how its shutter
-//! reads the picture.
+//! Projection of a camera's lens: pinhole, OpenCV's distortion, fisheye (Kannala and Brandt), f-theta; and the read-out
+//! of its shutter.
 //!
 //! A point of the optical frame (x right, y down, z forward) meets the image plane at a focal length of 1 at the
-//! *distorted* place; focal length and principal point take that to pixels. So a lens stays what it is at any image size.
+//! *distorted* place; focal length and principal point map that to pixels. So a lens is the same at any image size.
 
 use glam::{DMat2, DVec2, DVec3};
 use schemars::JsonSchema;
@@ -29,14 +29,14 @@ pub enum Lens {
     Fisheye {
         /// k1, k2, k3, k4.
         k: [f64; 4],
-        /// Nothing is seen beyond this angle from the optical axis, degrees; at most 180.
+        /// Largest angle from the optical axis that is seen, degrees; at most 180.
         max_angle_deg: f64,
     },
     /// f-theta: radius = c1 a + c2 a^2 + … + c6 a^6 at the angle a, rad, from the optical axis.
     FTheta {
         /// c1 to c6; c1 is 1 where the focal length is that of the middle.
         c: [f64; 6],
-        /// Nothing is seen beyond this angle from the optical axis, degrees; at most 180.
+        /// Largest angle from the optical axis that is seen, degrees; at most 180.
         max_angle_deg: f64,
     },
 }
@@ -69,8 +69,8 @@ impl Shutter {
     /// Longest read-out, s.
     pub const MAX_READOUT_S: f64 = 1.0;
 
-    /// When a place of the picture is read, s after the moment of the picture; `part` runs from 0 to 1 from left to right and
-    /// from top to bottom.
+    /// Time at which a place of the picture is read, s after the moment of the picture; `part` runs from 0 to 1 from
+    /// left to right and from top to bottom.
     pub fn after_s(&self, part: DVec2) -> f64 {
         let part = match self.direction {
             ReadOut::TopToBottom => part.y,
@@ -99,7 +99,7 @@ impl Lens {
         matches!(self, Lens::Fisheye { .. } | Lens::FTheta { .. })
     }
 
-    /// What is wrong with it, if anything.
+    /// The first problem with it; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         let (coefficients, angle): (Vec<f64>, f64) = match self {
             Lens::Pinhole => return None,
@@ -127,7 +127,7 @@ impl Lens {
         None
     }
 
-    /// Radius at an angle and how it grows, for the lenses that are given by one.
+    /// Radius at an angle and its derivative, for the lenses that are given by a radius.
     fn radius(&self, a: f64) -> (f64, f64) {
         match self {
             Lens::Fisheye {
@@ -150,7 +150,7 @@ impl Lens {
         }
     }
 
-    /// Where a point at (x, y, 1) is shown, and the derivative by x and y; for the distorted lens.
+    /// Image place of a point at (x, y, 1), and its derivative by x and y; for the distorted lens.
     fn distort(k: &[f64; 6], p: &[f64; 2], at: DVec2) -> (DVec2, DMat2) {
         let DVec2 { x, y } = at;
         let r2 = at.length_squared();
@@ -159,7 +159,7 @@ impl Lens {
         let radial = above / below;
         let slope_above = k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[2]);
         let slope_below = k[3] + r2 * (2.0 * k[4] + r2 * 3.0 * k[5]);
-        // By r2.
+        // Derivative by r2.
         let slope = (slope_above * below - above * slope_below) / (below * below);
         let [p1, p2] = *p;
         let out = at * radial
@@ -176,27 +176,28 @@ impl Lens {
     }
 }
 
-/// A camera's lens made ready for many rays, at the camera's own image size.
+/// A camera's lens prepared for many rays, at the camera's own image size.
 #[derive(Clone, Copy, Debug)]
 pub struct Optics {
     lens: Lens,
     focal_px: DVec2,
     center_px: DVec2,
-    /// Up to where the lens is one to one: an angle, rad, of wide lenses; a radius at distance 1 of the others.
+    /// Limit up to which the lens is one to one: an angle, rad, of wide lenses; a radius at distance 1 of the others.
     limit: f64,
-    /// Distorted radius there.
+    /// Distorted radius at the limit.
     limit_radius: f64,
 }
 
-/// Steps in which the limit of a lens is looked for.
+/// Number of steps in the search for the limit of a lens.
 const STEPS: usize = 2048;
-/// Farthest from the axis that a distorted lens is looked at, in units of the distance: 84 degrees.
+/// Farthest distance from the axis at which a distorted lens is examined, in units of the distance along it: 84
+/// degrees.
 const FARTHEST: f64 = 10.0;
-/// Newton's steps; four digits more with each.
+/// Most Newton steps; each gains about four digits.
 const NEWTON: usize = 20;
 
 impl Optics {
-    /// Of a camera.
+    /// The optics of a camera.
     pub fn new(camera: &Camera) -> Optics {
         let lens = camera.lens;
         let limit = match lens {
@@ -233,8 +234,8 @@ impl Optics {
         }
     }
 
-    /// The way an image point (u, v), px, looks, optical frame: 1 along z for lenses that are not wide, else a unit vector;
-    /// zero where the lens sees nothing.
+    /// Direction of an image point (u, v), px, in the optical frame: 1 along z for lenses that are not wide, else a
+    /// unit vector; zero where the lens sees nothing.
     #[inline]
     pub fn direction(&self, u: f64, v: f64) -> DVec3 {
         let at = (DVec2::new(u, v) - self.center_px) / self.focal_px;
@@ -272,7 +273,7 @@ impl Optics {
         if radius < 1e-12 {
             return DVec3::Z;
         }
-        // Newton's steps, kept between bounds that close in: the radius grows with the angle up to the limit.
+        // Newton steps between bounds that close in: the radius grows with the angle up to the limit.
         let (mut low, mut high) = (0.0, self.limit);
         let mut a = (radius / self.limit_radius * self.limit).clamp(low, high);
         for _ in 0..60 {
@@ -332,7 +333,7 @@ impl Optics {
         if self.lens.is_wide() { p.length() } else { p.z }
     }
 
-    /// How the image point moves with a point of the optical frame that is seen, px/m: rows u and v, by x, y, z.
+    /// Derivative of the image point by a visible point of the optical frame, px/m: rows u and v, by x, y, z.
     pub fn jacobian(&self, p: DVec3) -> [DVec3; 2] {
         let [u, v] = match &self.lens {
             Lens::Pinhole => flat_rows(DMat2::IDENTITY, p),
@@ -350,7 +351,7 @@ impl Optics {
                 } else {
                     let e = p.truncate() / across;
                     let length2 = p.length_squared();
-                    // How the angle grows with the point.
+                    // Derivative of the angle by the point.
                     let by = (e * p.z).extend(-across) * (slope / length2);
                     let aside = radius / across;
                     [0, 1].map(|i| {
@@ -383,7 +384,8 @@ impl Optics {
         1.0 / (self.focal_px.x * slope).max(1e-3)
     }
 
-    /// Where the lens shows what is at an angle from the optical axis, in focal lengths; for finding a focal length.
+    /// Distance from the middle at which the lens shows an angle from the optical axis, in focal lengths; used to find
+    /// a focal length.
     pub(crate) fn radius_at(&self, angle_rad: f64) -> f64 {
         match &self.lens {
             Lens::Distorted { k, p } => {
@@ -397,7 +399,7 @@ impl Optics {
     }
 }
 
-/// Rows of the derivative of a place that is looked at from distance z, through what bends it there.
+/// Rows of the derivative of a place that is seen from distance z, through the distortion there.
 fn flat_rows(bend: DMat2, p: DVec3) -> [DVec3; 2] {
     let at = p.truncate() / p.z;
     let [x, y] = [DVec2::X.extend(-at.x), DVec2::Y.extend(-at.y)].map(|row| row / p.z);
@@ -556,7 +558,7 @@ mod tests {
         }
     }
 
-    /// A barrel distortion turns back on itself: beyond that nothing is seen, and nothing is shown twice.
+    /// A barrel distortion folds back: beyond the fold nothing is seen, and nothing is shown twice.
     #[test]
     fn lenses_end_where_they_would_fold() {
         let lens = Lens::Distorted {
@@ -568,7 +570,7 @@ mod tests {
         assert!(optics.project(DVec3::new(0.9, 0.0, 1.0)).is_some());
         assert!(optics.project(DVec3::new(0.93, 0.0, 1.0)).is_none());
         assert_eq!(optics.direction(1599.5, 899.5), DVec3::ZERO);
-        // A fisheye sees what is beside and a little behind it.
+        // A fisheye sees points beside it and a little behind it.
         let optics = Optics::new(&camera(lenses()[3]));
         assert!(optics.project(DVec3::new(1.0, 0.0, -0.05)).is_some());
         assert!(optics.project(DVec3::new(0.1, 0.0, -1.0)).is_none());

@@ -1,4 +1,4 @@
-//! What a scene is, as plain data. This room knows no window, graphics card, network, thread or file.
+//! The scene as plain data. This room knows no window, graphics card, network, thread or file.
 
 pub mod appearance;
 pub mod arranged;
@@ -97,33 +97,34 @@ impl SceneRev {
     }
 }
 
-/// A driving scene: what stands still, what moves, and the sensors that see it.
+/// A driving scene: the canvas that stands still, the moving objects, and the sensors that see them.
 ///
-/// What is shown of it is the frame of one moment. Two revisions name it: [`rev`](Self::rev) what is shown, `content` what it
-/// is at all times.
+/// The frame of one moment is shown. Two revisions identify the scene: [`rev`](Self::rev) the moment that is shown,
+/// `content` the scene at all times.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Which state this is, with the moment that is shown.
+    /// Identifies this state, including the moment that is shown.
     pub rev: SceneRev,
     /// Name shown to the user.
     pub name: Arc<str>,
-    /// Free text that describes the style; empty when none. What it says of light and air is in `conditions`.
+    /// Free text that describes the style; empty if there is none. Its statements on light and air are in `conditions`.
     pub prompt: Arc<str>,
     /// Light and air.
     pub conditions: Conditions,
-    /// What was typed to make it and to change it, in order.
+    /// Texts typed to make it and to change it, in order.
     pub words: Arc<Vec<String>>,
     /// Cameras and LiDARs, in the ego frame.
     pub rig: Arc<SensorRig>,
-    /// What stands beside the roads, in the world frame.
+    /// Things beside the roads, in the world frame.
     pub background: Arc<Background>,
-    /// The road network behind the layout, in the world frame; empty as long as nobody reshaped a road.
+    /// The road network behind the layout, in the world frame; empty until a road is reshaped.
     pub roads: Arc<RoadNetwork>,
-    /// Groups, what is hidden, what is locked.
+    /// Groups, hidden objects, locked objects.
     pub arranged: Arc<Arranged>,
     /// Seed of every random draw made for this scene.
     pub seed: u64,
-    /// What its file keeps beside it: no part of any state, so that neither revision says anything of it.
+    /// Versions and texts that its file keeps beside it: they are no part of any state, so neither revision covers
+    /// them.
     pub kept: Arc<Kept>,
     content: SceneRev,
     canvas: Arc<Frame>,
@@ -165,17 +166,17 @@ impl Scene {
         &self.view
     }
 
-    /// What stands still.
+    /// The canvas: the parts that stand still.
     pub fn canvas(&self) -> &Arc<Frame> {
         &self.canvas
     }
 
-    /// What moves.
+    /// The clip: the parts that move.
     pub fn clip(&self) -> &Arc<Clip> {
         &self.clip
     }
 
-    /// Which state this is, whatever moment is shown.
+    /// Identifies this state, whatever moment is shown.
     pub fn content(&self) -> SceneRev {
         self.content
     }
@@ -185,13 +186,13 @@ impl Scene {
         self.view.time_s
     }
 
-    /// Gives it fresh revisions, after a change of its public fields.
+    /// Sets fresh revisions, after a change of its public fields.
     pub fn touch(&mut self) {
         self.rev = SceneRev::fresh();
         self.content = self.rev;
     }
 
-    /// Shows another moment, within the clip. False if it is shown already.
+    /// Shows another moment of the clip. Returns false if it is shown already.
     pub fn show(&mut self, time_s: f64) -> bool {
         let time_s = match self.clip.length_s > 0.0 {
             true => time_s.clamp(0.0, self.clip.length_s),
@@ -212,7 +213,7 @@ impl Scene {
         scene
     }
 
-    /// Changes the frame that is shown: what stands still changes for all moments, moving objects as `scope` says.
+    /// Changes the frame that is shown: parts that stand still change for all moments, moving objects as `scope` says.
     pub fn change<R>(&mut self, scope: Scope, change: impl FnOnce(&mut Frame) -> R) -> R {
         let mut frame = Frame::clone(&self.view);
         let out = change(&mut frame);
@@ -220,7 +221,7 @@ impl Scene {
         out
     }
 
-    /// Puts a changed version of the frame that is shown in its place; see [`change`](Self::change).
+    /// Replaces the frame that is shown by a changed version; see [`change`](Self::change).
     pub fn set_frame(&mut self, after: Frame, scope: Scope) {
         self.touch();
         if self.clip.is_still() {
@@ -240,7 +241,7 @@ impl Scene {
         self.set_parts(canvas, clip);
     }
 
-    /// Changes what stands still and nothing else.
+    /// Changes only the parts that stand still.
     pub fn change_canvas<R>(&mut self, change: impl FnOnce(&mut Frame) -> R) -> R {
         let out = change(Arc::make_mut(&mut self.canvas));
         self.touch();
@@ -248,7 +249,7 @@ impl Scene {
         out
     }
 
-    /// Changes what moves. Whoever calls it sees to it that the clip is sound.
+    /// Changes the parts that move. The caller makes sure that the clip is sound.
     pub fn change_clip<R>(&mut self, change: impl FnOnce(&mut Clip) -> R) -> R {
         let out = change(Arc::make_mut(&mut self.clip));
         self.touch();
@@ -256,7 +257,7 @@ impl Scene {
         out
     }
 
-    /// Replaces what stands still and what moves.
+    /// Replaces the canvas and the clip.
     pub fn set_parts(&mut self, canvas: Frame, clip: Clip) {
         self.canvas = Arc::new(canvas);
         self.clip = Arc::new(clip);
@@ -272,8 +273,8 @@ impl Scene {
         self.view = self.clip.view(&self.canvas, time_s);
     }
 
-    /// The scene that the networks are asked about: it stands still, and shows the canvas with those moving objects that they
-    /// have not drawn yet. Itself if nothing moves. The content's revision stays.
+    /// The scene that the networks generate from: it stands still, and shows the canvas with those moving objects whose
+    /// voxels are not generated yet. The scene itself if nothing moves. The content's revision stays.
     pub fn for_generation(&self) -> Cow<'_, Scene> {
         if self.clip.is_still() {
             return Cow::Borrowed(self);
@@ -288,7 +289,7 @@ impl Scene {
         })
     }
 
-    /// Takes over what was made of [`for_generation`](Self::for_generation)'s frame.
+    /// Takes over the result that was generated from [`for_generation`](Self::for_generation)'s frame.
     pub fn set_generated(&mut self, after: Frame) {
         if self.clip.is_still() {
             self.set_frame(after, Scope::default());
@@ -306,8 +307,8 @@ impl Scene {
         self.set_parts(canvas, clip);
     }
 
-    /// What lies in the networks' window after a move by whole columns, with the whole scene moved. It stands still and shows
-    /// the frame that this scene shows. The content's revision stays.
+    /// The part of the scene in the networks' window after a move by whole columns, with the whole scene moved. It
+    /// stands still and shows the frame that this scene shows. The content's revision stays.
     pub fn window_at(&self, by: moved::Columns) -> Scene {
         let mut scene = self.still();
         scene.view = Arc::new(self.frame().crop(by.back().extent(Extent::WINDOW)));

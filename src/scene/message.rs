@@ -1,4 +1,4 @@
-//! Messages for people: one line of bounded length, whatever a file, a driver or a parser says.
+//! Messages for people: one line of bounded length, whatever the text from a file, a driver or a parser.
 
 use std::error::Error;
 use std::fmt::Display;
@@ -6,13 +6,13 @@ use std::fmt::Display;
 /// Characters of the longest message.
 pub const LONGEST: usize = 300;
 
-/// True for a character that says nothing by itself and changes what is around it: control characters, separators of lines, and
-/// those that turn the direction of text. Terminals and names get none of them.
+/// True for a character that is invisible and changes the text around it: control characters, line separators, and
+/// characters that turn the direction of text. Terminals and names get none of them.
 pub fn is_hidden(c: char) -> bool {
     c.is_control() || matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
 }
 
-/// A text of lines for a terminal: what is hidden in it becomes blanks, except the ends of its lines.
+/// A text of several lines for a terminal: hidden characters become blanks, except the ends of its lines.
 pub fn of_lines(text: &str) -> String {
     text.replace(|c| c != '\n' && is_hidden(c), " ")
 }
@@ -39,8 +39,8 @@ pub fn of_error(error: &(dyn Error + 'static)) -> String {
     shortened(&text, LONGEST)
 }
 
-/// A piece of a file, made safe to quote: control characters become spaces, and what is longer than `most` characters
-/// ends in `…`.
+/// A piece of a file, made safe to quote: control characters become spaces, and a text of more than `most` characters
+/// is cut and ends in `…`.
 pub fn quoted(text: &str, most: usize) -> String {
     let plain = |c: char| if is_hidden(c) { ' ' } else { c };
     let mut out: String = text.chars().take(most).map(plain).collect();
@@ -50,8 +50,8 @@ pub fn quoted(text: &str, most: usize) -> String {
     out
 }
 
-/// A line of at most `most` characters: of a longer one the middle is left out, because a message begins with the file
-/// and ends with the place in it.
+/// A line of at most `most` characters. A longer line loses its middle, because a message begins with the file and ends
+/// with the place in it.
 pub fn shortened(line: &str, most: usize) -> String {
     let length = line.chars().count();
     if length <= most {

@@ -1,4 +1,4 @@
-//! An object with its voxels, apart from any scene: it is taken out of one and put into another.
+//! An object with its voxels, independent of any scene: it is taken out of one and put into another.
 
 use glam::{DVec2, DVec3};
 

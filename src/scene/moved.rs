@@ -1,5 +1,5 @@
-//! Scenes given from another origin: nothing is resampled, because they move by whole columns. The networks read a window
-//! around the origin; moved there, any part of a map is in it.
+//! Scenes moved to another origin. Nothing is resampled, because they move by whole columns. The networks read a window
+//! around the origin; with such a move any part of a map can be brought into it.
 
 use std::sync::Arc;
 
@@ -15,12 +15,12 @@ use crate::{
 pub struct Columns(pub [i32; 2]);
 
 impl Columns {
-    /// The way back.
+    /// The move in the opposite direction.
     pub fn back(self) -> Self {
         Self(self.0.map(|c| -c))
     }
 
-    /// The same in metres.
+    /// The move in metres.
     pub fn way_m(self) -> DVec2 {
         // 0.4 is not exact in binary, 2.5 is.
         DVec2::new(f64::from(self.0[0]) / 2.5, f64::from(self.0[1]) / 2.5)

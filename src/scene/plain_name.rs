@@ -1,18 +1,19 @@
-//! Names that become part of a path: what they may be on every system, whoever wrote the scene they come from.
+//! Names that become part of a path: the rules that make them safe on every system, whoever wrote the scene they come
+//! from.
 
 use crate::message::{is_hidden, quoted};
 
-/// Longest name of a sensor, bytes of UTF-8: its files' names have room for what is added to it.
+/// Longest name of a sensor, bytes of UTF-8: it leaves room for endings in the names of its files.
 pub const LONGEST: usize = 128;
 /// Longest name of a file that systems take, bytes of UTF-8.
 pub const LONGEST_OF_FILE: usize = 255;
 
-/// Characters that separate names, or that no name has, on one system or another.
+/// Characters that separate parts of a path, or that names may not have, on some system.
 const SEPARATORS: [char; 9] = ['/', '\\', ':', '*', '?', '"', '<', '>', '|'];
 /// Names of devices on Windows, with any ending; `COM` and `LPT` have a digit after them.
 const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "conin$", "conout$"];
 
-/// Why a name is no plain one. Each is one line.
+/// Reason why a name is not plain. Each is one line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotPlain {
     /// No character at all.
@@ -25,23 +26,23 @@ pub enum NotPlain {
         name: String,
         /// Its length, bytes of UTF-8.
         found: usize,
-        /// The most that is taken.
+        /// Most bytes that are accepted.
         most: usize,
     },
-    /// A character that is none of a name.
+    /// A character that names may not have.
     #[error(
         "the name {name:?} holds {found:?}, expected a name without / \\ : * ? \" < > | and control characters"
     )]
     Character {
         /// Its beginning.
         name: String,
-        /// The first one that is refused.
+        /// The first character that is refused.
         found: char,
     },
-    /// A dot or a blank where systems lose it, or where it hides a file or leads upwards.
+    /// A dot or a blank at an end of the name: systems drop it, or it hides the file or leads to the folder above.
     #[error("the name {0:?} begins with a dot or blank or ends in one, expected a name without")]
     Edge(String),
-    /// A device of Windows.
+    /// Name of a device on Windows.
     #[error("the name {0:?} is that of a device on Windows, expected another")]
     Device(String),
 }
@@ -82,7 +83,7 @@ fn check_within(name: &str, most: usize) -> Result<(), NotPlain> {
     }
 }
 
-/// True for `NUL`, `aux.png`, `COM1` and their like.
+/// True for `NUL`, `aux.png`, `COM1` and similar names.
 fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or(name).trim_end().to_lowercase();
     let is_numbered = |kind: &str| {
@@ -92,7 +93,7 @@ fn is_device(name: &str) -> bool {
     DEVICES.contains(&&*stem) || is_numbered("com") || is_numbered("lpt")
 }
 
-/// A name as files are told apart by systems that do not look at the case of letters.
+/// A name in the form by which files are told apart on systems that ignore the case of letters.
 pub fn folded(name: &str) -> String {
     name.to_lowercase()
 }

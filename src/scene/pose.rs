@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// Takes points of the frame after `from` to the frame before it: `p_a = pose_a_from_b.apply(p_b)`.
+/// Maps points of the frame after `from` to the frame before it: `p_a = pose_a_from_b.apply(p_b)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pose {
@@ -14,7 +14,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The transform that changes nothing.
+    /// The transform that leaves points as they are.
     pub const IDENTITY: Pose = Pose {
         rotation: DQuat::IDENTITY,
         translation_m: DVec3::ZERO,
@@ -28,7 +28,7 @@ impl Pose {
         }
     }
 
-    /// On the ground plane: position in m and heading in rad, counter-clockwise from x.
+    /// A pose on the ground plane: position in m and heading in rad, counter-clockwise from x.
     pub fn planar(x_m: f64, y_m: f64, yaw_rad: f64) -> Pose {
         Pose {
             rotation: DQuat::from_rotation_z(yaw_rad),
@@ -41,7 +41,7 @@ impl Pose {
         self.rotation * p + self.translation_m
     }
 
-    /// The transform the other way.
+    /// The inverse transform.
     pub fn inverse(&self) -> Pose {
         let rotation = self.rotation.conjugate();
         Pose {

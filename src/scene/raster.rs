@@ -130,7 +130,8 @@ pub fn line_cells(
     }
 }
 
-/// Visits the cells whose centre lies within a distance of a segment: of every column only those rows that may.
+/// Visits the cells whose centre lies within a distance of a segment; in each column only the rows that may lie near
+/// are tested.
 fn segment_cells(extent: Extent, [a, b]: [DVec2; 2], half_width_m: f64, mut visit: impl FnMut(usize, usize)) {
     let d = b - a;
     let length_squared = d.length_squared();
@@ -153,9 +154,9 @@ fn segment_cells(extent: Extent, [a, b]: [DVec2; 2], half_width_m: f64, mut visi
     }
 }
 
-/// Rows of a column that a segment may come near: all that do, and about two more on each side.
+/// Rows of a column that may lie near a segment: all that do, and about two more on each side.
 fn rows_near(extent: Extent, [a, b]: [DVec2; 2], half_width_m: f64, x: usize) -> std::ops::Range<usize> {
-    // A cell more on every side: rounding decides nothing here.
+    // One cell more on every side, so that rounding does not matter.
     let reach_m = half_width_m + Extent::VOXEL_M;
     let at_m = extent.center(x, 0, 0).x;
     let d = b - a;
@@ -205,7 +206,7 @@ pub fn bev_channels<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a Scen
     cells
 }
 
-/// Numbers that a quantised heading takes on, besides 0.
+/// Number of quantised headings, besides 0 for none.
 pub const HEADINGS: u8 = 240;
 
 /// The heading of the object in every column, `[x][y]`: 0 where there is none, else 1 +
@@ -371,7 +372,8 @@ mod tests {
         }
     }
 
-    /// Before, every cell of the rectangle around a segment was looked at: 16 million for one line across a large map.
+    /// An earlier version visited every cell of the rectangle around a segment: 16 million for one line across a large
+    /// map.
     #[test]
     fn a_line_across_a_large_map_costs_its_own_cells() {
         let extent = Extent::new([-2048, -2048], [4096, 4096]).expect("sound");

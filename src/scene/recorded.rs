@@ -1,6 +1,6 @@
-//! Which boxes, tracks and motion of the ego vehicle are as a recording has them: what is odd about them is what was measured, and no
-//! mistake of a designer. Each is known by a mark of its place, size and motion, so what is edited is recorded no more, however it
-//! was edited, and undo makes it so again.
+//! Marks of the boxes, tracks and motion of the ego vehicle that are as a recording has them: oddities in them were
+//! measured, and are not mistakes of a designer. Each is identified by a hash of its place, size and motion, so an
+//! edited one no longer counts as recorded, however it was edited, and undo makes it count again.
 
 use std::collections::BTreeMap;
 
@@ -8,23 +8,23 @@ use serde::{Deserialize, Serialize};
 
 use super::BoxId;
 
-/// Marks of what a recording holds. Empty for a scene that was made.
+/// Marks of the contents of a recording. Empty for a scene that was made.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recorded {
-    /// Boxes and tracks as they came.
+    /// Hashes of boxes and tracks as they were recorded.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(crate) boxes: BTreeMap<BoxId, u64>,
-    /// The ego vehicle's motion as it came.
+    /// Hash of the ego vehicle's motion as it was recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) ego: Option<u64>,
-    /// Voxels are what sensors measured, with gaps where they saw nothing, but for those that were painted.
+    /// True if the voxels, except painted ones, were measured by sensors, with gaps where these saw nothing.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(crate) voxels: bool,
 }
 
 impl Recorded {
-    /// Voxels alone, as of a sweep.
+    /// Marks of voxels alone, as for a sweep.
     pub fn of_voxels() -> Self {
         Self {
             voxels: true,

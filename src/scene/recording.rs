@@ -1,4 +1,4 @@
-//! Marks of a recording, made of a scene and held against it.
+//! Marks of a recording: computed from a scene, and compared with it.
 
 use std::collections::BTreeSet;
 
@@ -18,7 +18,7 @@ impl Recorded {
         }
     }
 
-    /// Boxes and tracks of a scene that are still as its recording has them.
+    /// Boxes and tracks of a scene that are still as recorded.
     pub fn boxes_in(scene: &Scene) -> BTreeSet<BoxId> {
         let (canvas, clip) = (scene.canvas(), scene.clip());
         let is_same = |id: &BoxId, mark: u64| {
@@ -32,13 +32,13 @@ impl Recorded {
             .collect()
     }
 
-    /// The voxels of a recording that somebody painted; `None` if the voxels are no recording's.
+    /// The voxels of a recording that the user painted; `None` if the voxels are not from a recording.
     pub fn painted_in(scene: &Scene) -> Option<VoxelPaint> {
         let canvas = scene.canvas();
         canvas.inferred.recorded.voxels.then(|| canvas.painted.clone())
     }
 
-    /// True if the ego vehicle moves, or stands, as the recording of a scene has it.
+    /// True if the ego vehicle of a scene moves, or stands, as recorded.
     pub fn is_ego_in(scene: &Scene) -> bool {
         let recorded = &scene.canvas().inferred.recorded;
         let is_drive = recorded.ego.is_some() || !recorded.boxes.is_empty();
@@ -71,7 +71,7 @@ fn of_motion(motion: &Motion) -> u64 {
     add_motion(Fnv1a::new(), motion).get()
 }
 
-/// Recordings hold keys; every other motion was made.
+/// Adds a motion to a hash. Recordings hold keyframes; any other motion was made by a user.
 fn add_motion(hash: Fnv1a, motion: &Motion) -> Fnv1a {
     match motion {
         Motion::Keys(keys) => keys.iter().fold(hash.with([1]), |hash, key| {

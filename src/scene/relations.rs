@@ -1,5 +1,5 @@
-//! What each relation of a scene graph means in metres: one predicate, used to describe scenes, to judge placements and
-//! to make training data. Anything that is not finite satisfies nothing.
+//! Meaning of each relation of a scene graph in metres: one predicate, used to describe scenes, to judge placements and
+//! to make training data. Numbers that are not finite satisfy no relation.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::graph::{Edge, LaneRole, Locked, NodeKind, RelationKind, SceneGraph};
 use super::road_map::{CrossingArea, HALF_LANE_M, RoadMap, inside, outline_distance_m};
 use super::{BevLayer, BoxId, BoxLabel, Class, SceneBox};
 
-/// Up to this speed an object stands, m/s.
+/// Highest speed at which an object counts as standing, m/s.
 pub const STANDING_MPS: f64 = 0.5;
 /// `near`: free space between the two at most this, m.
 pub const NEAR_M: f64 = 6.0;
@@ -17,9 +17,9 @@ pub const NEAR_M: f64 = 6.0;
 pub const NEXT_M: f64 = 3.5;
 /// `far_from`: free space at least this, m.
 pub const FAR_M: f64 = 20.0;
-/// `following` and `blocking`: how far ahead the other may be, m.
+/// `following` and `blocking`: farthest that the other may be ahead, m.
 pub const AHEAD_M: f64 = 40.0;
-/// `waiting_at`: at most this before the area, m.
+/// `waiting_at`: farthest before the area, m.
 pub const WAIT_M: f64 = 8.0;
 /// Radius of a junction, m.
 pub const JUNCTION_M: f64 = 10.0;
@@ -43,15 +43,15 @@ pub fn ego_box() -> SceneBox {
 
 /// A graph with the places of its objects on a map.
 pub struct PlacedGraph<'a> {
-    /// What was said.
+    /// The statements.
     pub graph: &'a SceneGraph,
     /// Boxes by node id.
     pub boxes: &'a BTreeMap<u32, SceneBox>,
-    /// Where they stand.
+    /// Map on which the boxes stand.
     pub road: &'a RoadMap,
 }
 
-/// What the other node of a statement is on the map.
+/// Place or object on the map that a statement refers to.
 enum Anchor<'a> {
     /// An object, or the ego vehicle: its box, and the point that distances count from.
     Thing(SceneBox, DVec2),
@@ -335,7 +335,7 @@ impl PlacedGraph<'_> {
         let Some(near) = near.filter(|l| l.distance_m < from.size_m.truncate().length() / 2.0 + 1.0) else {
             return false;
         };
-        // The end of a lane is no side of it.
+        // The end of a lane is not one of its sides.
         covers(from, |c| near.direction.perp_dot(c - near.position_m), 1.0)
             && near
                 .direction
@@ -344,7 +344,7 @@ impl PlacedGraph<'_> {
                 < 1.0 + from.size_m.x / 2.0
     }
 
-    /// The distance that `distance_m` of a statement speaks of.
+    /// The distance that `distance_m` of a statement refers to.
     fn distance_m(&self, relation: RelationKind, from: &SceneBox, anchor: &Anchor<'_>) -> f64 {
         let p = from.center_m.truncate();
         match anchor {
@@ -421,7 +421,7 @@ fn between(p: DVec2, a: DVec2, b: DVec2) -> bool {
     (0.1..=0.9).contains(&t) && off <= (0.35 * length).max(2.0)
 }
 
-/// True if the footprint reaches to within `half_m` of offset 0.
+/// True if the footprint comes within `half_m` of offset 0.
 fn covers(b: &SceneBox, offset: impl Fn(DVec2) -> f64, half_m: f64) -> bool {
     let offsets = b.footprint().map(offset);
     let low = offsets.iter().copied().fold(f64::INFINITY, f64::min);

@@ -6,7 +6,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::{Extent, Pose};
 
-/// Height of the ground over the grid. Flat ground costs nothing; a snapshot costs a pointer.
+/// Height of the ground over the grid. Flat ground takes no memory; a snapshot copies a pointer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Relief {
     heights: Option<Heights>, // none is flat
@@ -55,7 +55,8 @@ impl Relief {
         })
     }
 
-    /// From a height at every point of the ground, m; what is not finite counts as 0, the rest is cut to the limit.
+    /// A relief from a height at every point of the ground, m. Heights that are not finite count as 0; the others are
+    /// clamped to the limit.
     pub fn from_fn(extent: Extent, height_m: impl Fn(DVec2) -> f64) -> Self {
         let heights = extent.all_columns().map(|[x, y]| {
             let p = extent.center(x, y, 0).truncate();
@@ -81,7 +82,7 @@ impl Relief {
         self.heights.as_ref().map(|h| h.extent)
     }
 
-    /// The part of it that lies in another extent; the ground goes on level where this one has no columns.
+    /// The part of it that lies in another extent; where this one has no columns, the ground continues level.
     pub fn crop(&self, extent: Extent) -> Self {
         match &self.heights {
             Some(h) if h.extent != extent => Self::from_fn(extent, |p| self.height_m(p)),
@@ -89,7 +90,7 @@ impl Relief {
         }
     }
 
-    /// The same heights over another extent of the same size.
+    /// These heights over another extent of the same size.
     pub(crate) fn relabelled(&self, extent: Extent) -> Self {
         Self {
             heights: self.heights.as_ref().map(|h| Heights {
@@ -165,8 +166,8 @@ impl Relief {
         low * (1.0 - ty) + high * ty
     }
 
-    /// How far along a ray the ground is met, in lengths of `dir`, within `limit` of them; `None` where it is not, where the
-    /// ray begins below it, and for NaN. Outside the grid the ground goes on level.
+    /// Distance along a ray at which it meets the ground, in lengths of `dir`, at most `limit` of them. `None` if it
+    /// does not meet the ground, if it begins below it, and for NaN. Outside the grid the ground continues level.
     pub fn met_by(&self, origin: DVec3, dir: DVec3, limit: f64) -> Option<f64> {
         if self.is_flat() {
             let t = -origin.z / dir.z;
@@ -183,7 +184,8 @@ impl Relief {
         }
         let mut t = 0.0;
         while t < limit {
-            // Half of the height above the ground: no ground rises more steeply over a voxel than a wall, which is met then.
+            // A step of half the height above the ground: within a voxel no ground rises more steeply than a wall, and
+            // a wall is met.
             let next = (t + unit * (gap_m / 2.0).max(Extent::VOXEL_M / 2.0)).min(limit);
             gap_m = above_m(next);
             if gap_m < 0.0 {

@@ -1,4 +1,4 @@
-//! How many points of a sweep lie in each box, as the kits of data sets count them: faces included.
+//! Number of points of a sweep in each box, counted as by the development kits of data sets: faces included.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -16,7 +16,7 @@ pub struct Returns {
 }
 
 impl Returns {
-    /// Points of the frame that the boxes are in, m; those that are not finite are in no box.
+    /// Points in the frame of the boxes, m; points that are not finite are in no box.
     pub fn new(points_m: impl Iterator<Item = DVec3>) -> Self {
         let mut bins: HashMap<[i64; 2], Vec<DVec3>> = HashMap::new();
         for p in points_m.filter(|p| p.is_finite()) {
@@ -25,7 +25,7 @@ impl Returns {
         Self { bins }
     }
 
-    /// How many lie in a box; none in one that is not sound.
+    /// Number of points in a box; 0 for a box that is not sound.
     pub fn within(&self, b: &SceneBox) -> u32 {
         if b.problem().is_some() {
             return 0;
@@ -38,7 +38,7 @@ impl Returns {
         points.filter(|p| b.contains(**p, 0.0)).count() as u32
     }
 
-    /// How many lie in each of the boxes, those with any.
+    /// Number of points in each box that has any.
     pub fn by_box<'a>(&self, boxes: impl Iterator<Item = &'a SceneBox>) -> BTreeMap<BoxId, u32> {
         let counts = boxes.map(|b| (b.id, self.within(b)));
         counts.filter(|(_, n)| *n > 0).collect()

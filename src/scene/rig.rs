@@ -10,7 +10,7 @@ use super::{Lens, Optics, Pose, Shutter};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
-    /// As in the data set: `CAM_FRONT`.
+    /// Name, as in the data set: `CAM_FRONT`.
     pub name: String,
     /// Image size in pixels.
     pub width: u32,
@@ -35,7 +35,7 @@ pub struct Camera {
     pub carried: Carried,
 }
 
-/// How a vehicle moves while a picture is read, in the frame of the sensors' poses.
+/// Motion of a vehicle while a picture is read, in the frame of the sensors' poses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Carried {
     /// Velocity of the vehicle's origin, m/s.
@@ -47,7 +47,7 @@ pub struct Carried {
 }
 
 impl Camera {
-    /// Takes points of the optical frame to the ego frame.
+    /// Transform from the optical frame to the ego frame.
     pub fn ego_from_camera(&self) -> Pose {
         Pose::from_wxyz(self.rotation_wxyz, self.translation_m)
     }
@@ -101,7 +101,7 @@ impl Camera {
         self.focal_px = [focal, focal * if aspect.is_finite() { aspect } else { 1.0 }];
     }
 
-    /// Where the camera looks.
+    /// Direction of the camera.
     pub fn aim(&self) -> Aim {
         Aim::of(self.ego_from_camera().rotation * BODY_FROM_OPTICAL.inverse())
     }
@@ -112,7 +112,7 @@ impl Camera {
         self.rotation_wxyz = [q.w, q.x, q.y, q.z];
     }
 
-    /// The same view at another image size; the focal length and centre scale with each axis.
+    /// The camera at another image size; the focal length and centre scale with each axis.
     pub fn resized(&self, width: u32, height: u32) -> Camera {
         let (sx, sy) = (
             f64::from(width) / f64::from(self.width),
@@ -135,11 +135,11 @@ const BODY_FROM_OPTICAL: DQuat = DQuat::from_xyzw(-0.5, 0.5, -0.5, 0.5);
 /// pitch, then rolled about its own axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aim {
-    /// Counter-clockwise from straight ahead, degrees.
+    /// Angle from straight ahead, counter-clockwise, degrees.
     pub yaw_deg: f64,
-    /// Upward, degrees.
+    /// Angle upward, degrees.
     pub pitch_deg: f64,
-    /// Clockwise as the sensor sees it, degrees.
+    /// Roll, clockwise as the sensor sees it, degrees.
     pub roll_deg: f64,
 }
 
@@ -156,7 +156,7 @@ impl Aim {
         }
     }
 
-    /// Body to ego.
+    /// Rotation from body to ego.
     pub fn rotation(&self) -> DQuat {
         let [yaw, pitch, roll] = [self.yaw_deg, self.pitch_deg, self.roll_deg].map(f64::to_radians);
         DQuat::from_euler(EulerRot::ZYX, yaw, -pitch, roll)
@@ -167,7 +167,7 @@ impl Aim {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LidarPattern {
-    /// As in the data set: `LIDAR_TOP`.
+    /// Name, as in the data set: `LIDAR_TOP`.
     pub name: String,
     /// Elevation of each beam in degrees, lowest first; ring i is entry i.
     pub elevations_deg: Vec<f64>,
@@ -207,24 +207,24 @@ pub struct LidarPattern {
 }
 
 impl LidarPattern {
-    /// Takes points of the sensor frame to the ego frame.
+    /// Transform from the sensor frame to the ego frame.
     pub fn ego_from_sensor(&self) -> Pose {
         Pose::from_wxyz(self.rotation_wxyz, self.translation_m)
     }
 
-    /// Where its x axis points.
+    /// Direction of its x axis.
     pub fn aim(&self) -> Aim {
         Aim::of(self.ego_from_sensor().rotation)
     }
 
-    /// Turns it.
+    /// Turns the sensor.
     pub fn set_aim(&mut self, aim: Aim) {
         let q = aim.rotation();
         self.rotation_wxyz = [q.w, q.x, q.y, q.z];
     }
 
-    /// The same LiDAR for `count` columns from `first` on: those are its columns 0 to `count` then, and it stands still when
-    /// the last of them is fired.
+    /// The LiDAR limited to `count` columns from `first` on. They become its columns 0 to `count`, and its sweep ends
+    /// right after the last of them.
     pub fn part(&self, first: u32, count: u32) -> LidarPattern {
         LidarPattern {
             part: Some([first, count]),
@@ -232,13 +232,13 @@ impl LidarPattern {
         }
     }
 
-    /// Columns that return anything: those in the sector, or in the part of it.
+    /// Number of columns that return anything: those in the sector, or in the part of the revolution.
     pub fn columns_in_sector(&self) -> u32 {
         if let Some([_, count]) = self.part {
             return count;
         }
         let share = (self.sector_deg / 360.0).clamp(0.0, 1.0);
-        // A hair less than the product, so that a third of 1080 columns is 360 and not 361.
+        // Slightly less than the product, so that a third of 1080 columns is 360 and not 361.
         (f64::from(self.columns) * share - 1e-6).ceil().max(0.0) as u32
     }
 
@@ -250,7 +250,7 @@ impl LidarPattern {
         self.first_azimuth_deg.to_radians() + if self.clockwise { -turn } else { turn }
     }
 
-    /// How long before the end of the sweep a column is fired, s; 0 where the whole sweep is one instant.
+    /// Time before the end of the sweep at which a column is fired, s; 0 where the whole sweep is one instant.
     pub fn before_end_s(&self, column: u32) -> f64 {
         let all = self.part.map_or(self.columns, |[_, count]| count);
         match self.spin_hz > 0.0 {
@@ -313,8 +313,8 @@ pub struct SensorRig {
 }
 
 impl SensorRig {
-    /// The same sensors with their vehicle at a pose, wherever it stood before; their poses are given in the frame of that
-    /// pose. Asked for twice it is the same: no rig is placed on top of a place.
+    /// The sensors with their vehicle moved to a pose, wherever it stood before; their poses are in the outer frame of
+    /// that pose. A second call with the same pose changes nothing: poses are not applied on top of each other.
     pub fn standing_at(&self, vehicle: &Pose) -> SensorRig {
         let mut out = self.clone();
         if self.vehicle == *vehicle {
@@ -339,8 +339,8 @@ impl SensorRig {
         out
     }
 
-    /// The same rig, with cameras that know how the vehicle carries them while their shutters read; `yaw_rate_rps` is its turn
-    /// to the left, rad/s.
+    /// The rig with the vehicle's motion set in the cameras that have a rolling shutter; `yaw_rate_rps` is its turn
+    /// rate to the left, rad/s.
     pub fn carried(mut self, yaw_rate_rps: f64) -> SensorRig {
         let carried = Carried {
             velocity_mps: self.velocity_mps(),
@@ -363,10 +363,11 @@ impl SensorRig {
 
     /// Most cameras, and most LiDARs.
     pub const MOST_SENSORS: usize = 64;
-    /// Most rays of a LiDAR: several times those of the densest there are.
+    /// Most rays of a LiDAR: several times as many as the densest model has.
     pub const MOST_RAYS: usize = 4 << 20;
 
-    /// What is wrong with this rig, if anything: names, finite numbers, sizes, focal lengths, angles, how many sensors and rays.
+    /// The first problem with this rig (names, finite numbers, sizes, focal lengths, angles, numbers of sensors and
+    /// rays); `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         if self.cameras.len().max(self.lidars.len()) > Self::MOST_SENSORS {
             return Some(format!(
@@ -464,7 +465,7 @@ impl SensorRig {
     }
 }
 
-/// True if a quaternion can be brought to length 1.
+/// True if a quaternion can be normalised.
 fn is_rotation(q: &[f64; 4]) -> bool {
     let norm = q.iter().map(|v| v * v).sum::<f64>().sqrt();
     (1e-6..1e6).contains(&norm)

@@ -1,4 +1,4 @@
-//! What sensors may be called: files of cameras have their names.
+//! Rules for the names of sensors: the files of cameras carry them.
 
 use std::collections::BTreeMap;
 
@@ -10,8 +10,8 @@ impl SensorRig {
     /// Longest name of a rig, bytes of UTF-8.
     pub const LONGEST_NAME: usize = 200;
 
-    /// What is wrong with the names of the rig and its sensors, if anything: sensors are called by plain names (see
-    /// [`crate::plain_name`]), and no two cameras by one, the case of letters aside.
+    /// The first problem with the names of the rig and its sensors; `None` if they are sound. Sensors have plain names
+    /// (see [`crate::plain_name`]), and no two cameras have the same one, ignoring case.
     pub(crate) fn names_problem(&self) -> Option<String> {
         if self.name.len() > Self::LONGEST_NAME || self.name.contains(is_hidden) {
             return Some(format!(

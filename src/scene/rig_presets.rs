@@ -5,13 +5,13 @@ use super::{Camera, LidarPattern, SensorRig};
 
 /// A LiDAR model by its name.
 pub struct LidarPreset {
-    /// As its maker calls it.
+    /// Name that its maker uses.
     pub name: &'static str,
     /// Builds the pattern, mounted on the roof of the default vehicle, level.
     pub build: fn() -> LidarPattern,
 }
 
-/// Patterns from data sheets and from what was measured (`reference/rigs.json`).
+/// Patterns from data sheets and from measurements (`reference/rigs.json`).
 pub const LIDARS: [LidarPreset; 5] = [
     LidarPreset {
         name: "HDL-32E (nuScenes)",
@@ -78,13 +78,13 @@ fn level(
 
 /// A rig by its name.
 pub struct RigPreset {
-    /// For a menu.
+    /// Name in the menu.
     pub name: &'static str,
     /// Builds the rig.
     pub build: fn() -> SensorRig,
 }
 
-/// Whole vehicles.
+/// Sensors of whole vehicles.
 pub const RIGS: [RigPreset; 4] = [
     RigPreset {
         name: "nuScenes: six cameras, HDL-32E",
@@ -121,7 +121,8 @@ pub const RIGS: [RigPreset; 4] = [
     },
 ];
 
-/// Cameras by name, yaw and field of view in degrees, around the windscreen's height.
+/// A rig of cameras, given by name, yaw and field of view in degrees, at about the height of the windscreen, and of the
+/// LiDAR `LIDARS[lidar]`.
 fn rig(name: &str, cameras: &[(&str, f64, f64)], lidar: usize) -> SensorRig {
     let of = |&(name, yaw_deg, fov_deg): &(&str, f64, f64)| {
         let mut camera = Camera::new(name, fov_deg);

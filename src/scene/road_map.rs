@@ -1,5 +1,5 @@
-//! A layout as a driver reads it: whole lanes and what they are to the ego vehicle, crossings, junctions, distances to
-//! kerbs. Everything that places boxes on a layout, or judges where they stand, asks here.
+//! A layout as a driver reads it: whole lanes and their roles for the ego vehicle, crossings, junctions, distances to
+//! kerbs. All code that places boxes on a layout, or judges their places, uses it.
 
 use std::sync::OnceLock;
 
@@ -9,9 +9,9 @@ use super::distance::{nearest_source, signed_distance_m};
 use super::graph::LaneRole;
 use super::{BevLayer, BevLayout, Extent, PolylineKind};
 
-/// Half of the width that a lane is taken to have, m.
+/// Half of the width that is assumed for a lane, m.
 pub const HALF_LANE_M: f64 = 1.75;
-/// How far a strip beside the road reaches from its border, m (a parking strip and a little).
+/// Reach of the strip beside the road from the road's border, m (a parking strip and a little).
 pub const ROADSIDE_M: f64 = 2.8;
 /// Distance between the samples of a lane, m.
 const STEP_M: f64 = 1.0;
@@ -19,7 +19,7 @@ const STEP_M: f64 = 1.0;
 /// A lane, joined of the layout's pieces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lane {
-    /// What it is to the ego vehicle.
+    /// Its role for the ego vehicle.
     pub role: LaneRole,
     /// Index of its first piece among the layout's polylines.
     pub polyline: u32,
@@ -36,11 +36,11 @@ pub struct LanePoint {
     pub position_m: DVec2,
     /// Unit vector of the driving direction.
     pub direction: DVec2,
-    /// Distance from the point asked about, m.
+    /// Distance from the given point, m.
     pub distance_m: f64,
-    /// The same with a sign: positive to the left of the lane.
+    /// Signed distance from the lane, m: positive to its left.
     pub offset_m: f64,
-    /// Way along the lane, m.
+    /// Distance along the lane, m.
     pub along_m: f64,
 }
 
@@ -58,19 +58,20 @@ pub struct CrossingArea {
 /// Lanes, areas and distances of a layout.
 #[derive(Clone, Debug)]
 pub struct RoadMap {
-    /// In the order of the layout's polylines.
+    /// Lanes, in the order of the layout's polylines.
     pub lanes: Vec<Lane>,
     /// Index of the lane that the ego vehicle drives in.
     pub ego_lane: Option<usize>,
     /// Crossings, the nearest to the ego vehicle first.
     pub crossings: Vec<CrossingArea>,
-    /// Where lanes of different directions cross, the nearest to the ego vehicle first.
+    /// Places where lanes of different directions cross, the nearest to the ego vehicle first.
     pub junctions_m: Vec<DVec2>,
-    /// Where the ego's side of the road ends and the other begins, as an offset from the ego lane (left is positive), m.
+    /// Border between the ego's side of the road and the other side, as an offset from the ego lane (left is positive),
+    /// m.
     pub middle_m: f64,
     extent: Extent,
     cells: Vec<u32>,
-    distance_m: [OnceLock<Vec<f32>>; AREAS.len()], // when first asked for
+    distance_m: [OnceLock<Vec<f32>>; AREAS.len()], // computed on first use
     nearest: Option<Vec<u32>>,                     // cell with the nearest lane sample
     sample_of: Vec<(u32, u32)>,                    // lane and point of a cell's sample
 }
@@ -179,14 +180,14 @@ impl RoadMap {
         })
     }
 
-    /// The nearest place on one lane; `None` for a lane that is not there or a point that is not finite.
+    /// The nearest place on one lane; `None` if there is no such lane or the point is not finite.
     pub fn on_lane(&self, lane: usize, p: DVec2) -> Option<LanePoint> {
         let hit = project(&self.lanes.get(lane)?.points_m, p)?;
         Some(LanePoint { lane, ..hit })
     }
 
-    /// Place beside the ego lane: way along it (m, 0 at the ego vehicle's nearest place) and offset (left is positive).
-    /// Without an ego lane, the ego frame's own x and y.
+    /// Coordinates beside the ego lane: distance along it (m, 0 at the ego vehicle's nearest place) and offset (left is
+    /// positive). Without an ego lane, the ego frame's own x and y.
     pub fn along_ego_lane(&self, p: DVec2) -> DVec2 {
         let here = |lane| Some((self.on_lane(lane, DVec2::ZERO)?, self.on_lane(lane, p)?));
         match self.ego_lane.and_then(here) {
@@ -294,7 +295,7 @@ pub fn resampled(points_m: &[DVec2], count: usize) -> Vec<DVec2> {
         .collect()
 }
 
-/// The point that many metres along a line, at its ends if beyond them; NaN for an empty line.
+/// The point at a distance along a line, m, clamped to its ends; NaN for an empty line.
 pub fn at_along(points_m: &[DVec2], along_m: f64) -> DVec2 {
     let mut left = along_m;
     for pair in points_m.windows(2) {
@@ -307,7 +308,7 @@ pub fn at_along(points_m: &[DVec2], along_m: f64) -> DVec2 {
     points_m.last().copied().unwrap_or(DVec2::NAN)
 }
 
-/// Lane pieces joined where one ends and another goes on in its direction.
+/// Lanes made of pieces: pieces are joined where one ends and another continues in its direction.
 fn joined(layout: &BevLayout) -> Vec<Lane> {
     const GAP_M: f64 = 1.2;
     const LEAST_COSINE: f64 = 0.9;
@@ -327,7 +328,7 @@ fn joined(layout: &BevLayout) -> Vec<Lane> {
         let n = p.len();
         (p[n - 1], (p[n - 1] - p[n - 2]).normalize_or_zero())
     };
-    // The best successor of each piece, each piece being the successor of one only.
+    // The best successor of each piece; each piece succeeds only one.
     let mut links: Vec<(f64, usize, usize)> = Vec::new();
     for (a, (_, pa)) in pieces.iter().enumerate() {
         for (b, (_, pb)) in pieces.iter().enumerate() {
@@ -346,7 +347,7 @@ fn joined(layout: &BevLayout) -> Vec<Lane> {
     }
     let mut used = vec![false; pieces.len()];
     let mut lanes = Vec::new();
-    // Chains from their first piece; then what is left are rings.
+    // Chains from their first piece; the remaining pieces form rings.
     let firsts = (0..pieces.len()).filter(|i| previous[*i].is_none());
     for first in firsts.chain(0..pieces.len()).collect::<Vec<_>>() {
         let (mut points, mut at) = (Vec::new(), Some(first));
@@ -374,7 +375,7 @@ fn ego_lane(lanes: &[Lane]) -> Option<usize> {
         let hit = project(&lane.points_m, DVec2::ZERO)?;
         let length = lane.points_m.len() as f64;
         let turned = hit.direction.x.clamp(-1.0, 1.0).acos();
-        // A lane that goes on ahead rather than one that turns off.
+        // Prefers a lane that continues ahead to one that turns off.
         (hit.distance_m < NEAR_M && hit.direction.x > 0.7)
             .then_some((hit.distance_m + turned - 0.01 * length.min(80.0), i))
     };
@@ -382,7 +383,7 @@ fn ego_lane(lanes: &[Lane]) -> Option<usize> {
     found.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, i)| i)
 }
 
-/// Sets the roles and answers where the two sides of the road meet.
+/// Sets the roles and returns the border between the two sides of the road.
 fn assign_roles(lanes: &mut [Lane], ego: Option<usize>, axis: &[DVec2]) -> f64 {
     const BESIDE_M: f64 = 25.0;
     let (mut left, mut right) = (Vec::new(), Vec::new()); // of the same direction: offset and index
@@ -419,7 +420,7 @@ fn assign_roles(lanes: &mut [Lane], ego: Option<usize>, axis: &[DVec2]) -> f64 {
             LaneRole::Road
         };
     }
-    // The next lane beside the ego's, wherever it is between 2 and 5.5 m away.
+    // The next lane beside the ego's: the one between 2 and 5.5 m away.
     for (list, role) in [(&left, LaneRole::Left), (&right, LaneRole::Right)] {
         for (offset, i) in list {
             if (1.8..5.6).contains(offset) {
@@ -439,13 +440,13 @@ fn assign_roles(lanes: &mut [Lane], ego: Option<usize>, axis: &[DVec2]) -> f64 {
     }
 }
 
-/// True inside a map, that far from its sides.
+/// True if the point is inside a map and at least that far from its sides.
 fn is_within(extent: Extent, p: DVec2, margin_m: f64) -> bool {
     let (min, max) = (extent.min_m().truncate(), extent.max_m().truncate());
     p.cmpgt(min + margin_m).all() && p.cmplt(max - margin_m).all()
 }
 
-/// Places where lanes of different directions cross, one for each 15 m, the nearest first.
+/// Places where lanes of different directions cross, at most one within 15 m, the nearest first.
 fn junctions(extent: Extent, lanes: &[Lane]) -> Vec<DVec2> {
     const STRIDE: usize = 3;
     const APART_M: f64 = 15.0;

@@ -1,4 +1,4 @@
-//! What sensors return: label and depth maps of a camera, points of a LiDAR sweep.
+//! Output of sensors: label and depth maps of a camera, points of a LiDAR sweep.
 
 use super::{BevLayer, Class};
 
@@ -55,7 +55,7 @@ pub struct CameraMaps {
     pub coverage: Vec<f32>,
 }
 
-/// Where the planes of a multi-plane image lie: plane l at near + (far - near) l / count (SyntheOcc, equation 1).
+/// Depths of the planes of a multi-plane image: plane l at near + (far - near) l / count (SyntheOcc, equation 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planes {
     /// Number of planes.
@@ -83,14 +83,14 @@ impl Planes {
     }
 }
 
-/// Planes that show one class at one pixel: `first` up to, without, `end`.
+/// Planes that show one class at one pixel: from `first` up to, but not including, `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlaneRun {
     /// Nearest plane.
     pub first: u16,
     /// One past the farthest.
     pub end: u16,
-    /// What they show.
+    /// Class that they show.
     pub id: RenderId,
 }
 
@@ -105,7 +105,7 @@ pub struct MultiPlaneImage {
     pub height: usize,
     /// Depths.
     pub planes: Planes,
-    /// Where each pixel's runs begin, row-major; one more than there are pixels.
+    /// Start of each pixel's runs, row-major; one entry more than there are pixels.
     pub starts: Vec<u32>,
     /// Runs, near to far in each pixel.
     pub runs: Vec<PlaneRun>,
@@ -117,7 +117,7 @@ impl MultiPlaneImage {
         &self.runs[self.starts[pixel] as usize..self.starts[pixel + 1] as usize]
     }
 
-    /// What a pixel shows on a plane; `None` where it is free.
+    /// The class that a pixel shows on a plane; `None` where the plane is free.
     pub fn at(&self, pixel: usize, plane: u16) -> Option<RenderId> {
         let runs = self.pixel(pixel);
         runs.iter()
@@ -138,7 +138,7 @@ impl MultiPlaneImage {
     }
 }
 
-/// What stands where in a camera's picture, whatever hides it: one bit per channel and pixel, row-major. X-Scene
+/// Objects and lines in a camera's picture, whether hidden or not: one bit per channel and pixel, row-major. X-Scene
 /// section 6.6: three lines, the road, ten classes of boxes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PerspectiveMap {
@@ -167,13 +167,13 @@ pub struct LidarPoint {
     pub azimuth: u16,
     /// Class of the voxel that was hit.
     pub class: super::Class,
-    /// Strength of the echo as sensors report it, 0 to 255; 0 where nothing is known of it.
+    /// Strength of the echo as sensors report it, 0 to 255; 0 where it is unknown.
     pub intensity: f32,
-    /// How likely a real sensor gets no echo from there, 0 to 1.
+    /// Probability that a real sensor gets no echo from there, 0 to 1.
     pub drop_probability: f32,
-    /// When it was measured, s from the end of the sweep on: 0 or less.
+    /// Time of the measurement, s from the end of the sweep: 0 or less.
     pub time_s: f32,
-    /// How fast what was hit moves over the ground, in the frame of the position, m/s.
+    /// Velocity over the ground of the object that was hit, in the frame of the position, m/s.
     pub velocity_mps: [f32; 2],
 }
 
@@ -184,7 +184,7 @@ pub struct LidarSweep {
     pub points: Vec<LidarPoint>,
     /// Rays that were cast.
     pub rays: usize,
-    /// The ground is where it really lies, and not two bins lower as in the labels.
+    /// True if the ground is at its true height, and not two bins lower as in the labels.
     pub physical: bool,
 }
 

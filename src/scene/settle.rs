@@ -1,4 +1,5 @@
-//! What has been generated: the frame's source catches up with what was authored, everywhere or in a part of the map.
+//! Settling of a frame: its source takes over the authored state, everywhere or in a part of the map, once the
+//! occupancy was generated for it.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -7,7 +8,7 @@ use crate::raster::box_cells;
 use crate::{Extent, Frame, SceneBox, SourceFrame};
 
 impl Frame {
-    /// Notes that the occupancy was generated for all that is authored.
+    /// Records that the occupancy was generated for everything that is authored.
     pub fn settle(&mut self) {
         self.source = Arc::new(SourceFrame {
             layout: self.layout.clone(),
@@ -16,8 +17,8 @@ impl Frame {
         });
     }
 
-    /// Notes that the occupancy was generated for what is authored within an extent: the layout there, and boxes that stand
-    /// there by a column at least. What was authored elsewhere stays to be generated.
+    /// Records that the occupancy was generated for everything authored within an extent: the layout there, and boxes
+    /// with at least a column there. Other authored parts remain to be generated.
     pub fn settle_within(&mut self, extent: Extent) {
         let mut source = SourceFrame::clone(&self.source);
         source.layout.paste(&self.layout.crop(extent));
@@ -37,7 +38,7 @@ impl Frame {
     }
 }
 
-/// True if some state of a box stands within an extent, or none on the map: nothing is ever generated there.
+/// True if a state of a box stands within an extent, or if none stands on the map, where nothing is ever generated.
 fn stands_within(map: Extent, extent: Extent, states: [Option<&SceneBox>; 2]) -> bool {
     let (mut within, mut on_map) = (false, false);
     for b in states.into_iter().flatten() {
@@ -88,7 +89,7 @@ mod tests {
         assert!(heights(&frame)[1] != 0.0);
         assert_eq!(held(&frame), [1, 2, 3]);
         assert_eq!(frame.source.layout, frame.layout);
-        // One that was taken away from beyond the map is gone everywhere.
+        // A box that was removed beyond the map is settled everywhere.
         frame.boxes.remove(&BoxId(1));
         frame.settle_within(Extent::new([300, -20], [40, 40]).expect("sound"));
         assert_eq!(held(&frame), [1, 2, 3]);

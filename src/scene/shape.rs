@@ -79,7 +79,7 @@ impl Shape {
                 finite("points_m", points_m)?;
                 not_negative("width_m", *width_m)?;
                 let half_m = (width_m / 2.0).max(Self::MIN_HALF_WIDTH_M);
-                // Round ends; also all there is if the pointer did not move.
+                // Round ends; these are all there is if the pointer did not move.
                 raster::disc_cells(extent, points_m[0], half_m, &mut visit);
                 raster::line_cells(extent, points_m, half_m, visit);
             }
@@ -127,7 +127,7 @@ fn not_negative(field: &'static str, value: f64) -> Result<(), EditError> {
     })
 }
 
-/// Errors unless a list holds enough.
+/// Errors unless a list holds at least the expected number of entries.
 pub fn at_least(field: &'static str, found: usize, expected: usize) -> Result<(), EditError> {
     if found >= expected {
         return Ok(());

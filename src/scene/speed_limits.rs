@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::{BevLayout, PolylineKind};
 
-/// Lines are followed so far beyond the map, m.
+/// Distance beyond the map up to which lines are followed, m.
 const AROUND_M: f64 = 100.0;
 /// Side of a cell of the index, m.
 const CELL_M: f64 = 8.0;

@@ -1,4 +1,5 @@
-//! Gaussians with a label and how they are drawn: what the renderers on processor and graphics card share.
+//! Labelled Gaussians and the constants for drawing them: the data that the renderers on the processor and on the
+//! graphics card share.
 
 use super::sensor_data::{CameraMaps, RenderId};
 
@@ -11,7 +12,7 @@ pub struct Gaussian {
     pub std_m: f32,
     /// Alpha at the centre; held to 0..1, NaN draws nothing.
     pub opacity: f32,
-    /// What it shows; ids from 20 on draw nothing.
+    /// Label that it shows; ids from 20 on draw nothing.
     pub id: RenderId,
 }
 
@@ -31,7 +32,7 @@ pub struct SplatOptions {
     pub alpha_min: f32,
     /// A pixel with less light left takes no more splats.
     pub t_stop: f32,
-    /// How far off the axis the Jacobian is taken, in units of half the image.
+    /// Farthest distance from the axis at which the Jacobian is taken, in units of half the image.
     pub jacobian_clamp: f64,
     /// Multiply opacity by sqrt(det / det'), so that a splat far below a pixel does
     /// not gain weight (Mip-Splatting, arXiv 2311.16493).
@@ -56,10 +57,10 @@ impl Default for SplatOptions {
     }
 }
 
-/// Below this coverage a normalised depth says nothing.
+/// Least coverage at which a normalised depth is meaningful.
 pub const MIN_DEPTH_COVERAGE: f32 = 1e-3;
 
-/// Everything the renderer knows about the pixels of one camera, row-major, `height * width` each.
+/// Maps of the pixels of one camera as the renderer computes them, row-major, `height * width` values each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RawMaps {
     /// Pixels per row.
@@ -99,7 +100,7 @@ impl RawMaps {
         }
     }
 
-    /// What a sensor returns: the label only where coverage is at least `min_coverage`, else 0.
+    /// The output of the sensor: the label only where coverage is at least `min_coverage`, else 0.
     pub fn into_camera_maps(self, camera: &str, options: &SplatOptions) -> CameraMaps {
         let visible = |(&label, &coverage): (&i16, &f32)| {
             if coverage < options.min_coverage {

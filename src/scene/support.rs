@@ -1,10 +1,10 @@
-//! Groups of voxels that touch each other, and what of the occupancy stands on the ground.
+//! Groups of voxels that touch each other, and the part of the occupancy that stands on the ground.
 
 use crate::{Class, Extent, Unobserved, VoxelGrid};
 
-/// Bins in which the ground may lie: bin 0 in the labels' convention, bin 2 where it really is.
+/// Bins in which the ground may lie: bin 0 in the labels' convention, bin 2 at its true height.
 const GROUND_BINS: u16 = 0b111;
-/// Ground above them carries what stands on it if so many voxels of it belong together: 16 m².
+/// Number of connected ground voxels above those bins from which on they carry objects: 16 m².
 const WIDE_GROUND: usize = 100;
 
 /// One word per column `[x][y]`, one bit per bin that is not free.
@@ -38,14 +38,14 @@ pub fn ground(extent: Extent, by_class: &[Vec<u16>]) -> Vec<u16> {
     out
 }
 
-/// Vegetation that floats in groups of at least so many voxels is the crown of a tree.
+/// Number of voxels from which on a floating group of vegetation counts as the crown of a tree.
 pub const CROWN: usize = 8;
 
-/// What of `occupied` stands: what is connected to the ground bins, or to wide ground that lies higher, through voxels
-/// that touch by a face, an edge or a corner.
+/// The part of `occupied` that stands: voxels connected to the ground bins, or to wide ground that lies higher, through
+/// voxels that touch by a face, an edge or a corner.
 pub fn supported(extent: Extent, occupied: &[u16], ground: &[u16]) -> Vec<u16> {
     let out = reached(extent, occupied, |_| 0);
-    // A hill that meets the lowest bins nowhere is no less ground.
+    // A hill that does not reach the lowest bins is ground too.
     let mut high = Vec::new();
     for (c, (ground, out)) in ground.iter().zip(&out).enumerate() {
         high.extend(bins_set(extent, c, ground & !out));
@@ -62,15 +62,15 @@ pub fn supported(extent: Extent, occupied: &[u16], ground: &[u16]) -> Vec<u16> {
     reached(extent, occupied, |c| seeds[c])
 }
 
-/// What of `occupied` is connected to the ground bins or to the seeds of a column, through voxels that touch by a face, an
-/// edge or a corner.
+/// The part of `occupied` that is connected to the ground bins or to the seeds of a column, through voxels that touch
+/// by a face, an edge or a corner.
 pub fn reached(extent: Extent, occupied: &[u16], seeds: impl Fn(usize) -> u16) -> Vec<u16> {
     let start = |(c, bits): (usize, &u16)| match *bits {
         0 => 0,
         bits => fill(bits & (GROUND_BINS | seeds(c)), bits),
     };
     let mut out: Vec<u16> = occupied.iter().enumerate().map(start).collect();
-    // Columns whose neighbours may still gain something: what reaches no higher than the ground bins brings nothing new.
+    // Columns whose neighbours may still gain voxels: one that reaches no higher than the ground bins adds nothing.
     let mut queue: Vec<usize> = (0..out.len())
         .filter(|c| out[*c] << 1 & !GROUND_BINS != 0)
         .collect();
@@ -87,7 +87,7 @@ pub fn reached(extent: Extent, occupied: &[u16], seeds: impl Fn(usize) -> u16) -
     out
 }
 
-/// The voxels of a column that a word names.
+/// The voxels of a column whose bits are set in a word.
 pub fn bins_set(extent: Extent, column: usize, mut word: u16) -> impl Iterator<Item = [usize; 3]> {
     let [x, y] = extent.column(column);
     std::iter::from_fn(move || {
@@ -166,8 +166,8 @@ pub fn main_class(grid: &VoxelGrid, cells: &[[usize; 3]]) -> Class {
     Class::from_id(first as u8).unwrap_or(Class::Others)
 }
 
-/// False for what may be held by something that the grid does not show: beyond its sides or its top (objects excepted,
-/// they stand on their own), or by voxels below that no sensor observed.
+/// True if a group is known to float. False if something that the grid does not show may hold it: beyond its sides or
+/// its top (except for objects, which stand on their own), or voxels below that no sensor observed.
 pub fn is_known_to_float(grid: &VoxelGrid, unobserved: Option<&Unobserved>, group: &[[usize; 3]]) -> bool {
     let is_object = |[x, y, z]: [usize; 3]| Class::from_id(grid.get(x, y, z)).is_some_and(Class::is_object);
     let at_edge = |cell: [usize; 3]| reaches_side(grid.extent(), &[cell]) || cell[2] + 1 == Extent::NZ;
@@ -180,7 +180,7 @@ pub fn is_known_to_float(grid: &VoxelGrid, unobserved: Option<&Unobserved>, grou
         .any(|c| (at_edge(*c) && !is_object(*c)) || unknown_below(*c))
 }
 
-/// May something beyond the sides of the grid hold it?
+/// True if something beyond the sides of the grid may hold the group.
 pub fn reaches_side(extent: Extent, group: &[[usize; 3]]) -> bool {
     let at_side = |[x, y, _]: &[usize; 3]| *x == 0 || *y == 0 || x + 1 == extent.nx() || y + 1 == extent.ny();
     group.iter().any(at_side)

@@ -1,4 +1,4 @@
-//! What a camera picture shows, pixel by pixel, from the very rays that made its colours; and the boxes in it.
+//! Ground truth of a camera picture, pixel by pixel, from the same rays that gave its colours; and the boxes in it.
 
 use glam::DVec3;
 
@@ -48,7 +48,7 @@ pub fn color(class: TruthClass) -> [u8; 3] {
     }
 }
 
-/// What one pixel shows.
+/// Ground truth of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthPixel {
     /// Its class.
@@ -59,7 +59,7 @@ pub struct TruthPixel {
     pub depth_m: f32,
     /// Outward unit normal in the optical frame; zero where there is no surface of the scene.
     pub normal_in_camera: [f32; 3],
-    /// Where what it shows is seen at the next moment, px from here; NaN where it is not seen or nothing is known.
+    /// Way to where the same point is seen at the next moment, px; NaN where it is not seen then or nothing is known.
     pub flow_px: [f32; 2],
 }
 
@@ -76,7 +76,7 @@ impl Default for TruthPixel {
     }
 }
 
-/// A box as a camera sees it.
+/// A box in a camera's picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeenBox {
     /// The box, in the frame of the sensors' poses.
@@ -89,9 +89,9 @@ pub struct SeenBox {
     pub visible_px: u32,
     /// Pixels that would show it if nothing stood in front, inside the picture.
     pub whole_px: u32,
-    /// Share of those that do show it, 0 to 1.
+    /// Share of those pixels that do show it, 0 to 1.
     pub visibility: f64,
-    /// What of its outline's bounds lies inside the picture, 0 to 1.
+    /// Share of its outline's bounds that lies inside the picture, 0 to 1.
     pub in_picture: f64,
     /// Bounds of the pixels that show it: left, top, right, bottom, px; none if none does.
     pub visible_bounds_px: Option<[f64; 4]>,
@@ -108,9 +108,9 @@ pub struct CameraTruth {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// What each pixel shows.
+    /// The pixels.
     pub pixels: Vec<TruthPixel>,
-    /// How long after this moment the flow leads, s; none without flow.
+    /// Time from this moment to the one that the flow leads to, s; none without flow.
     pub flow_s: Option<f64>,
     /// The boxes that it shows or would show if nothing stood in front, in the order of their ids.
     pub boxes: Vec<SeenBox>,

@@ -1,4 +1,4 @@
-//! A finding of the quality checks that the user has looked at and lives with.
+//! A finding of the quality checks that the user has looked at and accepted.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::BoxId;
 
-/// What was found, and why it may stay.
+/// An accepted finding, and the reason why it may stay.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Waiver {
@@ -16,8 +16,8 @@ pub struct Waiver {
     /// The box it is about, if it is about one.
     #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
     pub box_id: Option<BoxId>,
-    /// Where it was found, ego frame, m.
+    /// Place of the finding, ego frame, m.
     pub where_m: DVec3,
-    /// Why it may stay.
+    /// Reason why it may stay.
     pub reason: Arc<str>,
 }

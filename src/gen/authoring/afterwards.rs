@@ -1,13 +1,13 @@
-//! A look at what came of words: what stands elsewhere than was said, and what collides.
+//! Checks after words were carried out: deviations from stated distances, and collisions.
 
 use super::prompting::Laid;
 use place::lanes::LaneMap;
 use place::off::off;
 
-/// Collisions that an answer names.
+/// Most collisions that an answer names.
 const MOST_CLASHES: usize = 4;
 
-/// What stands in each other or meets, in a line.
+/// The collisions, in a line; `None` if there are none.
 pub(crate) fn told(clashes: &[String]) -> Option<String> {
     let more = clashes.len().saturating_sub(MOST_CLASHES);
     let mut named = clashes[..clashes.len() - more].join("; ");
@@ -17,7 +17,7 @@ pub(crate) fn told(clashes: &[String]) -> Option<String> {
     (!named.is_empty()).then(|| format!("collisions: {named}"))
 }
 
-/// What stands, and not as far away as was said, in words, one line each.
+/// Deviations from stated distances, in words, one line each.
 pub fn off_by(made: &Laid) -> Vec<String> {
     let graph = &made.graphed.graph;
     let map = LaneMap::new(&made.road.layout);
@@ -28,7 +28,7 @@ pub fn off_by(made: &Laid) -> Vec<String> {
         let Some((o, _)) = objects.into_iter().find(|(_, nodes)| nodes.contains(&edge.from)) else {
             continue;
         };
-        // (of several in a line the first stands where it was said)
+        // (of several in a line the first stands at the stated place)
         let mut stated = o.relations.iter().filter_map(|r| r.distance_m);
         if stated.any(|s| (s - x.asked_m).abs() < 1e-9) {
             out.push(format!(

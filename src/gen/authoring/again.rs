@@ -1,4 +1,4 @@
-//! A scene made again from the recipe of a file.
+//! A scene made again from the recipe in a file.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,8 +14,8 @@ use formats::recipe::Recipe;
 use scene::Scene;
 use scene::message::quoted;
 
-/// The scene that the words of a recipe make, in the same order and from the same seed, under its light and air. What was
-/// changed by hand is not in a recipe. Errors if there are no words, or they cannot be carried out.
+/// The scene that the words of a recipe make, in the same order and from the same seed, under its light and air.
+/// Changes by hand are not in a recipe. Errors if there are no words, or they cannot be carried out.
 pub fn again(recipe: &Recipe) -> anyhow::Result<Scene> {
     let Some((first, rest)) = recipe.words.split_first() else {
         bail!("the recipe has no words");
@@ -35,12 +35,12 @@ pub fn again(recipe: &Recipe) -> anyhow::Result<Scene> {
     Ok(scene)
 }
 
-/// A scene from a file of any format that is read; of a picture that carries words alone, the scene that they make again.
+/// A scene from a file of any format that is read; from a picture that has only words, the scene that they make again.
 pub fn scene_of(path: &Path) -> anyhow::Result<Scene> {
     Ok(file(path)?.scene)
 }
 
-/// The same with what is to be said of it.
+/// The scene of [`scene_of`], with notes on how it was read.
 pub fn file(path: &Path) -> anyhow::Result<open::Opened> {
     match import::format_of(path).map(|importer| importer.id) {
         Ok("picture") => match import::read(path)?.1 {

@@ -13,20 +13,20 @@ use sensors::perceived::{LEAST_PX, MISSED_BELOW, Perceived};
 use sensors::perceived_sweep::{self, LEAST_RETURNS};
 use sensors::perceived_voxels::{self, LEAST_VOXELS};
 
-/// Distance of one step, m, and how many there are.
+/// Distance of one step, m, and number of steps.
 const AWAY_M: (f64, usize) = (1.0, 40);
-/// Shift of one step, m, and how far it goes to either side.
+/// Shift of one step, m, and farthest shift to either side, m.
 const ASIDE_M: (f64, f64) = (0.5, 8.0);
-/// Visibility falls to this share at each step, down to this, m.
+/// Factor by which visibility falls at each step, and its lower limit, m.
 const FOG: (f64, f64) = (0.8, 8.0);
-/// Faster by so much at each step, up to so much, m/s.
+/// Increase of speed at each step, and upper limit, m/s.
 const FASTER_MPS: (f64, f64) = (2.5, 40.0);
-/// Where fog begins, m.
+/// Visibility at which fog begins, m.
 const CLEAR_M: f64 = 250.0;
-/// Cameras that see the object at its edge look this much farther, rad.
+/// Angle by which cameras with the object at their edge are widened, rad.
 const MARGIN_RAD: f64 = 0.2;
 
-/// What is varied.
+/// The property that is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Vary {
     /// The object goes away from the ego vehicle, metre by metre.
@@ -54,7 +54,7 @@ impl Vary {
         Vary::Speed,
     ];
 
-    /// What it varies, for a person.
+    /// Name of the varied property, for a person.
     pub fn title(self) -> &'static str {
         match self {
             Vary::Distance => "Distance",
@@ -67,7 +67,7 @@ impl Vary {
     }
 }
 
-/// Whose network is to miss the object.
+/// Sensors of the network that is to miss the object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Sensor {
     /// The cameras'.
@@ -75,19 +75,20 @@ pub enum Sensor {
     Cameras,
     /// The LiDAR's.
     Lidar,
-    /// That which tells voxels from both.
+    /// The network that tells voxels from both.
     Both,
 }
 
 impl Sensor {
-    /// All, with what they are called.
+    /// All values, with their names.
     pub const ALL: [(Self, &'static str); 3] = [
         (Self::Cameras, "Cameras"),
         (Self::Lidar, "LiDAR"),
         (Self::Both, "Both"),
     ];
 
-    /// What can be varied: light and air mean nothing to the LiDAR of the program, and pictures are taken in a moment.
+    /// The properties that can be varied: light and air do not affect the LiDAR of the program, and pictures are taken
+    /// in a moment.
     pub fn varies(self) -> &'static [Vary] {
         match self {
             Self::Cameras => Vary::ALL.split_at(5).0,
@@ -109,12 +110,13 @@ impl Sensor {
 /// How well an object is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// By what.
+    /// The sensors.
     pub by: Sensor,
-    /// Pixels that show it in the camera that shows most of it, returns on it, or its voxels if a sensor plainly sees it.
+    /// Pixels that show it in the camera that shows most of it, returns on it, or its voxels if a sensor sees it
+    /// plainly.
     pub visible: usize,
-    /// Share of the pixels that the network takes for a thing, in the camera where that is most; how sure it is of the box; or that share of
-    /// the voxels.
+    /// Share of the pixels that the network takes for a thing, in the camera where that is most; confidence of the box;
+    /// or share of the voxels.
     pub share: f64,
 }
 
@@ -124,28 +126,28 @@ impl Sight {
         self.visible >= self.by.least()
     }
 
-    /// True if it is plain to see and the network misses it.
+    /// True if it is plainly visible and the network misses it.
     pub fn is_missed(&self) -> bool {
         self.is_judged() && self.share < MISSED_BELOW
     }
 }
 
-/// How a variation differs from the scene.
+/// Difference of a variation from the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
-    /// It does not.
+    /// No difference.
     None,
-    /// The object is so far from the ego vehicle, m.
+    /// Distance of the object from the ego vehicle, m.
     Away(f64),
-    /// The object is so far to the left, m; to the right if negative.
+    /// Shift of the object to the left, m; to the right if negative.
     Aside(f64),
-    /// One sees so far, m.
+    /// Visibility, m.
     Visibility(f64),
-    /// It is another time of day.
+    /// Another time of day.
     Time(TimeOfDay),
-    /// It is another weather.
+    /// Another weather.
     Weather(Weather),
-    /// The object drives so fast, m/s.
+    /// Speed of the object, m/s.
     Speed(f64),
 }
 
@@ -167,27 +169,28 @@ impl std::fmt::Display for Change {
 /// One variation that was tried.
 #[derive(Clone, Copy, Debug)]
 pub struct Tried {
-    /// How it differs from the scene.
+    /// Its difference from the scene.
     pub change: Change,
-    /// How the object is seen then.
+    /// The sight of the object in it.
     pub sight: Sight,
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Debug)]
 pub struct Search {
-    /// The moment that was looked at, s.
+    /// The moment of the scene that was looked at, s.
     pub at_s: f64,
-    /// Everything that was tried, in order; the first is the scene as it is.
+    /// Variations that were tried, in order; the first is the scene as it is.
     pub tried: Vec<Tried>,
-    /// The last one misses the object: the edits that lead there, none for the scene as it is.
+    /// Edits that lead to the last variation, if it misses the object; no edits if that is the scene as it is.
     pub found: Option<Vec<Edit>>,
-    /// It was ended before everything was tried.
+    /// True if the search was ended before everything was tried.
     pub stopped: bool,
 }
 
-/// Varies a scene until a network does not see a box that is plain to see. `watch` hears of each try and how many there
-/// are at most, and may end the search. Errors if there is no such box, every change is refused, or the network fails.
+/// Varies a scene until a network does not see a box that is plainly visible. `watch` is called for each try, with its
+/// number and the largest possible number, and may end the search. Errors if there is no such box, every change is
+/// refused, or the network fails.
 pub fn search(
     scene: &Scene,
     id: BoxId,
@@ -216,7 +219,7 @@ pub fn search(
     let as_it_is = std::iter::once((Change::None, Vec::new()));
     for (change, edits) in as_it_is.chain(steps) {
         let mut document = Document::new(scene.clone());
-        // A place where the box cannot stand is left out.
+        // A place where the box cannot stand is skipped.
         if let Err(error) = document.apply_all("vary", &edits) {
             refused = refused.or(Some(error));
             continue;
@@ -233,8 +236,8 @@ pub fn search(
         if missed {
             out.found = Some(edits);
         }
-        // What is too small to be missed becomes no larger farther away.
-        // What is too small to be judged as it is needs no search.
+        // An object too small to be missed does not become larger farther away. One that is too small to be judged as
+        // it is needs no search.
         let small = !tried.sight.is_judged();
         let gone = small && (vary == Vary::Distance || out.tried.len() == 1);
         if missed || gone {
@@ -366,19 +369,19 @@ fn steps(scene: &Scene, b: &SceneBox, vary: Vary) -> Vec<(Change, Vec<Edit>)> {
     }
 }
 
-/// When a scene is looked at whose speeds are varied, s: once a whole sweep has been measured.
+/// Moment at which a scene with varied speeds is looked at, s: once a whole sweep has been measured.
 fn after_a_sweep(scene: &Scene) -> f64 {
     let spin_hz = scene.rig.lidars.first().map_or(0.0, |l| l.spin_hz);
     let sweep_s = if spin_hz > 0.0 { 1.0 / spin_hz } else { 0.0 };
     scene.time_s().max(sweep_s)
 }
 
-/// True if the LiDAR of a scene turns while it measures, so that what drives is drawn out or pressed together.
+/// True if the LiDAR of a scene turns while it measures, so that moving objects are stretched or compressed.
 pub fn speed_matters(scene: &Scene) -> bool {
     scene.rig.lidars.first().is_some_and(|l| l.spin_hz > 0.0)
 }
 
-/// Why the speed of a box cannot be varied, if it cannot.
+/// The reason why the speed of a box cannot be varied; `None` if it can.
 fn speed_problem(scene: &Scene, id: BoxId) -> Option<String> {
     if !speed_matters(scene) {
         return Some(
@@ -390,7 +393,8 @@ fn speed_problem(scene: &Scene, id: BoxId) -> Option<String> {
     follows.then(|| format!("box {} follows a motion: its speed is set there", id.0))
 }
 
-/// Edits that let a box drive so fast, m/s: it is where it is now [`after_a_sweep`], and goes on for as long.
+/// Edits that make a box drive at a speed, m/s: it is at its present place [`after_a_sweep`], and drives on for as
+/// long.
 fn driving(scene: &Scene, b: &SceneBox, mps: f64) -> Vec<Edit> {
     let at_s = after_a_sweep(scene);
     let (here, way) = (b.center_m.truncate(), b.heading() * mps * at_s);
@@ -455,13 +459,13 @@ mod tests {
             sight(document.scene(), id, Sensor::Cameras).expect("a sight"),
             last.sight
         );
-        // It can be ended, and a box that is not there is named.
+        // The search can be ended, and an unknown box is named in the error.
         let ended = search(&scene, id, Vary::Offset, Sensor::Cameras, |_, _| {
             ControlFlow::Break(())
         });
         let ended = ended.expect("the shipped network");
         assert!(ended.tried.len() == 1 && ended.found.is_none() && ended.stopped);
-        // Nothing moves a locked box: that is said, not that it is always seen.
+        // A locked box cannot be moved: the search reports that, and not that the box is always seen.
         let mut document = Document::new(scene.clone());
         let lock = Edit::Arrange {
             boxes: vec![id],
@@ -500,7 +504,7 @@ mod tests {
         });
         let found = found.expect("the shipped network");
         let last = found.tried.last().expect("tries").sight;
-        // In the end it is missed, or has too few returns to be judged, or it was moved as far as the search goes.
+        // In the end it is missed, has too few returns to be judged, or was moved as far as the search goes.
         assert!(last.is_missed() || !last.is_judged() || found.tried.len() > 30);
         assert!(found.tried[0].sight.visible > last.visible && last.by == Sensor::Lidar);
         assert!(!Sensor::Lidar.varies().contains(&Vary::Fog));
@@ -552,7 +556,7 @@ mod tests {
         let then = document.scene().at(after_a_sweep(&scene));
         let after = then.frame().boxes[&b.id];
         assert!(after.center_m.distance(b.center_m) < 0.05, "{}", after.center_m);
-        // Now that it moves while the LiDAR turns the sweep differs.
+        // The box moves while the LiDAR turns, so the sweep differs.
         let sweep = |scene: &Scene| {
             sensors::rolling::of_voxels(&scene.with_rig_in_world())
                 .points

@@ -1,4 +1,4 @@
-//! Drives through procedural worlds with traffic that behaves: what the temporal networks learn from and are judged on.
+//! Drives through procedural worlds with realistic traffic: training and test data of the temporal networks.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,8 @@ use world::{template, traffic};
 pub const FRAMES: usize = 8;
 /// Time between two of them, s: that of labelled frames of public data sets.
 pub const STEP_S: f64 = 0.5;
-/// A vehicle this near to the middle of a lane drives in it, m; who is parked stands farther from it.
+/// Distance from the middle of a lane within which a vehicle drives in the lane, m; parked vehicles stand farther from
+/// it.
 const IN_LANE_M: f64 = 1.0;
 
 /// A frame of a drive, along the axes of its ego vehicle.
@@ -35,19 +36,19 @@ pub struct DriveFrame {
     pub layout: BevLayout,
     /// Objects.
     pub boxes: BTreeMap<BoxId, SceneBox>,
-    /// Where the vehicle is on the ground of the first frame: x and y in m, heading in rad.
+    /// Place of the vehicle on the ground of the first frame: x and y in m, heading in rad.
     pub pose: [f64; 3],
 }
 
 /// A drive: in data sets [`FRAMES`] frames.
 pub struct Drive(pub Vec<DriveFrame>);
 
-/// Frames of a drive at most.
+/// Most frames of a drive.
 const MOST_FRAMES: usize = 32;
-/// Columns that a vehicle comes to see more of with each frame, at 15 m/s.
+/// Columns by which the view of a vehicle grows with each frame, at 15 m/s.
 const COLUMNS_PER_FRAME: usize = 19;
 
-/// The map of a drive: the window and what a vehicle comes to see, at 15 m/s and around a bend.
+/// The map of a drive: the window and the ground that comes into view, at 15 m/s and around a bend.
 fn map(frames: usize) -> Extent {
     let more = frames.saturating_sub(FRAMES) * COLUMNS_PER_FRAME;
     let size = [440 + more, 360 + more];
@@ -60,7 +61,8 @@ pub fn drive_scene(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayou
     drive_scene_of(seed, index, FRAMES, roads)
 }
 
-/// The same of so many frames, 2 to 32; what drives of different lengths show differs.
+/// The scene of [`drive_scene`] with a given number of frames, 2 to 32. Drives of different lengths have different
+/// contents.
 pub fn drive_scene_of(
     seed: u64,
     index: u64,
@@ -96,7 +98,7 @@ pub fn drive_scene_of(
         .iter()
         .filter_map(|b| Some((*b, lane_speed(&scene, b, &mut draw)?)))
         .collect();
-    // Everybody drives first, so that who follows then finds the others moving.
+    // All vehicles drive first, so that followers then find the others moving.
     drive(&mut scene, None, Template::Drive, mps, &mut draw);
     for (b, mps) in &in_lane {
         drive(&mut scene, Some(b.id), Template::Drive, *mps, &mut draw);
@@ -115,8 +117,8 @@ pub fn drive_scene_of(
     scene
 }
 
-/// The speed that a vehicle in a lane wants to drive at, m/s; of those that stand there, two thirds want to drive too. None
-/// for all others.
+/// The desired speed of a vehicle in a lane, m/s; two thirds of the standing ones want to drive too. `None` for all
+/// other boxes.
 fn lane_speed(scene: &Scene, b: &SceneBox, draw: &mut Draw) -> Option<f64> {
     if !b.class.is_vehicle() {
         return None;
@@ -129,8 +131,8 @@ fn lane_speed(scene: &Scene, b: &SceneBox, draw: &mut Draw) -> Option<f64> {
     }
 }
 
-/// Lets somebody beside the lanes do what their like does: who walks goes on, or across the road; now and then somebody who
-/// is parked drives off.
+/// Makes a box beside the lanes move as usual for its kind: pedestrians walk on, or across the road; now and then a
+/// parked vehicle drives off.
 fn beside_the_lanes(scene: &mut Scene, b: &SceneBox, draw: &mut Draw) {
     let mps = b.velocity_mps.length();
     if b.class.is_vehicle() {
@@ -158,7 +160,7 @@ fn beside_the_lanes(scene: &mut Scene, b: &SceneBox, draw: &mut Draw) {
     }
 }
 
-/// A motion by template; what the place does not allow is left out.
+/// Gives a box a motion by template, if the place allows it.
 fn drive(scene: &mut Scene, id: Option<BoxId>, template: Template, mps: f64, draw: &mut Draw) {
     let wish = Wish {
         template,
@@ -174,11 +176,11 @@ fn drive(scene: &mut Scene, id: Option<BoxId>, template: Template, mps: f64, dra
 }
 
 fn apply(scene: &mut Scene, edit: &Edit) {
-    // What a world's own traffic cannot do it does not do.
+    // A motion that is not possible there is left out.
     let _ = edit.apply(scene);
 }
 
-/// The frames of a clip at [`STEP_S`], each along the axes of its ego vehicle. Heights stay those of the map.
+/// The frames of a clip at [`STEP_S`], each along the axes of its ego vehicle. Heights are those of the map.
 pub fn frames_of(scene: &Scene) -> Drive {
     let frame = |i: usize| {
         let view = scene.at(i as f64 * STEP_S);
@@ -238,7 +240,7 @@ impl Shard for Drive {
 mod tests {
     use super::*;
 
-    /// What stands still is the same voxels in every frame, seen from elsewhere; what moves, moves.
+    /// Standing objects have the same voxels in every frame, seen from elsewhere; moving objects move.
     #[test]
     fn a_drive_shows_one_world() {
         let scene = drive_scene(9, 1, |_| None);

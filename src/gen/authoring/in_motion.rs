@@ -1,16 +1,17 @@
-//! What words let move in a new scene.
+//! Motion that words ask for in a new scene.
 
 use super::prompting::Laid;
 use editor::{Apply, Edit};
 use scene::clip::{Manoeuvre, Template};
 use scene::{BoxId, Class, Clip, Scene};
 
-/// What begins later than this makes a scene longer, s.
+/// Start of a manoeuvre from which on a scene is made longer, s.
 const LATE_S: f64 = 3.0;
-/// What begins is seen for so long, s.
+/// Time for which a manoeuvre is seen after it begins, s.
 const SEEN_S: f64 = 5.0;
 
-/// Lets everything move that was said to, and the ego vehicle with it; what cannot be, in words.
+/// Sets everything in motion that the words ask for, and the ego vehicle with it. Returns the motions that are not
+/// possible, in words.
 pub(crate) fn set_in_motion(scene: &mut Scene, laid: &Laid) -> Vec<String> {
     let d = &laid.description;
     let length = d.length_s.map(|length_s| Edit::SetLength {
@@ -25,7 +26,7 @@ pub(crate) fn set_in_motion(scene: &mut Scene, laid: &Laid) -> Vec<String> {
     if objects.is_empty() && d.ego_motion.is_none() && length.is_none() {
         return Vec::new();
     }
-    // What begins late makes the scene longer.
+    // A manoeuvre that begins late makes the scene longer.
     let latest_s = objects
         .iter()
         .filter_map(|(_, _, how)| how.from_s)
@@ -45,7 +46,8 @@ pub(crate) fn set_in_motion(scene: &mut Scene, laid: &Laid) -> Vec<String> {
     let edits = objects
         .iter()
         .map(|(id, class, how)| Edit::let_move(how, Some(*id), Some(*class)));
-    // The ego vehicle first, so that others know when it is near; and once more at the end, so that it sees them.
+    // The ego vehicle first, so that others know when it comes near; and again at the end, so that it takes them into
+    // account.
     let all = length.into_iter().chain(ego.clone()).chain(edits).chain(ego);
     let mut cannot = Vec::new();
     for edit in all {
@@ -53,7 +55,7 @@ pub(crate) fn set_in_motion(scene: &mut Scene, laid: &Laid) -> Vec<String> {
             Edit::LetMove { id: Some(id), .. } => scene.frame().boxes.contains_key(id),
             _ => true,
         };
-        // (what found no place is told elsewhere)
+        // (objects without a place are reported elsewhere)
         if known && let Err(error) = edit.apply(scene) {
             cannot.push(error.to_string());
         }

@@ -1,5 +1,5 @@
-//! Worlds over maps larger than the window that procedural scenery and voxelisation know: window by window on a fixed
-//! lattice, each with a seed of its own place.
+//! Worlds over maps larger than the window of procedural scenery and voxelisation: window by window on a fixed lattice,
+//! each with a seed of its own place.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use world::draw::hash;
 use world::scenery;
 use world::voxelize::{Vertical, complete};
 
-/// What stands in a neighbouring window may reach into this one, columns.
+/// Distance from which things of a neighbouring window may reach into this one, columns.
 const AROUND: usize = 40;
 
 /// One window of the lattice.
@@ -22,7 +22,7 @@ const AROUND: usize = 40;
 struct Tile {
     /// Its part of the map.
     extent: Extent,
-    /// Brings it to the origin.
+    /// The move that brings it to the origin.
     to_window: Columns,
 }
 
@@ -46,12 +46,12 @@ fn tiles(extent: Extent) -> Vec<Tile> {
 }
 
 impl Tile {
-    /// The layout there, as a window around the origin.
+    /// The layout in its part of the map, as a window around the origin.
     fn layout(&self, layout: &BevLayout) -> BevLayout {
         self.to_window.layout(&layout.crop(self.extent))
     }
 
-    /// The boxes that reach into it, moved along.
+    /// The boxes that reach into it, moved along with it.
     fn boxes(&self, boxes: &BTreeMap<BoxId, SceneBox>) -> BTreeMap<BoxId, SceneBox> {
         let (low, high) = (self.extent.min_m(), self.extent.max_m());
         let reaches = |b: &&SceneBox| {
@@ -75,8 +75,8 @@ impl Tile {
     }
 }
 
-/// What stands beside the roads of a map: what is `there` already, and scenery around it, as much as a scene holds. Also how many
-/// things were drawn and left out because a scene does not hold them.
+/// Scenery of a map: the things of `there`, and procedural scenery around them, as much as a scene can hold. Also the
+/// number of drawn things that were left out because a scene cannot hold them.
 pub fn scenery_over(
     layout: &BevLayout,
     boxes: &BTreeMap<BoxId, SceneBox>,
@@ -90,7 +90,7 @@ pub fn scenery_over(
             let [x, y] = tile.extent.from().map(|c| u64::from(c as u32));
             let own_seed = hash(seed ^ hash(x << 32 | y));
             let drawn = scenery::background(&tile.layout(layout), &tile.boxes(boxes), own_seed);
-            // What stands in another window, or beyond the map, is that one's.
+            // A thing whose middle is in another window belongs to that window; beyond the map there are none.
             let inside = |t: &&Thing| {
                 let p = t.form.middle_m();
                 let own = Extent::WINDOW.column_at(p.x, p.y).is_some();
@@ -101,7 +101,7 @@ pub fn scenery_over(
             tile.moved(&kept, tile.to_window.back())
         })
         .collect();
-    // What a window draws keeps clear of what the windows before it drew.
+    // Things of a window keep clear of those of the windows before it.
     let mut taken = Taken::by(layout.extent(), there.iter().map(|t| &t.form));
     let mut forms: Vec<&Form> = Vec::new();
     for drawn in &drawn {
@@ -119,7 +119,8 @@ pub fn scenery_over(
     (out, left_out)
 }
 
-/// As many of some forms as there is room for, evenly over the map; plants and posts go before buildings, walls and bridges do.
+/// A selection of forms of at most `room`, evenly over the map; plants and posts are dropped before buildings, walls
+/// and bridges.
 fn thinned<'a>(forms: &[&'a Form], room: usize) -> Vec<&'a Form> {
     let is_small = |form: &Form| matches!(form, Form::Tree(_) | Form::Post(_) | Form::Shrubs(_));
     let small = forms.iter().filter(|form| is_small(form)).count();
@@ -171,7 +172,7 @@ mod tests {
     use scene::{BevLayer, Class};
     use world::template;
 
-    /// On a map that is the window, it is the world that it always was.
+    /// On a map of one window, the world is that of the window.
     #[test]
     fn a_map_of_one_window_is_that_window() {
         let layout = template::layout("straight", 5).expect("a template");
@@ -215,7 +216,7 @@ mod tests {
         assert_eq!(again, grid);
     }
 
-    /// A map with 30,075 things was made for 104 s and then refused.
+    /// An earlier version worked for 104 s on a map with 30,075 things and then refused it.
     #[test]
     fn more_than_a_scene_holds_is_thinned_evenly() {
         let tree = |x: usize| {

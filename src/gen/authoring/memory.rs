@@ -21,7 +21,7 @@ const ROADS: [(&str, &[u8]); 6] = [
     ("parking_street.xodr", assets::roads::PARKING_STREET),
     ("straight_two_way.xodr", assets::roads::STRAIGHT_TWO_WAY),
 ];
-/// Share of the bank's entries that stand on them.
+/// Share of the bank's entries on these roads.
 const SHARE: f64 = 0.25;
 /// Least share of a place's map that is drivable.
 const LEAST_DRIVABLE: f64 = 0.08;
@@ -91,7 +91,7 @@ pub fn make_bank(count: usize, seed: u64) -> anyhow::Result<Bank> {
         .map(|(name, bytes)| Ok((*name, opendrive::read(bytes).with_context(|| (*name).to_owned())?)))
         .collect();
     let networks = networks?;
-    // Some places have too little road: a third more are tried.
+    // Some places have too little road: a third more places are tried.
     let made: Vec<Option<Entry>> = (0..count + count / 3 + 1)
         .into_par_iter()
         .map(|i| entry(seed, i as u64, &networks))

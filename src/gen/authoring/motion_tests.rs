@@ -108,7 +108,7 @@ fn somebody_who_is_not_there_comes_in() {
         )
     };
     assert!(edits.iter().any(crosses), "{edits:?}");
-    // One that is there moves.
+    // A box that is there moves.
     let said = read_edit("a pedestrian crosses the road after 2 s", &scene, 1).expect("the reader");
     assert!(!said.edits().iter().any(adds) && said.outcome.questions.is_empty());
 }
@@ -179,7 +179,7 @@ fn by_hand(line: &str) -> Heard {
     }
 }
 
-/// "Nobody moves any more" takes motions away and nobody with them; that we go on is said.
+/// "Nobody moves any more" removes motions, but no box; the answer says that we go on.
 #[test]
 fn what_moves_is_halted_and_stays() {
     let (scene, _) = made_of(
@@ -212,7 +212,7 @@ fn what_moves_is_halted_and_stays() {
     );
 }
 
-/// What collides after words is told in their answer, and what was so before is not.
+/// The answer to words reports new collisions, but none that were there before.
 #[test]
 fn collisions_are_told_in_the_answer() {
     let (scene, _) = made_of("road straight ; add 1 bus ( ahead ego 20m )", 2);
@@ -225,7 +225,7 @@ fn collisions_are_told_in_the_answer() {
         answer.contains("But collisions:") && answer.contains("the ego vehicle"),
         "{answer}"
     );
-    // Somebody else who stands in it already is not news.
+    // Another box that overlaps already is not reported.
     let second = SceneBox {
         id: BoxId(900),
         ..bus
@@ -235,7 +235,7 @@ fn collisions_are_told_in_the_answer() {
     assert!(!said.contains("collisions"), "{said}");
 }
 
-/// A distance that could not be had is told with its figure.
+/// A distance that could not be kept is reported with the one found.
 #[test]
 fn a_place_elsewhere_than_asked_is_told_with_its_figure() {
     let description = describe(
@@ -256,7 +256,7 @@ fn a_place_elsewhere_than_asked_is_told_with_its_figure() {
     }
     // (two long vehicles do not fit 2 m apart)
     assert!(!off.is_empty() || !made.laid.placement.left_out.is_empty());
-    // In a scene that is there, too.
+    // An open scene reports it too.
     let (scene, _) = made_of("road straight ; add 1 bus ( ahead ego 20m )", 2);
     for metres in [10.0, 19.0, 24.0] {
         let edited = edited(

@@ -1,12 +1,13 @@
-//! Edits that make a map larger, and what stands beside the roads on the new ground.
+//! Edits that make a map larger, and the scenery on the new ground.
 
 use super::scenery::SceneryWish;
 use editor::{Edit, apply_all};
 use job::inpaint::InpaintMask;
 use scene::Scene;
 
-/// Edits that may make a map larger, and what stands beside the new roads where something stands beside the old ones. Whoever
-/// applies edits of a user (window, command line, assistants, batches) takes them from here.
+/// Edits that may make a map larger, followed by edits that draw scenery beside the new roads if there is scenery
+/// beside the old ones. Every place that applies edits of a user (window, command line, assistants, batches) takes them
+/// from here.
 pub fn with_scenery(scene: &Scene, mut edits: Vec<Edit>) -> Vec<Edit> {
     let mut larger = scene.clone();
     if edits.iter().any(may_grow) && apply_all(&edits, &mut larger).is_ok() {
@@ -24,7 +25,7 @@ fn may_grow(edit: &Edit) -> bool {
     }
 }
 
-/// Edits that draw what stands beside the roads where a map has become larger; none where nothing stood beside the roads before.
+/// Edits that draw scenery where a map has become larger; none if there was no scenery before.
 pub fn beside_new_ground(before: &Scene, larger: &Scene) -> Vec<Edit> {
     let (old, new) = (before.canvas().extent(), larger.canvas().extent());
     if old == new || !before.background.describes_place() {
@@ -51,7 +52,7 @@ mod tests {
     use crate::open;
     use scene::Class;
 
-    /// A larger map has scenery on its new ground whoever asked for it, and none where none stood before.
+    /// A larger map has scenery on its new ground, whatever enlarged it, but none if the old ground had none.
     #[test]
     fn new_ground_has_scenery_where_the_old_one_has() {
         let scene = open::from_template("straight", 7).expect("a template");
@@ -78,7 +79,7 @@ mod tests {
             stands && frame.extent().center(*x, *y, 0).x > 42.0
         });
         assert!(standing.count() > 500);
-        // The new things are drawn ones, and what was there is as it was.
+        // The new things are drawn ones, and the old things are unchanged.
         let new = larger.background.iter().filter(|t| t.form.middle_m().x > 40.0);
         assert!(new.into_iter().all(|t| !t.placed));
         assert!(

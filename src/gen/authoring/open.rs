@@ -1,4 +1,4 @@
-//! Scenes from files and templates: what the command line and the window share.
+//! Scenes from files and templates: shared by the command line and the window.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use world::terrain::Terrain;
 use world::voxelize::{Vertical, complete};
 use world::{World, template, traffic};
 
-/// A file with fewer things beside the road in view says nothing about the place: scenery is drawn.
+/// Number of things beside the road in view below which a file does not describe the place, so that scenery is drawn.
 const ENOUGH_THINGS: usize = 5;
 
 /// The scene that ships with the program.
@@ -43,11 +43,11 @@ pub fn save_rig(rig: &SensorRig, path: &Path) -> anyhow::Result<()> {
     atomic::write(path, text.as_bytes()).with_context(|| format!("write {}", path.display()))
 }
 
-/// A scene from a file, and what a person should know of how it was read.
+/// A scene from a file, with notes for the user on how it was read.
 pub struct Opened {
     /// The scene.
     pub scene: Scene,
-    /// What was done that nobody asked for, a line each.
+    /// Changes made without being asked for, one line each.
     pub notes: Vec<String>,
 }
 
@@ -65,7 +65,7 @@ pub fn scene(path: &Path) -> anyhow::Result<Scene> {
     Ok(file(path)?.scene)
 }
 
-/// The same with what is to be said of it.
+/// The scene of a file, with notes on how it was read.
 pub fn file(path: &Path) -> anyhow::Result<Opened> {
     match import::read(path)?.1 {
         Content::Scene(loaded) => Ok(Opened {
@@ -92,7 +92,7 @@ pub fn labels(path: &Path) -> anyhow::Result<Scene> {
     }
 }
 
-/// Where and how a road network becomes a scene.
+/// Options for making a scene from a road network.
 #[derive(Clone, Debug, Default)]
 pub struct Placement {
     /// Ego position in the file's frame, m; none means a good place on a lane.
@@ -101,27 +101,27 @@ pub struct Placement {
     pub heading_rad: Option<f64>,
     /// Length along the heading and width of the map, m; none means the networks' window.
     pub size_m: Option<[f64; 2]>,
-    /// The map holds the whole network, whatever size was asked for.
+    /// True for a map that holds the whole network, whatever size was asked for.
     pub whole: bool,
-    /// Fixes the traffic.
+    /// Seed of the traffic.
     pub seed: u64,
-    /// No vehicles and people.
+    /// True for no vehicles and people.
     pub empty: bool,
-    /// Nothing beside the road but what the file puts there.
+    /// True for no scenery beyond that of the file.
     pub bare: bool,
 }
 
-/// A long map begins this far behind the ego vehicle, m.
+/// Distance behind the ego vehicle at which a long map begins, m.
 const BEHIND_M: f64 = 60.0;
 
 impl Placement {
     /// Largest side of a map, m.
     pub const MAX_SIZE_M: f64 = 3200.0;
 
-    /// The map in the ego frame: around the ego vehicle, most of a long one ahead of it; or all of the network, seen from a
-    /// place and heading (m, rad) of its frame.
+    /// The map in the ego frame: around the ego vehicle, most of a long one ahead of it; or the whole network, seen
+    /// from a place and heading (m, rad) of its frame.
     pub fn extent(&self, network: &RoadNetwork, from: (DVec2, f64)) -> Extent {
-        // A file that Sceneloom wrote says itself which map it was.
+        // A file that Sceneloom wrote states its map itself.
         if self.size_m.is_none()
             && let Some(own) = network.own_extent(from.0, from.1)
         {
@@ -139,7 +139,7 @@ impl Placement {
         Extent::new([-behind, -(ny as i32 / 2)], [nx, ny]).unwrap_or(Extent::WINDOW)
     }
 
-    /// What is wrong with it on a network, in one line.
+    /// The first problem with it on a network, in one line; `None` if it is sound.
     pub fn problem_on(&self, network: &RoadNetwork) -> Option<String> {
         match self.whole {
             true => whole_extent(
@@ -154,7 +154,7 @@ impl Placement {
         }
     }
 
-    /// What is wrong with its size, in one line.
+    /// The problem with its size, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         let [length_m, width_m] = self.size_m?;
         // Written so that NaN fails too.
@@ -170,7 +170,7 @@ impl Placement {
     }
 }
 
-/// Around the roads of a whole network, m.
+/// Margin around the roads of a whole network, m.
 const MARGIN_M: f64 = 24.0;
 
 /// The map that holds all roads, seen from a place and heading of the file's frame. Errors if it would be too large.
@@ -184,7 +184,7 @@ fn whole_extent(network: &RoadNetwork, (at_m, heading_rad): (DVec2, f64)) -> Res
     Extent::new(from, size).map_err(|problem| format!("all of the network is {problem}"))
 }
 
-/// A scene made from a foreign file, and what was found in it.
+/// A scene made from a foreign file, with statistics of the file.
 pub struct Imported {
     /// The scene.
     pub scene: Scene,
@@ -192,7 +192,7 @@ pub struct Imported {
     pub roads: usize,
     /// Lanes in the file.
     pub lanes: usize,
-    /// Columns that are drivable although no traffic lane lies there, by the kind of lane.
+    /// Columns that are drivable without a traffic lane, by the kind of lane.
     pub drivable_beside_traffic: BTreeMap<String, usize>,
     /// True if the layout is the one that Sceneloom wrote the file from, to the last cell.
     pub is_own: bool,
@@ -200,11 +200,11 @@ pub struct Imported {
     pub bridges: usize,
     /// Things that the file puts beside the road, bridges not counted.
     pub things_of_file: usize,
-    /// Things of procedural scenery that were left out because a scene does not hold so many.
+    /// Things of procedural scenery that were left out because a scene cannot hold so many.
     pub scenery_left_out: usize,
-    /// What was not understood, counted by kind.
+    /// Parts of the file that were not understood, counted by kind.
     pub skipped: BTreeMap<String, usize>,
-    /// Where the ego stands in the file's frame: x, y in m and heading in rad.
+    /// Place of the ego in the file's frame: x, y in m and heading in rad.
     pub pose: (DVec2, f64),
 }
 
@@ -225,9 +225,9 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
     ))
 }
 
-/// A scene on a road network: its layout with relief and the file's traffic, seeded if it has none, as a complete world. What stands beside the road is
-/// the file's; procedural scenery is drawn around it if the file has hardly anything there. [`Placement::bare`] leaves
-/// scenery out, and the occupancy is the draft until it is generated.
+/// A scene on a road network: its layout with relief and the file's traffic, seeded if it has none, as a complete
+/// world. The scenery is the file's; procedural scenery is drawn around it if the file has hardly any.
+/// [`Placement::bare`] leaves scenery out, and the occupancy is the draft until it is generated.
 pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Imported {
     let (at, lane_heading) = match placement.at_m {
         Some(at) => network
@@ -307,7 +307,7 @@ pub fn from_template(name: &str, seed: u64) -> Option<Scene> {
     from_template_on(name, seed, None, Terrain::Flat)
 }
 
-/// The same in a setting (none: one that suits the road) and on a terrain.
+/// A complete procedural world of a template, in a setting (none: one that suits the road) and on a terrain.
 pub fn from_template_on(name: &str, seed: u64, setting: Option<Setting>, terrain: Terrain) -> Option<Scene> {
     let mut layout = template::layout(name, seed)?;
     layout.relief = terrain.relief(&layout, seed);
@@ -333,8 +333,8 @@ pub fn of_world(world: &World, name: &str) -> Scene {
     scene
 }
 
-/// The files of a folder with this extension, at any depth, in the order of their names; an error if
-/// there is none, which says `what` they should hold.
+/// The files of a folder with this extension, at any depth, in the order of their names. Errors if there are none; the
+/// error names `what` they should hold.
 pub fn files_below(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     let mut folders = vec![dir.to_path_buf()];
@@ -342,7 +342,7 @@ pub fn files_below(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Ve
         let entries = std::fs::read_dir(&folder).with_context(|| format!("read {}", folder.display()))?;
         for entry in entries {
             let entry = entry.with_context(|| format!("read {}", folder.display()))?;
-            // Links are not followed: one that leads upwards would never end.
+            // Links are not followed: a link to a folder above would never end.
             if entry.file_type().is_ok_and(|t| t.is_dir()) {
                 folders.push(entry.path());
             } else if entry.path().extension().is_some_and(|e| e == extension) {

@@ -55,7 +55,7 @@ fn covered(things: &Background, class: Class) -> BTreeSet<usize> {
     out
 }
 
-/// Manmade voxels that come when all trees go and that were not seen there: none may.
+/// Manmade voxels that appear when all trees are removed and that were not seen there: there must be none.
 fn invented_by_felling(scene: &Scene, grid: &VoxelGrid) -> usize {
     let is_tree = |t: &&scene::Thing| matches!(t.form, Form::Tree(_));
     let tree_ids: Vec<_> = scene.background.iter().filter(is_tree).map(|t| t.id).collect();
@@ -86,8 +86,8 @@ fn places(b: &Background) -> Vec<(DVec2, f64)> {
     list.collect()
 }
 
-/// Known buildings are found (IoU above .3), known trees are near a found one, and taking all things away takes nearly
-/// all voxels of what stands beside the road. Prints the figures.
+/// Known buildings are found (IoU above .3), known trees are near a found one, and removing all things removes nearly
+/// all voxels of scenery. Prints the figures.
 #[test]
 fn things_are_found_in_simulated_labels() {
     let pattern = &SensorRig::default().lidars[0];
@@ -120,7 +120,7 @@ fn things_are_found_in_simulated_labels() {
                 let best = guessed.iter().max_by(|a, b| same(k, a).total_cmp(&same(k, b)));
                 if let Some(best) = best.filter(|g| same(k, g) > 0.3) {
                     buildings.0 += 1;
-                    // What of it goes with the thing that was found for it: the thing's columns and those right around.
+                    // Columns of it that are removed with the found thing: the thing's columns and those right around.
                     let goes = |c: &usize| {
                         let (x, y) = ((c / Window::NY) as i64, (c % Window::NY) as i64);
                         (-1..=1).any(|i| (-1..=1).any(|j| best.contains(&(((x + i) * 200 + y + j) as usize))))
@@ -176,7 +176,7 @@ fn things_are_found_in_simulated_labels() {
             gone[i].1 += all.len();
             gone[i].0 += all.len() - standing(after, class).len();
         }
-        // Only what stands beside the road goes; the ground under it comes.
+        // Only scenery is removed; the ground under it appears.
         other_changes += grid
             .iter_set()
             .filter(|(x, y, z, l)| {

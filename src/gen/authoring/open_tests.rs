@@ -43,7 +43,7 @@ fn an_import_is_a_whole_world_unless_it_is_bare() {
     assert!(counts[Class::Manmade.id() as usize] > 200 && counts[Class::Vegetation.id() as usize] > 200);
     let again = import(&path, &at(false)).unwrap();
     assert_eq!(whole.scene.frame(), again.scene.frame());
-    // What was drawn keeps clear of the house.
+    // Drawn scenery keeps clear of the house.
     let house = whole.scene.background.iter().next().unwrap();
     assert!(matches!(house.form, Form::Building(_)));
     let (min, max) = house.form.bounds_m();

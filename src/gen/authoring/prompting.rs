@@ -1,5 +1,5 @@
-//! How a description becomes a scene: which placer, with or without memory, on which road, around which objects. The window,
-//! the command line and the evaluation share it.
+//! From a description to a scene: with which placer, with or without memory, on which road, around which objects. The
+//! window, the command line and the evaluation share it.
 
 mod diffused;
 mod filling;
@@ -26,7 +26,7 @@ use place::to_graph::{Graphed, node_of, to_graph};
 use scene::graph::{LaneRole, Locked, NodeKind};
 use scene::{BevLayout, BoxId, SceneBox};
 
-/// Who places the objects.
+/// Method that places the objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum Placer {
@@ -38,10 +38,10 @@ pub enum Placer {
     Diffusion,
 }
 
-/// What of an open scene stays.
+/// Parts of an open scene that stay.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Keep {
-    /// Nothing.
+    /// No part.
     #[default]
     Nothing,
     /// The road: objects are placed on it.
@@ -50,18 +50,18 @@ pub enum Keep {
     Objects(Arc<BTreeMap<BoxId, SceneBox>>),
 }
 
-/// How a description becomes a layout.
+/// Options for making a layout from a description.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct How {
-    /// Who places.
+    /// Method that places the objects.
     pub placer: Placer,
-    /// Whether what a prompt leaves open comes from remembered scenes.
+    /// True if open parts of a prompt are filled in from remembered scenes.
     pub memory: bool,
-    /// A folder of the user's own scenes that are remembered too.
+    /// A folder of the user's own scenes, which are remembered too.
     pub own_scenes: Option<PathBuf>,
     /// A folder with other weights of the layout network.
     pub weights: Option<PathBuf>,
-    /// What stays.
+    /// Parts that stay.
     pub keep: Keep,
     /// Boxes of nodes that stay where they are.
     pub locked: BTreeMap<u32, SceneBox>,
@@ -70,8 +70,8 @@ pub struct How {
 }
 
 impl How {
-    /// Errors in one line where weights are named that lack or damage what places the objects: what was asked for by name is not
-    /// replaced by something else.
+    /// Errors in one line if weights were named that are missing or damaged, and that place the objects: weights that
+    /// were asked for by name are not replaced by others.
     pub fn check(&self) -> anyhow::Result<()> {
         match (self.placer, &self.weights) {
             (Placer::Diffusion, Some(_)) => network(self).map(drop),
@@ -80,18 +80,18 @@ impl How {
     }
 }
 
-/// A scene that is asked for.
+/// A request for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ask {
     /// The words.
     pub prompt: String,
-    /// What they say, as it may have been changed by hand.
+    /// The description from them, possibly changed by hand.
     pub description: Description,
     /// The graph, if it was edited by hand.
     pub graphed: Option<Graphed>,
     /// Fixes every random draw.
     pub seed: u64,
-    /// How.
+    /// Options.
     pub how: How,
 }
 
@@ -108,16 +108,16 @@ impl Ask {
     }
 }
 
-/// How the diffusion went.
+/// Report on the diffusion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Diffused {
-    /// Steps, times, and what the projection moved.
+    /// Steps, times, and moves of the projection.
     pub report: PlacementReport,
     /// Mean distance that the projection moved an object, m.
     pub mean_move_m: f64,
-    /// Largest, m.
+    /// Largest distance that the projection moved an object, m.
     pub most_move_m: f64,
-    /// Objects that rules placed in the end: the projection found no place, or a statement did not hold.
+    /// Objects that rules placed in the end, because the projection found no place or a statement did not hold.
     pub by_rules: usize,
 }
 
@@ -129,24 +129,24 @@ pub struct Laid {
     pub graphed: Graphed,
     /// The road.
     pub road: Chosen,
-    /// Where everything went.
+    /// Places of the objects.
     pub placement: Placement,
-    /// What came from memory.
+    /// Contributions of memory.
     pub remembered: Option<Remembered>,
-    /// How the diffusion went.
+    /// Report on the diffusion.
     pub diffused: Option<Diffused>,
-    /// Anything else worth knowing, one line each.
+    /// Other notes, one line each.
     pub notes: Vec<String>,
-    /// Time for all of it, s.
+    /// Time in all, s.
     pub wall_s: f64,
 }
 
-/// Lays out a description; `prompt` is what memory is asked with.
+/// Lays out a description; `prompt` is the query for memory.
 pub fn lay_out(prompt: &str, description: &Description, seed: u64, how: &How) -> Laid {
     lay_out_graph(prompt, description, None, seed, how)
 }
 
-/// The same from a graph that was edited by hand.
+/// Lays out a description with a graph that was edited by hand.
 pub fn lay_out_graph(
     prompt: &str,
     description: &Description,
@@ -216,7 +216,7 @@ pub fn lay_out_graph(
             }
         },
     };
-    // (a crowd that overfills a road overfills the next, too, and takes the longest to place)
+    // (a crowd that overfills one road overfills the next too, and takes longest to place)
     let few = placement.boxes.len() <= FEW_BOXES;
     if matches!(how.keep, Keep::Nothing)
         && road.template != REMEMBERED
@@ -240,8 +240,8 @@ pub fn lay_out_graph(
     }
 }
 
-/// The road of a new scene: the one that is kept, one under the objects that are kept (which join the graph), the remembered
-/// one if it has all that was said, else one of the templates.
+/// The road of a new scene: the one that is kept, one under the objects that are kept (which join the graph), the
+/// remembered one if it meets all requirements, else one of the templates.
 fn road_for(
     description: &Description,
     graphed: &mut Graphed,
@@ -290,14 +290,14 @@ fn road_for(
     }
 }
 
-/// What a road from memory is called.
+/// Name of a road from memory.
 const REMEMBERED: &str = "remembered";
-/// Other variations of the road that are tried where something finds no place.
+/// Number of other variations of the road that are tried if an object finds no place.
 const OTHER_ROADS: u64 = 1;
-/// Boxes up to which they are tried.
+/// Most boxes for which they are tried.
 const FEW_BOXES: usize = 24;
 
-/// Another variation of the road on which more of what was said can stand, placed by rules; `None` if there is none.
+/// Another variation of the road on which more statements can hold, placed by rules; `None` if there is none.
 fn better_road(
     description: &Description,
     graphed: &Graphed,
@@ -333,8 +333,8 @@ fn network(how: &How) -> anyhow::Result<Arc<LayoutNet>> {
     })
 }
 
-/// A road on which given objects stand well: by the network where it may, else the variation of the templates that has the
-/// most of them where they belong.
+/// A road on which given objects stand well: by the network if it may be used, else the variation of the templates on
+/// which most of them are well placed.
 fn road_under(
     d: &Description,
     graphed: &Graphed,

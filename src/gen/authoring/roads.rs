@@ -9,7 +9,7 @@ use world::draw::Draw;
 
 /// Share of the worlds that stand on imported roads.
 const SHARE: f64 = 1.0 / 3.0;
-/// Least share of the map that is drivable: less shows a lane's end in a field.
+/// Least drivable share of the map: a smaller share shows a lane's end in a field.
 const LEAST_DRIVABLE: f64 = 0.08;
 const TRIES: usize = 4;
 

@@ -1,5 +1,5 @@
-//! What stands beside the roads, regenerated from a seed: by rules or by a network, everywhere or in a region, as things that
-//! can be edited. Nothing else changes.
+//! Scenery, regenerated from a seed: by rules or by a network, everywhere or in a region, as things that can be edited.
+//! Nothing else changes.
 
 use editor::{Edit, Shape};
 use job::GenError;
@@ -15,10 +15,10 @@ use super::scenery_around;
 
 /// Share of vegetation (`Density`) that is usual.
 pub const TYPICAL_VEGETATION: f64 = 0.5;
-/// The same of buildings.
+/// Share of buildings (`Density`) that is usual.
 pub const TYPICAL_BUILDING: f64 = 0.6;
 
-/// What draws it.
+/// Method that draws scenery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drawer {
     /// The rules of the procedural worlds, for a kind of place; none: one that suits the road.
@@ -28,13 +28,13 @@ pub enum Drawer {
 }
 
 impl Drawer {
-    /// All, in the order of lists.
+    /// All methods, in the order of lists.
     pub fn all() -> impl Iterator<Item = Self> {
         let settings = Setting::ALL.map(|setting| Self::Rules(Some(setting)));
         [Self::Rules(None), Self::Network].into_iter().chain(settings)
     }
 
-    /// As lists show it.
+    /// Its name in lists.
     pub fn label(self) -> &'static str {
         match self {
             Self::Rules(None) => "Suits the road",
@@ -44,12 +44,12 @@ impl Drawer {
     }
 }
 
-/// What is wanted.
+/// A request for scenery.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneryWish {
     /// Fixes every random draw.
     pub seed: u64,
-    /// What draws it.
+    /// Method that draws it.
     pub by: Drawer,
     /// Number of plants, 1 = usual there; 0 is none.
     pub green: f64,
@@ -60,7 +60,7 @@ pub struct SceneryWish {
 }
 
 impl SceneryWish {
-    /// What suits the road, everywhere.
+    /// Scenery that suits the road, everywhere.
     pub fn of_seed(seed: u64) -> Self {
         Self {
             seed,
@@ -71,20 +71,21 @@ impl SceneryWish {
         }
     }
 
-    /// Edits that regenerate the scenery of the frame that a scene shows: what stands whole in the region goes unless it was
-    /// placed ([`Thing::placed`]) or is locked, so do voxels of scenery there that belong to no thing; what comes keeps clear of
-    /// all that stays, and of the region's border. On a larger map that happens window by window.
+    /// Edits that regenerate the scenery of the frame that a scene shows. Things that stand wholly in the region are
+    /// removed unless they were placed ([`Thing::placed`]) or are locked; so are voxels of scenery there that belong to
+    /// no thing. New things keep clear of everything that stays, and of the region's border. On a larger map this is
+    /// done window by window.
     pub fn edits(&self, scene: &Scene) -> Result<Vec<Edit>, GenError> {
         let locked = &scene.arranged.locked.things;
         self.edits_without(scene, |t| !t.placed && !locked.contains(&t.id))
     }
 
-    /// The same around everything that stands there.
+    /// Edits that draw scenery around all things that are there.
     pub fn edits_around(&self, scene: &Scene) -> Result<Vec<Edit>, GenError> {
         self.edits_without(scene, |_| false)
     }
 
-    /// Edits that draw scenery in the place of the things that may go.
+    /// Edits that draw scenery in place of the things for which `may_go` is true.
     fn edits_without(&self, scene: &Scene, may_go: impl Fn(&Thing) -> bool) -> Result<Vec<Edit>, GenError> {
         let map = scene.frame().extent();
         let (mut ids, mut forms, mut cleared) = (Vec::new(), Vec::new(), Vec::new());
@@ -136,7 +137,8 @@ impl SceneryWish {
         Ok(edits)
     }
 
-    /// What goes and what comes in some columns of a window. Alone, it also draws what stands beside the window.
+    /// The things that are removed and the ones that are added in some columns of a window. With `alone`, things may
+    /// also stand beside the window.
     fn in_window(
         &self,
         scene: &Scene,
@@ -180,7 +182,7 @@ impl SceneryWish {
 
     fn by_network(&self, scene: &Scene, columns: &[bool]) -> Result<Background, GenError> {
         let net = SceneryNet::bundled().map_err(GenError::failed)?;
-        // The usual is left to the network.
+        // Usual amounts are left to the network.
         let named = |times: f64, typical: f64| (times != 1.0).then(|| (times * typical).min(1.0) as f32);
         let named = [
             named(self.green, TYPICAL_VEGETATION),
@@ -188,7 +190,7 @@ impl SceneryWish {
             None,
         ];
         let drawn = drawn_scenery(&net, scene, columns, named, self.seed)?;
-        // The network hears a share; none is none.
+        // The network only takes a share as a hint; an amount of 0 must give none.
         let wanted = |form: &Form| match form.class() {
             Class::Vegetation => self.green > 0.0,
             _ => self.built > 0.0,
@@ -214,7 +216,7 @@ impl SceneryWish {
         }
     }
 
-    /// `[x * NY + y]`: columns of the region.
+    /// Columns of the region, `[x * NY + y]`.
     fn columns(&self) -> Vec<bool> {
         match self.region.is_empty() {
             true => vec![true; Window::COLUMNS],
@@ -223,14 +225,14 @@ impl SceneryWish {
     }
 }
 
-/// Columns of a map, `[x, y]`, out of flags of a window's columns.
+/// Columns of a map, `[x, y]`, from flags of a window's columns.
 fn on_the_map(map: Extent, window: Extent, flags: &[bool]) -> Vec<[usize; 2]> {
     let flags = map.crop(&window, flags, false);
     let set = map.all_columns().zip(flags).filter(|(_, set)| *set);
     set.map(|(column, _)| column).collect()
 }
 
-/// Columns on which nothing that a network draws may stand.
+/// Columns on which things of the network must not stand.
 struct Paved {
     /// Road, car park and boxes.
     driven: Vec<bool>,
@@ -239,7 +241,7 @@ struct Paved {
 }
 
 impl Paved {
-    /// Share of a building, hedge or wall that may lie on paving: its edge is drawn to half a metre.
+    /// Largest share of a building, hedge or wall that may lie on paving: its edge is drawn to half a metre.
     const MOST: f64 = 0.04;
 
     fn of(scene: &Scene) -> Self {
@@ -263,7 +265,8 @@ impl Paved {
         Self { driven, all }
     }
 
-    /// Trees by their trunk, since crowns may overhang; poles and signs may stand on a walkway.
+    /// True if a form keeps off the paving. Trees count by their trunk, since crowns may overhang; poles and signs may
+    /// stand on a walkway.
     fn leaves_room(&self, form: &Form) -> bool {
         let (taken, at) = match form {
             Form::Tree(t) => (&self.all, Some(t.position_m)),
@@ -330,7 +333,7 @@ mod tests {
         assert!(after.len() > 1);
     }
 
-    /// What a hand, words or a file placed or moved stands as it was; what comes keeps clear of it.
+    /// Things that were placed or moved by hand, words or a file stay unchanged; new things keep clear of them.
     #[test]
     fn what_was_placed_stands_when_scenery_is_drawn_anew() {
         let mut document = Document::new(open::from_template("straight", 7).expect("a template"));
@@ -395,7 +398,7 @@ mod tests {
             changed += usize::from(differs);
         }
         assert!(changed > 500, "{changed}");
-        // Nothing waits for the networks.
+        // The networks have nothing left to generate.
         let region = job::region::Region::of_edit(after.frame(), 2);
         assert!(region.is_empty());
         document.undo();
@@ -404,7 +407,7 @@ mod tests {
 
     #[test]
     fn scenery_without_things_goes_and_none_can_be_asked_for() {
-        // Buildings that no thing accounts for, as in a scene of generated voxels.
+        // Buildings that belong to no thing, as in a scene of generated voxels.
         let mut scene = open::from_template("straight", 7).expect("a template");
         scene.background = Default::default();
         assert!(scenery_voxels(&scene.frame().occupancy) > 1000);
@@ -511,7 +514,7 @@ mod tests {
         let forms = |s: &Scene| s.background.iter().map(|t| t.form.clone()).collect::<Vec<_>>();
         assert_eq!(forms(&drawn(by_network(5, 1.0))), forms(&first));
         assert_ne!(forms(&drawn(by_network(6, 1.0))), forms(&first));
-        // Much or nothing of what grows, as it is asked for; what reaches out of the region stays.
+        // Many plants or none, as asked for; plants that reach out of the region stay.
         let plants = |s: &Scene| {
             let forms = s.background.iter().map(|t| t.form.clone());
             forms

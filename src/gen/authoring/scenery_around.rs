@@ -15,7 +15,7 @@ pub struct Taken {
 }
 
 impl Taken {
-    /// By some forms.
+    /// The columns taken by some forms.
     pub fn by<'a>(extent: Extent, forms: impl IntoIterator<Item = &'a Form>) -> Self {
         let mut out = Self {
             extent,
@@ -25,7 +25,7 @@ impl Taken {
         out
     }
 
-    /// By one more.
+    /// Adds the columns of a form.
     pub fn add(&mut self, form: &Form) {
         let (extent, is_taken) = (self.extent, &mut self.is_taken);
         columns(extent, form, ROOM_M, |x, y| is_taken[extent.index(x, y)] = true);
@@ -41,7 +41,7 @@ impl Taken {
     }
 }
 
-/// The things that are there, and of those drawn on a map the ones that keep clear of them.
+/// The things that are there, and those of the things drawn on a map that keep clear of them.
 pub fn merged(extent: Extent, there: Background, drawn: &Background) -> Background {
     let taken = Taken::by(extent, there.iter().map(|t| &t.form));
     let mut out = there;

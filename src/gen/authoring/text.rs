@@ -1,4 +1,4 @@
-//! Text to scenes and edits: what the window and the command line share.
+//! Texts to scenes and edits: shared by the window and the command line.
 
 use std::collections::BTreeMap;
 
@@ -29,14 +29,14 @@ use world::World;
 pub struct Made {
     /// The scene, its occupancy drafted.
     pub scene: Scene,
-    /// Graph, road, places, and how they came about.
+    /// Graph, road and places, with how they were made.
     pub laid: Laid,
 }
 
-/// Letters of a scene's title at most.
+/// Most letters of a scene's title.
 const LONGEST_TITLE: usize = 48;
 
-/// What a scene that is made of words is called: the words, cut between two of them.
+/// Title of a scene that is made from words: the words, cut between two of them.
 pub fn title(words: &str) -> String {
     let mut out = String::new();
     for word in words.split_whitespace() {
@@ -52,17 +52,17 @@ pub fn title(words: &str) -> String {
     out.trim_end_matches(['.', ',']).to_owned()
 }
 
-/// What a prompt says of a new scene.
+/// A prompt for a new scene, read.
 #[derive(Clone, Debug)]
 pub struct Prompted {
-    /// Who read it, and what is doubtful; its reading may have been changed by hand since.
+    /// Result of the readers for the prompt, with its doubts; the reading may have been changed by hand since.
     pub heard: Heard,
-    /// What a scene is made of.
+    /// The description of the scene.
     pub described: Described,
 }
 
 impl Prompted {
-    /// The description of what was heard.
+    /// The description of a reading.
     pub fn new(heard: Heard) -> Self {
         let described = describe(&heard.reading);
         Self { heard, described }
@@ -83,13 +83,13 @@ impl Prompted {
         text.trim().to_owned()
     }
 
-    /// What the reader should know of it, one line each.
+    /// Doubts about the reading, one line each.
     pub fn doubts(&self) -> Vec<String> {
         doubts(&self.heard)
     }
 }
 
-/// What is doubtful about how a text was read, one line each.
+/// Doubts about how a text was read, one line each.
 pub fn doubts(heard: &Heard) -> Vec<String> {
     use words::answer::sentence;
     let mut out = Vec::new();
@@ -104,7 +104,7 @@ pub fn doubts(heard: &Heard) -> Vec<String> {
     out
 }
 
-/// Reads a prompt for a new scene; an error in one line if there is nothing in it that could become one.
+/// Reads a prompt for a new scene; an error in one line if nothing in it can become one.
 pub fn read(prompt: &str) -> anyhow::Result<Prompted> {
     if prompt.trim().is_empty() {
         bail!(
@@ -130,17 +130,17 @@ pub fn read(prompt: &str) -> anyhow::Result<Prompted> {
     Ok(prompted)
 }
 
-/// Road, objects and ego for a description, all drawn from `seed`. The occupancy is that of a procedural world, as
-/// `sceneloom new` makes it.
+/// Road, objects and ego for a description, all drawn from `seed`. The occupancy is that of a procedural world, as made
+/// by `sceneloom new`.
 pub fn make(prompt: &str, description: &Description, seed: u64, how: &How) -> Made {
     made(lay_out(prompt, description, seed, how), seed)
 }
 
-/// A scene of a layout from words; what its background lacks is added to what the road lacks.
+/// A scene of a layout from words; unmet wishes for its background are added to those for the road.
 pub fn made(mut laid: Laid, seed: u64) -> Made {
     let relief = &laid.road.layout.relief;
     for b in &mut laid.placement.boxes {
-        // On a road that was kept; boxes that were kept too stand on its ground already.
+        // On a road that was kept; boxes that were kept too are on its ground already.
         if b.center_m.z == b.size_m.z / 2.0 {
             b.center_m.z += relief.height_m(b.center_m.truncate());
         }
@@ -162,7 +162,7 @@ pub fn made(mut laid: Laid, seed: u64) -> Made {
     Made { scene, laid }
 }
 
-/// Draws all of what stands on new ground, or none of it and says why.
+/// Applies all edits on new ground, or none of them and returns the reason.
 fn take_over(edits: &[Edit], scene: &mut Scene) -> Option<String> {
     let mut drawn = scene.clone();
     match apply_all(edits, &mut drawn) {
@@ -172,14 +172,14 @@ fn take_over(edits: &[Edit], scene: &mut Scene) -> Option<String> {
     None
 }
 
-/// What a text changes in a scene.
+/// A text as a change of a scene.
 #[derive(Clone, Debug)]
 pub struct Edited {
-    /// Who read it, and what is doubtful.
+    /// Result of the readers for the text, with its doubts.
     pub heard: Heard,
-    /// What came of it: changes, questions, remarks.
+    /// Result of the acts: changes, questions, remarks.
     pub outcome: Outcome,
-    /// The same of what stands beside the road.
+    /// Result of the clauses on scenery.
     pub things: ThingOutcome,
 }
 
@@ -189,30 +189,31 @@ impl Edited {
         [self.outcome.edits.as_slice(), &self.things.edits].concat()
     }
 
-    /// True if something must be answered first.
+    /// True if a question must be answered first.
     pub fn asks(&self) -> bool {
         !(self.outcome.questions.is_empty() && self.things.questions.is_empty())
     }
 
-    /// What stands in each other or meets in the scene afterwards, and did not `before`, as the checks say it.
+    /// Overlaps and collisions of the changed scene that were not there `before`, in the words of the checks.
     fn clashes(&self, before: &Scene) -> Vec<String> {
         let edits = self.edits();
         let mut after = before.clone();
-        // (while something is asked nothing changes)
+        // (nothing changes while a question is open)
         match !self.asks() && !edits.is_empty() && apply_all(&edits, &mut after).is_ok() {
             true => new_clashes(before, &after),
             false => Vec::new(),
         }
     }
 
-    /// The answer in a sentence, with what the checks say of what came of it; `before` is the scene that it changes.
+    /// The answer in a sentence, with the collisions that the checks find in the result; `before` is the scene that it
+    /// changes.
     pub fn answer_on(&self, before: &Scene) -> String {
         let clashes = told(&self.clashes(before)).map(|c| format!("But {c}."));
         let parts: Vec<String> = Some(self.answer()).into_iter().chain(clashes).collect();
         parts.join(" ")
     }
 
-    /// The answer in a sentence; nothing is looked at once more.
+    /// The answer in a sentence, without checks of the result.
     pub fn answer(&self) -> String {
         let mut parts = Vec::new();
         let reading = &self.heard.reading;
@@ -239,14 +240,14 @@ impl Edited {
 /// If the bundled weights are damaged.
 pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> anyhow::Result<Edited> {
     let mut heard = hear(prompt, Mode::Edit)?;
-    // ("fence" and "guard rail" name barriers too, where there are some)
+    // ("fence" and "guard rail" name barriers too, if there are any)
     if means_barriers(&heard.reading.background, &scene.frame().boxes) {
         heard = hear_objects(prompt, Mode::Edit)?;
     }
     Ok(edited(heard, scene, seed))
 }
 
-/// Carries out a reading that is known, as the ego vehicle sees the moment that is shown.
+/// Carries out a given reading, in the frame of the ego vehicle at the moment that is shown.
 pub fn edited(heard: Heard, scene: &Scene, seed: u64) -> Edited {
     let ego = scene.in_ego();
     let frame = ego.frame();
@@ -273,8 +274,8 @@ pub fn edited(heard: Heard, scene: &Scene, seed: u64) -> Edited {
     }
 }
 
-/// Words place things on level ground: what they add stands on the ground of the frame, what they move keeps its height
-/// above it.
+/// Puts boxes on the ground. Words place things on level ground: new boxes are put on the ground of the frame, moved
+/// boxes keep their height above it.
 fn put_on_ground(edits: &mut [Edit], frame: &Frame) {
     let relief = &frame.layout.relief;
     if relief.is_flat() {
@@ -297,7 +298,7 @@ fn put_on_ground(edits: &mut [Edit], frame: &Frame) {
     }
 }
 
-/// The part of a scene that text edits look at: what is there at a moment, and the clip that the moment is of.
+/// The part of a scene that text edits need: the frame of a moment, and the clip that the moment belongs to.
 pub fn open_scene<'a>(scene: &'a Scene, clip: &'a Clip) -> OpenScene<'a> {
     let frame = scene.frame();
     OpenScene {
@@ -311,7 +312,7 @@ pub fn open_scene<'a>(scene: &'a Scene, clip: &'a Clip) -> OpenScene<'a> {
     }
 }
 
-/// Edits of a list in which each new style text sets the conditions that it names, as the same words would in a prompt.
+/// Edits of a list in which each new style text sets the conditions that it names, as these words would in a prompt.
 pub fn with_conditions(edits: &[Edit], seed: u64) -> Vec<Edit> {
     let mut out = Vec::with_capacity(edits.len());
     for edit in edits {
@@ -324,7 +325,7 @@ pub fn with_conditions(edits: &[Edit], seed: u64) -> Vec<Edit> {
     out
 }
 
-/// What was left out or could not be met, in words, one line each.
+/// Objects that were left out and requirements that could not be met, in words, one line each.
 pub fn shortfalls(made: &Laid) -> Vec<String> {
     let description = &made.description;
     let mut out = Vec::new();
@@ -417,7 +418,7 @@ mod tests {
         assert!(scene.frame().boxes.is_empty());
     }
 
-    /// What words add or move on a grade stands on its ground.
+    /// Boxes that words add or move on a grade stand on its ground.
     #[test]
     fn words_know_the_ground() {
         let prompted = read("a parked car 12 m ahead, a bus 25 m ahead").expect("a scene");

@@ -1,4 +1,4 @@
-//! Traffic that is let drive on real and bundled places: clips without errors of the program's own making.
+//! Traffic made to drive on real and bundled places: the clips have no errors of the program's own making.
 
 use std::path::{Path, PathBuf};
 
@@ -43,7 +43,7 @@ fn errors(scene: &Scene) -> Vec<Finding> {
     found
 }
 
-/// The errors of a scene whose traffic was let drive, and how many drive and stay.
+/// The errors of a scene after its traffic was made to drive, and the numbers of vehicles that drive and that stay.
 fn driven(scene: &Scene) -> (Vec<Finding>, [usize; 2]) {
     let mut clip = scene.clone();
     let long = Edit::SetLength {
@@ -85,7 +85,7 @@ fn traffic_drives_without_errors() {
             (starts, stays) = (starts + goes, stays + stay);
         }
     }
-    // (much of it does drive, or the promise would be kept by standing still)
+    // (much of it must drive, or standing still would pass the test)
     assert!(starts > 0 && 2 * starts > stays, "{starts} drive, {stays} stay");
 }
 

@@ -1,18 +1,19 @@
-//! What comes before a scene is generated whole, the same from the window, the command line, assistants and batches.
+//! Preparations for generating a whole scene, shared by the window, the command line, assistants and batches.
 
 use super::scenery::SceneryWish;
 use editor::Edit;
 use job::{GenError, GenParams, RegionMode};
 use scene::Scene;
 
-/// True if a scene leaves open what kind of place it is: no thing says so (see [`scene::Background::describes_place`]), and none
-/// was guessed from voxels.
+/// True if a scene does not show what kind of place it is: no thing shows it (see
+/// [`scene::Background::describes_place`]), and none was inferred from voxels.
 pub fn leaves_place_open(scene: &Scene) -> bool {
     !scene.background.describes_place() && !scene.frame().inferred.background
 }
 
-/// Edits that draw scenery by the seed before a whole generation where the scene leaves the place open: what networks invent
-/// alone is ragged. Signs, lamps and bridges that are there stay. None for an edit, and where things say what stands there.
+/// Edits that draw scenery by the seed before a whole generation, if the scene does not show what kind of place it is:
+/// scenery that networks invent alone is ragged. Signs, lamps and bridges that are there stay. No edits for a partial
+/// generation, and if things show the place.
 pub fn scenery_first(scene: &Scene, params: &GenParams) -> Result<Vec<Edit>, GenError> {
     match params.region == RegionMode::Full && leaves_place_open(scene) {
         true => SceneryWish::of_seed(params.seed).edits_around(scene),

@@ -1,12 +1,12 @@
-//! Wildcards in a prompt: `{car|bus|truck}` is one of these words, `{2-5}` one of these numbers. A seed draws which.
+//! Wildcards in a prompt: `{car|bus|truck}` is one of these words, `{2-5}` one of these numbers. A seed selects which.
 
 use numeric::splitmix::Draw;
 
-/// Largest number of a range; more objects than that nobody asks for.
+/// Largest number of a range; a prompt never needs more objects.
 const MOST: u32 = 999;
 
-/// The text with each wildcard drawn. What is no wildcard stays as it is, so a text without any is itself. The same text and seed
-/// give the same.
+/// The text with each wildcard drawn. The rest stays as it is, so a text without wildcards is unchanged. The same text
+/// and seed give the same result.
 pub fn drawn(text: &str, seed: u64) -> String {
     let mut draw = Draw::new(seed, "wildcards");
     let mut out = String::with_capacity(text.len());
@@ -36,7 +36,7 @@ pub fn drawn(text: &str, seed: u64) -> String {
     out
 }
 
-/// One of what stands between the braces; none if that is no wildcard.
+/// One of the choices between the braces; `None` if that is not a wildcard.
 fn one_of(inside: &str, draw: &mut Draw) -> Option<String> {
     if inside.contains('|') {
         let words: Vec<&str> = inside.split('|').map(str::trim).collect();

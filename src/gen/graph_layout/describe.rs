@@ -1,5 +1,5 @@
-//! Sentences about a scene as people would write them: many words for the same things, drawn from a seed. Data for the
-//! text encoder, and the descriptions in the memory bank.
+//! Sentences about a scene as people would write them: many wordings for the same contents, drawn from a seed. Data for
+//! the text encoder, and the descriptions in the memory bank.
 
 use super::facts::{Environment, Facts, RoadKind, WEATHERS};
 use scene::Class;
@@ -144,7 +144,8 @@ fn counted(draw: &mut Draw, class: Class, state: ObjectState, n: usize) -> Strin
     format!("{number} {state}{}", if n == 1 { one } else { many })
 }
 
-/// A sentence about a scene. `share` (0 to 1) is how much of what could be said is said; the road or one object always is.
+/// A sentence about a scene. `share` (0 to 1) is the share of the possible statements that it makes; the road or one
+/// object is always in it.
 pub fn sentence(facts: &Facts, share: f64, seed: u64) -> String {
     let mut draw = Draw::new(seed, "sentence");
     let vehicles: usize = Class::OBJECTS

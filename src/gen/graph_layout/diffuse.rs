@@ -1,5 +1,5 @@
 //! From a scene graph to a layout by diffusion: objects on a given road, lanes under given objects, or both; then the
-//! projection that repairs what cannot be.
+//! projection that repairs impossible places.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -21,10 +21,10 @@ use scene::raster::{draw_polyline, line_cells};
 use scene::road_map::RoadMap;
 use scene::{BevLayer, BevLayout, BoxId, Class, Polyline, PolylineKind, SceneBox};
 
-/// Steps of a placement unless others are asked for (X-Scene's number).
+/// Default number of steps of a placement (X-Scene's number).
 pub const STEPS: usize = 50;
 
-/// Why nothing was placed.
+/// Reason why nothing was placed.
 #[derive(Debug, Error)]
 pub enum PlacementError {
     /// A graph that contradicts itself.
@@ -33,18 +33,18 @@ pub enum PlacementError {
     /// More nodes than the network takes.
     #[error("the graph has {0} nodes with the map's own, expected at most {MOST_NODES}")]
     TooMany(usize),
-    /// The shipped weights.
+    /// An error of the shipped weights.
     #[error(transparent)]
     Weights(#[from] WeightsError),
-    /// The network.
+    /// An error of the network.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The sampler.
+    /// An error of the sampler.
     #[error(transparent)]
     Solver(#[from] SolverError),
 }
 
-/// What a placement did.
+/// Report of a placement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PlacementReport {
     /// Network calls.
@@ -53,9 +53,9 @@ pub struct PlacementReport {
     pub diffusion_s: f64,
     /// Time of the projection, s.
     pub projection_s: f64,
-    /// Which node each box is, in the order of the boxes.
+    /// Node of each box, in the order of the boxes.
     pub nodes: Vec<u32>,
-    /// What had to be repaired.
+    /// Repairs of the projection.
     pub projection: Projection,
 }
 
@@ -72,7 +72,7 @@ impl Denoiser for Predictor<'_> {
     }
 }
 
-/// Numbers of every node, `[nodes][24]`, sampled by DDIM; locked nodes keep theirs. With `map`, the road is given.
+/// Numbers of every node, `[nodes][24]`, sampled by DDIM; locked nodes keep theirs. With `map` the road is given.
 fn sample(
     net: &LayoutNet,
     graph: &SceneGraph,
@@ -121,8 +121,8 @@ pub fn usual_speed_mps(class: Class) -> f64 {
     }
 }
 
-/// Adds the nodes of the map to a graph; lanes, crossings and strips that the graph already speaks of by role become those
-/// of the map.
+/// Adds the nodes of the map to a graph. Lanes, crossings and strips that the graph refers to by role become those of
+/// the map.
 pub fn with_road(graph: &SceneGraph, road: &RoadMap) -> SceneGraph {
     let mut out = graph.clone();
     let first = out.nodes.len();
@@ -173,8 +173,8 @@ pub fn place_by_diffusion(
     )
 }
 
-/// The same with a network, the sizes of those objects of which more is known than their class (length, width, height, m, by
-/// node id), and a number of steps.
+/// A placement with a given network, number of steps and sizes of objects (length, width, height, m, by node id) where
+/// they are known better than by class.
 pub fn place_with(
     net: &LayoutNet,
     graph: &SceneGraph,
@@ -237,8 +237,8 @@ fn boxes_of(graph: &SceneGraph, values: &[f64]) -> BTreeMap<u32, SceneBox> {
     out
 }
 
-/// Road and objects of a graph in which lanes are to be made too: lane nodes of driving roles that are not locked get their
-/// course from the network (a third as many points as metres), and are painted with sidewalks; then objects as in
+/// Road and objects of a graph in which lanes are to be made too: lane nodes of driving roles that are not locked get
+/// their course from the network (a third as many points as metres), and are painted with sidewalks; then objects as in
 /// [`place_by_diffusion`].
 pub fn lay_out(
     graph: &SceneGraph,
@@ -247,7 +247,7 @@ pub fn lay_out(
     lay_out_with(&*LayoutNet::bundled()?, graph, seed)
 }
 
-/// The same with a network.
+/// Road and objects as in [`lay_out`], with a given network.
 pub fn lay_out_with(
     net: &LayoutNet,
     graph: &SceneGraph,
@@ -289,7 +289,7 @@ pub fn lay_out_with(
     }
     let layout = paint(&lanes);
     let road_s = start.elapsed().as_secs_f64();
-    // Polylines of the graph are those of another layout now.
+    // The graph's polylines belong to another layout now.
     let mut placed = graph.clone();
     for node in &mut placed.nodes {
         if let NodeKind::Lane { polyline, .. } | NodeKind::Crossing { polyline } = &mut node.kind {
@@ -303,7 +303,7 @@ pub fn lay_out_with(
     Ok((layout, boxes, report))
 }
 
-/// A layout around lanes: 3.6 m of road for each, a sidewalk of 2.4 m beside what is not road.
+/// A layout around lanes: 3.6 m of road for each, a sidewalk of 2.4 m beside it where there is no road.
 pub fn paint(lanes: &[Vec<DVec2>]) -> BevLayout {
     const HALF_M: f64 = 1.85;
     const WALK_M: f64 = 2.4;

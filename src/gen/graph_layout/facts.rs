@@ -1,4 +1,4 @@
-//! What a scene is in the words of a prompt: kind of road, surroundings, lanes, counts, light and weather.
+//! Facts about a scene in the terms of a prompt: kind of road, surroundings, lanes, counts, light and weather.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use scene::road_map::RoadMap;
 use scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
 use world::draw::Draw;
 
-/// Kinds of roads that are told apart.
+/// Kinds of roads that are distinguished.
 #[expect(missing_docs, reason = "the words themselves")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -43,7 +43,7 @@ impl RoadKind {
         world::template::TEMPLATES[self as usize]
     }
 
-    /// The kind that a template makes.
+    /// The kind of road that a template makes.
     pub fn of_template(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|k| k.template() == name)
     }
@@ -65,7 +65,7 @@ pub enum Environment {
 }
 
 impl Environment {
-    /// All of them.
+    /// All surroundings.
     pub const ALL: [Self; 8] = [
         Self::Downtown,
         Self::UrbanExpressway,
@@ -81,7 +81,7 @@ impl Environment {
 /// X-Scene's weather; the first is dry.
 pub const WEATHERS: [&str; 5] = ["sunny", "cloudy", "rainy", "snowy", "foggy"];
 
-/// What can be said about a scene.
+/// Facts that can be stated about a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Facts {
@@ -93,7 +93,7 @@ pub struct Facts {
     pub lanes: usize,
     /// Lanes in the other direction.
     pub oncoming: usize,
-    /// True if a crossing is there.
+    /// True if there is a crossing.
     pub crossing: bool,
     /// True if there are sidewalks.
     pub sidewalk: bool,
@@ -103,16 +103,16 @@ pub struct Facts {
     pub counts: BTreeMap<Class, [usize; 3]>,
     /// True at night.
     pub night: bool,
-    /// Place in [`WEATHERS`].
+    /// Index in [`WEATHERS`].
     pub weather: usize,
 }
 
 impl Facts {
-    /// Numbers of a scene for the text encoder's training: kinds one-hot, counts as log(1 + n) / 3.
+    /// Number of features of a scene for the text encoder's training: kinds one-hot, counts as log(1 + n) / 3.
     pub const FEATURES: usize = 8 + 8 + 2 + 3 + 30 + 1 + 5;
 
-    /// Facts of a scene. `template` is its name if it was made from one; light and weather, which no geometry shows, are
-    /// drawn from `seed`, as are surroundings that fit the road.
+    /// Facts of a scene. `template` is its name if it was made from one. Light and weather, which geometry does not
+    /// show, are drawn from `seed`, as are surroundings that fit the road.
     pub fn of(
         layout: &BevLayout,
         road: &RoadMap,
@@ -171,17 +171,17 @@ impl Facts {
         }
     }
 
-    /// Objects of a class, in whatever state.
+    /// Number of objects of a class, in any state.
     pub fn count(&self, class: Class) -> usize {
         self.counts.get(&class).map_or(0, |n| n.iter().sum())
     }
 
-    /// Objects of a class in one state.
+    /// Number of objects of a class in one state.
     pub fn count_in(&self, class: Class, state: ObjectState) -> usize {
         self.counts.get(&class).map_or(0, |n| n[state as usize])
     }
 
-    /// See [`Facts::FEATURES`].
+    /// The features; see [`Facts::FEATURES`].
     pub fn features(&self) -> Vec<f32> {
         let mut out = vec![0.0; 16];
         out[self.road as usize] = 1.0;
@@ -198,7 +198,7 @@ impl Facts {
     }
 }
 
-/// Kind of a road that no template made, read off its lanes.
+/// Kind of a road without a template, inferred from its lanes.
 pub fn road_kind(layout: &BevLayout, road: &RoadMap) -> RoadKind {
     let ahead = road.junctions_m.iter().any(|p| p.length() < 35.0);
     let cross = road.lanes.iter().filter(|l| l.role == LaneRole::Cross).count();

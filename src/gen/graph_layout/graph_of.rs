@@ -1,4 +1,4 @@
-//! The scene graph of a finished scene: its lanes, crossings and objects as nodes, some of what is true about them as
+//! The scene graph of a finished scene: its lanes, crossings and objects as nodes, some of its true statements as
 //! edges. Data for the layout network and for the memory bank.
 
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ pub const MOST: [usize; 3] = [12, 4, 41];
 /// Most edges.
 pub const MOST_EDGES: usize = 112;
 
-/// Strips that graphs speak of.
+/// Strips that occur in graphs.
 pub const STRIPS: [LaneRole; 5] = [
     LaneRole::LeftRoadside,
     LaneRole::RightRoadside,
@@ -27,11 +27,11 @@ pub const STRIPS: [LaneRole; 5] = [
     LaneRole::Carpark,
 ];
 
-/// Objects among which neighbours are looked for, per object.
+/// Number of neighbours that are looked for, per object.
 const NEIGHBOURS: usize = 3;
 
-/// The graph of a scene, every node locked where it is, and which box each object node is. `seed` fixes which of the
-/// true statements are made.
+/// The graph of a scene, with every node locked at its place, and the box of each object node. `seed` selects the true
+/// statements that are made.
 pub fn graph_of(
     road: &RoadMap,
     boxes: &BTreeMap<BoxId, SceneBox>,
@@ -111,7 +111,7 @@ pub fn visible(points_m: &[DVec2]) -> Vec<DVec2> {
         .unwrap_or_default()
 }
 
-/// Moving, waiting in traffic or parked, judged by speed and place.
+/// State of an object (moving, waiting in traffic or parked), judged by speed and place.
 pub fn state_of(road: &RoadMap, b: &SceneBox) -> ObjectState {
     let p = b.center_m.truncate();
     if b.velocity_mps.length() > STANDING_MPS {
@@ -137,7 +137,7 @@ fn size_of(b: &SceneBox) -> Option<SizeHint> {
     }
 }
 
-/// How often a true statement of that kind is made.
+/// Weight of a true statement of that kind.
 fn weight(relation: RelationKind) -> f64 {
     match relation {
         RelationKind::FarFrom | RelationKind::FacingAway | RelationKind::SameDirection => 0.1,
@@ -211,7 +211,7 @@ fn statements(
     edges
 }
 
-/// The distance that the statement could name, m.
+/// The distance that the statement could state, m.
 fn measured(placed: &PlacedGraph<'_>, edge: &Edge) -> Option<f64> {
     let (from, (to, at)) = (placed.thing(edge.from)?.0, placed.thing(edge.to)?);
     let (axis, d) = (scene::relations::course(&to), from.center_m.truncate() - at);

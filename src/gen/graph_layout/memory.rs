@@ -1,5 +1,5 @@
-//! A memory of scenes: descriptions with what they describe. A short prompt retrieves the nearest ones (cosine of text
-//! vectors, X-Scene's Algorithm 1), and they propose what it leaves open.
+//! A memory of scenes: scenes with their descriptions. A short prompt retrieves the nearest ones (cosine of text
+//! vectors, X-Scene's Algorithm 1), and they propose the parts that it leaves open.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -22,24 +22,24 @@ use world::template;
 
 /// Format of bank files.
 pub const VERSION: u32 = 1;
-/// Entries that a proposal is made from.
+/// Number of entries that a proposal is made from.
 pub const NEAREST: usize = 5;
 
-/// What is wrong with a bank, or why a text could not be encoded.
+/// A problem with a bank, or with encoding a text.
 #[derive(Debug, Error)]
 pub enum MemoryError {
     /// Not JSON of this shape.
     #[error("memory bank: {0}")]
     Malformed(String),
-    /// The encoder's weights.
+    /// An error of the encoder's weights.
     #[error(transparent)]
     Weights(#[from] WeightsError),
-    /// The encoder.
+    /// An error of the encoder.
     #[error(transparent)]
     Encoder(#[from] OpsError),
 }
 
-/// Where the road of an entry comes from.
+/// Source of an entry's road.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum RoadRef {
@@ -47,7 +47,7 @@ pub enum RoadRef {
     Template {
         /// Its name.
         name: String,
-        /// What varies it.
+        /// Seed of its variation.
         seed: u64,
     },
     /// A place on a road file that ships with the program or that the user has (formats know how to read it).
@@ -67,7 +67,7 @@ pub enum RoadRef {
 }
 
 impl RoadRef {
-    /// The layout, where this room can make it: of templates. Others are the caller's to read.
+    /// The layout, if this room can make it: for templates. The caller reads the others.
     pub fn layout(&self) -> Option<BevLayout> {
         match self {
             Self::Template { name, seed } => template::layout(name, *seed),
@@ -76,13 +76,13 @@ impl RoadRef {
     }
 }
 
-/// A scene that is remembered.
+/// A remembered scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
-    /// What a person would say about it.
+    /// Description as a person would give it.
     pub text: String,
-    /// The same as values.
+    /// The facts of the description.
     pub facts: Facts,
     /// Its road.
     pub road: RoadRef,
@@ -90,7 +90,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Remembers a scene. `told` is what its author wrote about it; a description is added.
+    /// An entry for a scene. `told` is its author's text; a description is added.
     pub fn new(
         told: &str,
         layout: &BevLayout,
@@ -134,7 +134,7 @@ impl Entry {
         }
     }
 
-    /// Its objects; rows that are no sound boxes are left out.
+    /// Its objects; rows that are not sound boxes are left out.
     pub fn boxes(&self) -> BTreeMap<BoxId, SceneBox> {
         let mut out = BTreeMap::new();
         for (i, [class, x, y, z, l, w, h, yaw_rad, speed]) in self.boxes.iter().copied().enumerate() {
@@ -163,11 +163,11 @@ impl Entry {
     }
 }
 
-/// Entries as a file holds them.
+/// Entries as they are stored in a file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bank {
-    /// [`VERSION`].
+    /// The format: [`VERSION`].
     pub version: u32,
     /// Scenes.
     pub entries: Vec<Entry>,
@@ -192,7 +192,7 @@ impl Bank {
     }
 }
 
-/// What a prompt says already; what is `None` or absent is open.
+/// Statements of a prompt; parts that are `None` or absent are open.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Open {
     /// The prompt.
@@ -203,24 +203,24 @@ pub struct Open {
     pub environment: Option<Environment>,
     /// True for night.
     pub night: Option<bool>,
-    /// Place in [`WEATHERS`](super::facts::WEATHERS).
+    /// Index in [`WEATHERS`](super::facts::WEATHERS).
     pub weather: Option<usize>,
-    /// Objects by class that were counted (0 for those that were ruled out).
+    /// Stated numbers of objects by class (0 for excluded classes).
     pub counts: BTreeMap<Class, usize>,
 }
 
-/// An entry that was found.
+/// An entry that was retrieved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Retrieved {
-    /// Place in [`Memory::entries`].
+    /// Index in [`Memory::entries`].
     pub entry: usize,
     /// Cosine of the texts.
     pub similarity: f64,
-    /// The same less a penalty for what the prompt says otherwise; the list is sorted by it.
+    /// The similarity less a penalty for contradictions of the prompt; the list is sorted by it.
     pub score: f64,
 }
 
-/// What to put where a prompt says nothing.
+/// A proposal for the open parts of a prompt.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Proposal {
     /// The entries it comes from, the best first.
@@ -231,7 +231,7 @@ pub struct Proposal {
     pub road_kind: RoadKind,
     /// Surroundings, the stated or the retrieved ones.
     pub environment: Environment,
-    /// Night, stated or that of most retrieved scenes; `None` where they do not agree.
+    /// Night, stated or that of most retrieved scenes; `None` if they do not agree.
     pub night: Option<bool>,
     /// Weather, in the same way.
     pub weather: Option<usize>,
@@ -257,7 +257,7 @@ impl Memory {
         Ok(MEMORY.get_or_init(|| Arc::new(memory)).clone())
     }
 
-    /// With these entries. Errors, as all below that encode a text, if the encoder cannot compute.
+    /// A memory of these entries. Errors, as in all functions below that encode a text, if the encoder cannot compute.
     pub fn new(encoder: Arc<TextEncoder>, entries: Vec<Entry>) -> Result<Self, MemoryError> {
         let vectors = entries.iter().map(|e| encoder.encode(&e.text));
         Ok(Self {
@@ -267,7 +267,7 @@ impl Memory {
         })
     }
 
-    /// Bundled entries and these besides: the user's own scenes.
+    /// A memory of the entries and these in addition: the user's own scenes.
     pub fn with(&self, more: Vec<Entry>) -> Result<Self, MemoryError> {
         let mut entries = self.entries.clone();
         entries.extend(more);
@@ -311,8 +311,8 @@ impl Memory {
         Ok(all)
     }
 
-    /// Proposes what a prompt leaves open, from the [`NEAREST`] entries; which of them gives the road is drawn from `seed`
-    /// in proportion to exp(score / 0.1). `None` if the memory is empty.
+    /// Proposes the open parts of a prompt, from the [`NEAREST`] entries; the entry that gives the road is drawn from
+    /// `seed` in proportion to exp(score / 0.1). `None` if the memory is empty.
     pub fn fill_in(&self, open: &Open, seed: u64) -> Result<Option<Proposal>, MemoryError> {
         const SHARPNESS: f64 = 0.1;
         let from = self.ranked(&open.text, NEAREST, |e| contradictions(open, &e.facts))?;
@@ -377,7 +377,7 @@ impl Memory {
     }
 }
 
-/// How much an entry speaks against what was said.
+/// Penalty for the contradictions between an entry and the prompt.
 fn contradictions(open: &Open, facts: &Facts) -> f64 {
     let mut out = 0.0;
     let mut against = |says: bool, weight: f64| out += if says { weight } else { 0.0 };

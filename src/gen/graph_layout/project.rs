@@ -1,6 +1,7 @@
-//! Repairs what physics or a statement forbids in a placement, and nothing else: overlaps, vehicles off the road or outside
-//! the map, moving vehicles across their lane, stated relations that do not hold. Every object moves to the nearest place
-//! that is sound; how far is reported. Deterministic, at most [`ROUNDS`] rounds of [`CANDIDATES`] tries each.
+//! Repairs violations of physics or of statements in a placement, and changes nothing else: overlaps, vehicles off the
+//! road or outside the map, moving vehicles across their lane, stated relations that do not hold. Every object moves to
+//! the nearest sound place; the distance is reported. Deterministic, at most [`ROUNDS`] rounds of [`CANDIDATES`] tries
+//! each.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,30 +21,30 @@ pub const CANDIDATES: usize = 3000;
 const MARGIN_M: f64 = 0.1;
 /// Half of the map that boxes may cover, m.
 const REACH_M: f64 = 39.5;
-/// How far a moving vehicle may head beside its lane's direction: cosine of 12 degrees.
+/// Largest deviation of a moving vehicle's heading from its lane's direction: cosine of 12 degrees.
 const ALONG: f64 = 0.978;
 
-/// How far an object was moved.
+/// Move of an object.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Moved {
     /// Node.
     pub id: u32,
-    /// Distance between where it was put and where it is now, m.
+    /// Distance between its first place and its present one, m.
     pub distance_m: f64,
     /// Turn, rad, absolute.
     pub turned_rad: f64,
 }
 
-/// What the projection did and what it could not do.
+/// Repairs that the projection made, and problems that remain.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Projection {
     /// Objects that were moved or turned, in the order of their ids.
     pub moved: Vec<Moved>,
-    /// Objects for which no place was left: they are taken out, rather than stand in another.
+    /// Objects for which no place was left: they are removed, rather than overlap another.
     pub dropped: Vec<u32>,
     /// Statements that do not hold.
     pub broken: Vec<Edge>,
-    /// Statements in all that were judged.
+    /// Number of statements that were judged.
     pub stated: usize,
 }
 
@@ -54,7 +55,7 @@ impl Projection {
     }
 }
 
-/// What is wrong with one object at one place; the less the better.
+/// Faults of one object at one place; the fewer the better.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 struct Fault {
     physics: usize,
@@ -68,7 +69,7 @@ struct Repair<'a> {
     locked: BTreeSet<u32>,
     /// Statements that name a node.
     about: BTreeMap<u32, Vec<Edge>>,
-    /// Faults that a search through all places could not mend: not searched again while nothing is worse.
+    /// Faults that a search through all places could not repair: it is not repeated unless they become worse.
     exhausted: BTreeMap<u32, Fault>,
 }
 
@@ -114,7 +115,7 @@ pub fn project(
         }
     }
     let mut out = Projection::default();
-    // The later ones give way.
+    // The later ones of an overlap give way.
     for id in &order {
         if repair.boxes.get(id).is_some_and(|b| repair.physics(*id, b) > 0) {
             repair.boxes.remove(id);
@@ -168,7 +169,7 @@ impl Repair<'_> {
         }
     }
 
-    /// Free objects: those that others are described by first, then the larger ones.
+    /// Free objects: those that others are placed by first, then the larger ones.
     fn order(&self) -> Vec<u32> {
         let mut depth: BTreeMap<u32, usize> = self.boxes.keys().map(|id| (*id, 0)).collect();
         for _ in 0..8 {
@@ -208,7 +209,7 @@ impl Repair<'_> {
         self.graph.object(id).and_then(|o| o.state)
     }
 
-    /// Number of physical faults of a box in the place of object `id`.
+    /// Number of physical faults of a box taken as object `id`.
     fn physics(&self, id: u32, b: &SceneBox) -> usize {
         let corners = b.footprint();
         let outside = corners
@@ -312,7 +313,7 @@ impl Repair<'_> {
         moved
     }
 
-    /// Headings to try at a place, the present one first unless it cannot stay.
+    /// Headings to try at a place, the present one first if it can stay.
     fn yaws(&self, id: u32, own: &SceneBox, place: DVec2) -> Vec<f64> {
         use std::f64::consts::FRAC_PI_2;
         let mut out = Vec::new();
@@ -356,8 +357,8 @@ impl Repair<'_> {
         out
     }
 
-    /// Places to try, the nearest first: rings around the present one, lanes, strips beside them, what a statement names,
-    /// and every second metre of the map.
+    /// Places to try, the nearest first: rings around the present one, lanes, strips beside them, places that a
+    /// statement names, and every second metre of the map.
     fn places(&self, id: u32, own: &SceneBox) -> Vec<DVec2> {
         let from = own.center_m.truncate();
         let mut out = vec![from];

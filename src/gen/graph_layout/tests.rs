@@ -1,5 +1,6 @@
-//! The layout network and the text encoder against the Python ones that trained the shipped weights: goldens written by
-//! training/export_layout.py and training/train_text.py (PyTorch, f32) for exactly these files; and what a placement promises.
+//! The layout network and the text encoder against the Python versions that trained the shipped weights: goldens
+//! written by training/export_layout.py and training/train_text.py (PyTorch, f32) for exactly these files. Also the
+//! guarantees of a placement.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -206,7 +207,7 @@ fn placements_are_sound_repeatable_and_keep_what_is_locked() {
         assert!(overlap_m(a, &ego_box()) <= 0.0);
         assert!(boxes[i + 1..].iter().all(|b| overlap_m(a, b) <= 0.0));
     }
-    // The bus stays where it is put; the others are placed again around it.
+    // The bus stays at its place; the others are placed again around it.
     let bus = graph
         .nodes
         .iter_mut()
@@ -270,7 +271,7 @@ fn memory_fills_in_what_is_left_open() {
     let proposal = fill_in(&open, 3).expect("entries");
     assert_eq!(fill_in(&open, 3), Some(proposal.clone()));
     assert!(proposal.night == Some(true) && !proposal.counts.contains_key(&Class::Bus));
-    // Only what most of the scenes it is drawn from have is filled in unasked.
+    // Without being asked for, only objects that most of the retrieved scenes have are filled in.
     let (mut agreed, mut open_left) = (0, 0);
     for entry in memory.entries().iter().take(40) {
         let open = Open {

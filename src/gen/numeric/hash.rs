@@ -1,8 +1,8 @@
-//! FNV-1a: names bytes. Not for keys that somebody may choose to make collide.
+//! FNV-1a: hashes for identifying bytes. Not for keys that somebody may choose so that they collide.
 //!
 //! Fowler, Noll and Vo; the constants are those of the FNV internet draft (draft-eastlake-fnv).
 
-/// The 64-bit hash of bytes that come piece by piece. Each is finished by being read: [`Fnv1a::get`].
+/// The 64-bit hash of bytes that are added piece by piece. [`Fnv1a::get`] reads the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fnv1a(u64);
 
@@ -13,18 +13,18 @@ impl Default for Fnv1a {
 }
 
 impl Fnv1a {
-    /// The hash of nothing.
+    /// The hash of no bytes.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Takes a byte in.
+    /// Adds a byte.
     #[inline]
     pub fn add(&mut self, byte: u8) {
         self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
     }
 
-    /// The same with more bytes.
+    /// The hash with more bytes added.
     pub fn with(mut self, bytes: impl IntoIterator<Item = u8>) -> Self {
         bytes.into_iter().for_each(|b| self.add(b));
         self
@@ -41,7 +41,7 @@ pub fn fnv1a_64(bytes: &[u8]) -> u64 {
     Fnv1a::new().with(bytes.iter().copied()).get()
 }
 
-/// The 32-bit hash of bytes: buckets of hashed words.
+/// The 32-bit hash of bytes, for buckets of hashed words.
 pub fn fnv1a_32(bytes: &[u8]) -> u32 {
     bytes
         .iter()

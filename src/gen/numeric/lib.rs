@@ -1,6 +1,7 @@
-//! Numbers that every room shares: random draws, hashes, quantiles, small systems of equations. It knows no other room.
+//! Numerics that every room shares: random draws, hashes, quantiles, small systems of equations. It knows no other
+//! room.
 //!
-//! Which generator to use: [`philox`] computes a number from (seed, purpose, cell), in any order; the samplers take their
+//! Choice of generator: [`philox`] computes a number from (seed, purpose, cell), in any order; the samplers take their
 //! noise from it. [`splitmix`] gives one number after another; worlds and tests use it.
 
 pub mod decimal;

@@ -1,17 +1,17 @@
 //! Random draws without a state: every number is a function of (seed, where it is used).
 //!
-//! Philox4x32-10 of Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3". A draw does not
-//! depend on which thread asks, in which order, or what else was drawn, so noise stays with its cell.
+//! Philox4x32-10 of Salmon et al. 2011, "Parallel random numbers: as easy as 1, 2, 3". A draw does not depend on the
+//! thread, the order or other draws, so noise stays with its cell.
 
-/// What a draw is for. Different purposes never share numbers.
+/// Purpose of a draw. Different purposes never share numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Stream {
-    /// Noise that a scene starts from when it is generated from nothing.
+    /// Noise from which a whole scene is generated.
     Start = 0,
-    /// Noise that a region is inpainted from, and that its surroundings show meanwhile.
+    /// Noise from which a region is inpainted, and which its surroundings show meanwhile.
     Region = 1,
-    /// Where in the encoder's normal distribution a latent is drawn.
+    /// Position of a latent in the encoder's normal distribution.
     Encoder = 2,
     /// Noise that scenery is drawn from.
     Scenery = 3,

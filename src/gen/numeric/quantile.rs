@@ -1,14 +1,14 @@
-//! Quantiles and medians, one definition for every figure.
+//! Quantiles and medians, with one definition for every figure.
 //!
-//! Nothing has no quantile: NaN. A NaN among the values is greater than every number (a negative NaN less), so a few of them
-//! move a quantile by their ranks and do not spoil it.
+//! An empty list has no quantile: NaN. A NaN among the values counts as greater than every number (a negative NaN as
+//! less), so a few of them shift a quantile by their ranks only.
 
-/// Values in order, for several quantiles of the same.
+/// Sorted values, for several quantiles of the same list.
 #[derive(Clone, Debug, Default)]
 pub struct Sorted(Vec<f64>);
 
 impl Sorted {
-    /// Sorts values.
+    /// Sorts the values.
     pub fn new(values: impl IntoIterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.into_iter().collect();
         values.sort_by(f64::total_cmp);
@@ -20,8 +20,8 @@ impl Sorted {
         &self.0
     }
 
-    /// The smallest value that at least the share `q` (0 to 1; beyond, the nearer end) of the values do not exceed (nearest
-    /// rank). One of the values; NaN for none, or if `q` is NaN.
+    /// The smallest value that at least the share `q` of the values do not exceed (nearest rank); `q` is clamped to 0
+    /// to 1. It is one of the values; NaN for an empty list, or if `q` is NaN.
     pub fn quantile(&self, q: f64) -> f64 {
         if q.is_nan() {
             return f64::NAN;
@@ -30,8 +30,8 @@ impl Sorted {
         self.0.get(rank.max(1) - 1).copied().unwrap_or(f64::NAN)
     }
 
-    /// The middle value, or the mean of the two middle ones (so for an even number it is not `quantile(0.5)`, which is the
-    /// lower of the two). NaN for none.
+    /// The middle value, or the mean of the two middle ones (so for an even number of values it differs from
+    /// `quantile(0.5)`, which is the lower of the two). NaN for an empty list.
     pub fn median(&self) -> f64 {
         match self.0.len() {
             0 => f64::NAN,

@@ -1,14 +1,14 @@
-//! Random draws one after another: SplitMix64 (Steele, Lea and Flood 2014), tiny, fast, good enough to place trees.
+//! Sequential random draws: SplitMix64 (Steele, Lea and Flood 2014), tiny, fast, good enough to place trees.
 //!
-//! [`Draw`] is for the worlds: one small stream per concern, so that a change in one place (one more bush) does not reshuffle
-//! another (the cars). [`SplitMix64`] is the bare generator.
+//! [`Draw`] is for the worlds: one small stream per concern, so that a change in one place (one more bush) does not
+//! reshuffle another (the cars). [`SplitMix64`] is the bare generator.
 
 use std::cell::Cell;
 
-/// What the state grows by with every number: the golden ratio, odd.
+/// Increment of the state with every number: the golden ratio, odd.
 const GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// The finaliser: every bit of the word moves about half of the bits.
+/// The finaliser: flipping one bit of the word flips about half of the bits.
 fn finalise(word: u64) -> u64 {
     let mut z = word;
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -21,7 +21,7 @@ pub fn hash(word: u64) -> u64 {
     finalise(word.wrapping_add(GAMMA))
 }
 
-/// The upper 53 bits as a number of 0..1.
+/// The upper 53 bits as a number in 0..1.
 fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1u64 << 53) as f64
 }
@@ -47,13 +47,13 @@ impl SplitMix64 {
         unit(self.bits())
     }
 
-    /// One of 0..n by the remainder, which prefers small ones by as little as n / 2^64; 0 when n is 0.
+    /// One of 0..n by the remainder, which prefers small numbers by at most n / 2^64; 0 when n is 0.
     pub fn below(&mut self, n: usize) -> usize {
         (self.bits() % n.max(1) as u64) as usize
     }
 }
 
-/// Number `index` of the stream of seed 0, counted from 1, uniform in 0..1: a scatter that needs no state.
+/// Number `index` of the stream of seed 0, counted from 1, uniform in 0..1: a scatter without a state.
 pub fn scatter(index: u64) -> f64 {
     unit(finalise(index.wrapping_mul(GAMMA)))
 }
@@ -66,7 +66,7 @@ impl Draw {
     /// The stream of `seed` for one `concern`; different concerns give unrelated streams.
     pub fn new(seed: u64, concern: &str) -> Self {
         let name = concern.bytes().fold(0u64, |h, b| hash(h ^ u64::from(b)));
-        // (a step ahead, as it has always been: worlds and trained networks depend on every number)
+        // (one step ahead: worlds and trained networks depend on these exact numbers)
         Self(SplitMix64(hash(seed ^ name).wrapping_add(GAMMA)))
     }
 
@@ -113,7 +113,7 @@ pub fn noise(seed: u64, x: f64, y: f64) -> f64 {
     Noise::new(seed).at(x, y)
 }
 
-/// The same noise for many places one after another: the corners of the last square of the lattice are kept.
+/// Noise at many places one after another: the corners of the last square of the lattice are kept.
 pub struct Noise {
     seed: u64,
     square: Cell<([f64; 2], [f64; 4])>,
@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(SplitMix64::new(3).below(0), 0);
     }
 
-    /// The draws of a concern are what they were when worlds were made for the trained networks.
+    /// The draws of a concern are those with which worlds were made for the trained networks.
     #[test]
     fn draws_stay_what_they_were() {
         for (seed, concern) in [(0, ""), (7, "cars"), (u64::MAX, "bushes")] {
@@ -187,7 +187,7 @@ mod tests {
         assert_eq!([0; 3].map(|_| draw.bits()), DRAWN);
     }
 
-    /// Of the commit before the generators became one.
+    /// Numbers from the commit before the generators were merged.
     const DRAWN: [u64; 3] = [
         15_942_172_136_308_383_990,
         11_755_036_119_052_946_428,

@@ -1,5 +1,4 @@
-//! What a sentence says of things beside the road: plain values, a part of a
-//! `Reading` (in `words`) and of its JSON Schema.
+//! Clauses of a sentence about scenery: plain values, a part of a `Reading` (in `words`) and of its JSON Schema.
 
 use std::fmt;
 
@@ -19,7 +18,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// From the first byte of one to the last of the other.
+    /// The span from the first byte of this one to the last byte of the other.
     pub fn to(self, other: Self) -> Self {
         Self {
             start: self.start.min(other.start),
@@ -55,7 +54,7 @@ pub enum What {
     Thing,
 }
 
-/// What is asked for.
+/// Kind of request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verb {
@@ -87,7 +86,7 @@ pub enum SideOf {
     Right,
 }
 
-/// What something is near to.
+/// Place that something is near to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NearTo {
@@ -99,7 +98,7 @@ pub enum NearTo {
     Ego,
 }
 
-/// Where, as far as it was said.
+/// Place of things, as far as it was stated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Where {
@@ -134,9 +133,9 @@ pub enum Amount {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Said {
-    /// What is asked for.
+    /// The request.
     pub verb: Verb,
-    /// Of what.
+    /// The things.
     pub what: What,
     /// Number of a thing: `tree #12`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -171,7 +170,7 @@ pub struct Said {
     /// Way of a move in the ego frame: forward and to the left, together of length 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub way: Option<(f64, f64)>,
-    /// Where.
+    /// Their place.
     #[serde(default)]
     pub place: Where,
     /// Bytes of the text, if the reader knows them.
@@ -180,7 +179,7 @@ pub struct Said {
 }
 
 impl Said {
-    /// Says nothing but what is asked for, and of what.
+    /// A clause of only a request and its things.
     pub fn new(verb: Verb, what: What) -> Self {
         Self {
             verb,
@@ -201,7 +200,7 @@ impl Said {
         }
     }
 
-    /// Why it cannot be carried out, of values from elsewhere.
+    /// The reason why it cannot be carried out, for values from outside the program; `None` if it can.
     pub fn problem(&self) -> Option<&'static str> {
         let lengths = [self.height, self.by].into_iter().flatten().map(|a| match a {
             Amount::Storeys(n) => n * 3.0,
@@ -274,7 +273,7 @@ impl Said {
         self.plural || self.row || self.count.is_some_and(|n| n != 1)
     }
 
-    /// Its things without where they are: `dense trees`, `the tree #12`.
+    /// Its things without their place: `dense trees`, `the tree #12`.
     pub fn things(&self) -> String {
         let things = self.bare();
         let (many, is_mass) = (self.is_many(), self.is_mass());
@@ -288,7 +287,7 @@ impl Said {
         }
     }
 
-    /// What a new scene holds: `no trees near the crossing`.
+    /// The clause as part of a new scene, in words: `no trees near the crossing`.
     pub fn described(&self) -> String {
         if self.verb == Verb::Remove {
             return format!("no {}{}", self.bare(), self.place());
@@ -300,7 +299,7 @@ impl Said {
         has.to_string()
     }
 
-    /// Where they are, with a space before it; empty if it was not said.
+    /// The place in words, with a space before it; empty if none was stated.
     pub fn place(&self) -> String {
         let place = &self.place;
         let mut out = String::new();
@@ -333,7 +332,7 @@ impl Said {
 }
 
 impl fmt::Display for Said {
-    /// What is asked for, in words: `removes the trees on the left`.
+    /// The request in words: `removes the trees on the left`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (things, place) = (self.things(), self.place());
         let amount = |a: Amount| match a {

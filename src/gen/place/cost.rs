@@ -1,4 +1,4 @@
-//! What it costs to put an object at a place, in the unit of the placer: how far the place is from what was said.
+//! Costs of putting an object at a place, in the unit of the placer: distance of the place from the stated one.
 
 use glam::{DVec2, DVec3};
 
@@ -7,7 +7,8 @@ use super::spots::Spot;
 use scene::graph::{Edge, RelationKind};
 use scene::{BoxId, BoxLabel, Class, SceneBox};
 
-/// Who is only told where to look stays where he is (what drives keeps to its lane).
+/// A spot for an object that is only told a direction to face: it stays at its place. `None` for others, and for
+/// drivers, which keep to their lane.
 pub(super) fn turned_where_it_is(old: &SceneBox, stated: &[(Edge, Option<Target>)]) -> Option<Spot> {
     use RelationKind as R;
     let drives = old.class != Class::Pedestrian && old.velocity_mps.length() > 0.5;
@@ -39,23 +40,23 @@ pub(super) fn turned_where_it_is(old: &SceneBox, stated: &[(Edge, Option<Target>
     })
 }
 
-/// What it costs to bring a box to a place: the way, and turning it.
+/// Cost of bringing a box to a place: the distance, and the turn.
 pub(super) fn moved_far(old: &SceneBox, s: &Spot) -> f64 {
     let turned = 1.0 - old.heading().dot(DVec2::from_angle(s.yaw_rad));
     let walks = old.class == Class::Pedestrian;
     0.25 * old.center_m.truncate().distance(s.p) + if walks { 0.2 } else { 1.5 } * turned
 }
 
-/// Metres beside the line, and beyond the middle half of it.
+/// Distance from the line, m, with surcharges for the distance from its middle and for places beyond its middle half.
 pub(super) fn off_line(ends: [DVec2; 2], p: DVec2) -> f64 {
     let line = ends[1] - ends[0];
     let (dir, length) = (line.normalize_or_zero(), line.length());
     let along = dir.dot(p - ends[0]) - length / 2.0;
-    // (the middle is where a reader looks first)
+    // (readers expect the middle)
     dir.perp_dot(p - ends[0]).abs() + 0.4 * along.abs() + 0.5 * (along.abs() - length / 4.0).max(0.0)
 }
 
-/// What it costs to be far before or behind what was named.
+/// Cost of a place far before or behind the named thing.
 pub(super) fn off_thing(e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
     match (e.relation, to) {
         (RelationKind::InFrontOf | RelationKind::Behind, Some(Target::Thing(b)))
@@ -68,7 +69,7 @@ pub(super) fn off_thing(e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
     }
 }
 
-/// Metres that something is farther off than near, at most 30, where it was said to be near.
+/// Distance beyond "near", at most 30 m, for a statement that something is near.
 pub(super) fn off_near(e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f64> {
     match (e.relation, to) {
         (RelationKind::Near, Some(Target::Thing(to))) if e.distance_m.is_none() => {
@@ -78,7 +79,7 @@ pub(super) fn off_near(e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f6
     }
 }
 
-/// How far a place misses what was said in metres, and how far off the line of what it is behind or between.
+/// Deviation of a place from stated distances, m, and from being level with the thing that it is beside.
 pub(super) fn off_measure(stated: &[(Edge, Option<Target>)], s: &Spot, size_m: DVec3) -> f64 {
     let b = SceneBox {
         id: BoxId(0),
@@ -96,7 +97,7 @@ pub(super) fn off_measure(stated: &[(Edge, Option<Target>)], s: &Spot, size_m: D
         let missed = e
             .distance_m
             .map_or(0.0, |d| (measured(e.relation, &b, to) - d).abs());
-        // beside is level with it
+        // "beside" means level with it
         let level = if e.relation == RelationKind::NextTo && to.class != Class::Pedestrian {
             0.6 * course(to).dot(s.p - to.center_m.truncate()).abs()
         } else {

@@ -1,4 +1,4 @@
-//! What a prompt says about a scene: X-Scene's fields (arXiv 2506.13558, appendix B) as plain data.
+//! Description of a scene, as a prompt gives it: X-Scene's fields (arXiv 2506.13558, appendix B) as plain data.
 
 use serde::{Deserialize, Serialize};
 
@@ -47,11 +47,11 @@ named!(
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Count {
-    /// Least number that fits what was said.
+    /// Least number that fits the words.
     pub min: u32,
     /// Number that is placed.
     pub n: u32,
-    /// Largest number that fits what was said.
+    /// Largest number that fits the words.
     pub max: u32,
 }
 
@@ -70,7 +70,7 @@ impl Count {
     }
 }
 
-/// What a place is described by.
+/// Reference of a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Anchor {
@@ -86,13 +86,13 @@ pub enum Anchor {
     Junction,
 }
 
-/// One relation that was said.
+/// One stated relation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stated {
-    /// Which.
+    /// The relation.
     pub relation: RelationKind,
-    /// To what.
+    /// Reference of the relation.
     pub anchor: Anchor,
     /// The second one of `between`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -110,22 +110,22 @@ pub struct ObjectSpec {
     pub class: Class,
     /// How many.
     pub count: Count,
-    /// What they do.
+    /// Their state: moving, parked or waiting.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state: Option<ObjectState>,
     /// Larger or smaller than usual.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<SizeHint>,
-    /// What they are called and how they are painted.
+    /// Their name and paint.
     #[serde(default, skip_serializing_if = "BoxLabel::is_empty")]
     pub label: BoxLabel,
     /// Length, width and height of this kind, m, where it differs from its class.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size_m: Option<[f64; 3]>,
-    /// Where they are.
+    /// Their places.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub relations: Vec<Stated>,
-    /// How they move in the course of time.
+    /// Their manoeuvre in the course of time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Manoeuvre>,
 }
@@ -143,12 +143,12 @@ impl ObjectSpec {
 pub struct Absent {
     /// The classes.
     pub classes: Vec<Class>,
-    /// Only those that do this.
+    /// Limits it to objects of this state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state: Option<ObjectState>,
 }
 
-/// What the road must have.
+/// Requirements on the road.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RoadWish {
@@ -164,7 +164,7 @@ pub struct RoadWish {
     pub wide: bool,
     /// A pedestrian crossing.
     pub crossing: bool,
-    /// How far ahead it is, m.
+    /// Distance of the crossing ahead, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing_m: Option<f64>,
     /// Sidewalks.
@@ -181,23 +181,23 @@ pub struct RoadWish {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Description {
-    /// When.
+    /// Time of day.
     pub time_of_day: Option<TimeOfDay>,
-    /// Under which sky.
+    /// Weather.
     pub weather: Option<Weather>,
-    /// Among what.
+    /// Surroundings.
     pub environment: Option<Environment>,
     /// The objects.
     pub foreground: Vec<ObjectSpec>,
-    /// What must not occur.
+    /// Classes that must not occur.
     pub absent: Vec<Absent>,
     /// Buildings, trees and the like.
     pub background: Vec<Said>,
-    /// How much else is going on.
+    /// Amount of other traffic.
     pub density: Option<Density>,
     /// The road.
     pub road: RoadWish,
-    /// How the ego vehicle moves in the course of time.
+    /// Manoeuvre of the ego vehicle in the course of time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ego_motion: Option<Manoeuvre>,
     /// How long the scene lasts, s.
@@ -221,13 +221,13 @@ impl Description {
         words.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
-    /// Light and air of the scene; what nobody spoke of is a clear day.
+    /// Light and air of the scene; a clear day where nothing was stated.
     pub fn conditions(&self, seed: u64) -> Conditions {
         let (time, weather) = (self.time_of_day, self.weather);
         Conditions::usual(time.unwrap_or_default(), weather.unwrap_or_default(), seed)
     }
 
-    /// True if nothing was said that changes a scene.
+    /// True if nothing was stated that changes a scene.
     pub fn is_empty(&self) -> bool {
         let empty = Description {
             summary: self.summary.clone(),

@@ -1,5 +1,5 @@
-//! When a relation holds for a box, for placing and for picking boxes by words. The thresholds lie inside those of
-//! the scene graph's own predicates wherever both are needed.
+//! Predicates for relations of a box, for placing boxes and for picking them by words. The thresholds lie inside those
+//! of the scene graph's own predicates wherever both are needed.
 
 use glam::DVec2;
 
@@ -7,7 +7,7 @@ use super::lanes::LaneMap;
 use scene::graph::{LaneRole, RelationKind};
 use scene::{BevLayer, BoxId, BoxLabel, Class, SceneBox};
 
-/// What a relation is to.
+/// Reference of a relation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// An object, or the ego vehicle.
@@ -49,7 +49,8 @@ pub fn course(b: &SceneBox) -> DVec2 {
     }
 }
 
-/// How deep two footprints overlap when both are grown by half of `margin_m`; 0 or less: apart (separating axes).
+/// Depth of the overlap of two footprints when both are grown by half of `margin_m`; 0 or less if they are apart
+/// (separating axes).
 pub fn overlap_m(a: &SceneBox, b: &SceneBox, margin_m: f64) -> f64 {
     let d = (b.center_m - a.center_m).truncate();
     let reach = |x: &SceneBox, axis: DVec2| {
@@ -123,7 +124,7 @@ pub fn in_role(map: &LaneMap<'_>, role: LaneRole, p: DVec2) -> bool {
     }
 }
 
-/// The lane or strip that a box is said to be in.
+/// The lane or strip that a box counts to.
 pub fn role_of(map: &LaneMap<'_>, b: &SceneBox) -> Option<LaneRole> {
     use LaneRole as L;
     let p = b.center_m.truncate();
@@ -138,7 +139,7 @@ pub fn role_of(map: &LaneMap<'_>, b: &SceneBox) -> Option<LaneRole> {
     };
     let all: Vec<L> = match b.class {
         Class::Pedestrian => walks.to_vec(),
-        // A driver is in a lane, what stands beside one at the edge.
+        // A driver is in a lane; a box standing beside one is at the edge.
         _ if b.velocity_mps.length() > 0.5 => [&lanes[..], &strips, &walks].concat(),
         _ => {
             let off = map.nearest(p).map_or(f64::INFINITY, |l| l.p.distance(p));
@@ -153,7 +154,7 @@ pub fn role_of(map: &LaneMap<'_>, b: &SceneBox) -> Option<LaneRole> {
     all.into_iter().find(|role| in_role(map, *role, p))
 }
 
-/// How far a box is from what a relation is to, as its distance is measured.
+/// Distance between a box and the reference of a relation, measured as for the relation.
 pub fn measured(relation: RelationKind, from: &SceneBox, to: &SceneBox) -> f64 {
     use RelationKind as R;
     let (axis, d) = (course(to), from.center_m.truncate() - at(to));
@@ -164,7 +165,7 @@ pub fn measured(relation: RelationKind, from: &SceneBox, to: &SceneBox) -> f64 {
     }
 }
 
-/// How far a box is from a target, as the distance of a relation is measured, m; none where there is no such target.
+/// Distance between a box and a target, measured as for the relation, m; `None` if there is no such target.
 pub fn from_m(map: &LaneMap<'_>, relation: RelationKind, from: &SceneBox, to: &Target) -> Option<f64> {
     let p = from.center_m.truncate();
     match to {
@@ -257,7 +258,8 @@ pub fn holds(
     held && distance_m.is_none_or(|d| (distance - d).abs() <= (0.15 * d).max(1.5))
 }
 
-/// True if `relation` holds between a box and another; `measured_m`: a distance was stated, which decides what is near.
+/// True if `relation` holds between a box and another. With `measured_m` a distance was stated, which then decides on
+/// nearness.
 fn to_thing(
     map: &LaneMap<'_>,
     relation: RelationKind,
@@ -277,12 +279,12 @@ fn to_thing(
     let is_ego = b.id == BoxId(u32::MAX);
     let toward = heading.dot((at(b) - p).normalize_or_zero());
     match relation {
-        // (roads bend: what is far down the road is ahead of the ego vehicle)
+        // (roads bend: a box far down the road is ahead of the ego vehicle)
         R::InFrontOf => {
             fwd > half.x && lat.abs() <= (if is_ego && fwd > 10.0 { 0.85 } else { 0.6 } * fwd).max(2.0)
         }
         R::Behind => -fwd > half.x && lat.abs() <= (-0.6 * fwd).max(2.0),
-        // Of the ego vehicle it means the whole side of the street.
+        // For the ego vehicle it means the whole side of the street.
         R::LeftOf => lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (2.0 * lat).max(half.x + 4.0)),
         R::RightOf => -lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (-2.0 * lat).max(half.x + 4.0)),
         R::Near if measured_m => true,

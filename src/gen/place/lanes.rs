@@ -1,4 +1,4 @@
-//! The lanes, strips and areas of a layout as the ego vehicle sees them.
+//! The lanes, strips and areas of a layout, by their roles for the ego vehicle.
 
 use glam::DVec2;
 
@@ -8,19 +8,19 @@ use scene::{BevLayer, BevLayout, PolylineKind};
 /// A point in the middle of a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LanePoint {
-    /// Ego frame, m.
+    /// Place in the ego frame, m.
     pub p: DVec2,
     /// Unit vector in driving direction.
     pub dir: DVec2,
-    /// Which lane it is here.
+    /// Role of the lane at this point.
     pub role: LaneRole,
 }
 
-/// A layout with its lanes told apart.
+/// A layout with the roles of its lanes.
 pub struct LaneMap<'a> {
     /// The layout.
     pub layout: &'a BevLayout,
-    /// Every metre of every lane inside the grid.
+    /// Points at every metre of every lane inside the grid.
     pub points: Vec<LanePoint>,
     /// The course of the ego vehicle, every metre, from behind to ahead.
     pub ego_path: Vec<(DVec2, DVec2)>,
@@ -30,11 +30,11 @@ pub struct LaneMap<'a> {
     pub crossings: Vec<Vec<DVec2>>,
     /// Middle of the nearest junction.
     pub junction: Option<DVec2>,
-    /// Indices of the points by squares of the plane: the nearest of them is asked for thousands of times.
+    /// Indices of the points by squares of the plane, because the nearest one is looked up thousands of times.
     squares: Vec<Vec<u32>>,
 }
 
-/// Side of a square, m, and how many there are along one axis.
+/// Side of a square, m, and number of squares along one axis.
 const SQUARE_M: f64 = 5.0;
 const SQUARES: i64 = 18;
 
@@ -42,7 +42,7 @@ fn square(v: f64) -> i64 {
     ((v / SQUARE_M).floor() as i64 + SQUARES / 2).clamp(0, SQUARES - 1)
 }
 
-/// How far from the middle boxes may stand, m.
+/// Farthest distance of boxes from the middle, m.
 pub const REACH_M: f64 = 39.0;
 
 fn resample(points: &[DVec2]) -> Vec<(DVec2, DVec2)> {
@@ -145,14 +145,15 @@ impl<'a> LaneMap<'a> {
         }
     }
 
-    /// Where a point is beside the ego vehicle's course: metres ahead along it, metres left of it, its direction there.
+    /// Coordinates of a point along the ego vehicle's course: metres ahead along it, metres left of it, its direction
+    /// there.
     pub fn course(&self, p: DVec2) -> Option<(f64, f64, DVec2)> {
         let at = nearest_of(&self.ego_path, p);
         let (q, dir) = *self.ego_path.get(at)?;
         Some((at as f64 - self.ego_at as f64, dir.perp_dot(p - q), dir))
     }
 
-    /// True if any of the layers is there.
+    /// True if any of the layers is set at the point.
     pub fn has(&self, bits: u32, p: DVec2) -> bool {
         self.layout
             .extent()
@@ -165,7 +166,7 @@ impl<'a> LaneMap<'a> {
         let (x, y) = (square(p.x), square(p.y));
         let mut best: Option<(f64, u32)> = None;
         for ring in 0..SQUARES {
-            // what lies farther out than this ring is at least so far away
+            // points farther out than this ring are at least this far away
             let beyond = (ring - 1).max(0) as f64 * SQUARE_M;
             if best.is_some_and(|b| b.0.sqrt() < beyond) {
                 break;
@@ -207,7 +208,7 @@ impl<'a> LaneMap<'a> {
         Some(near.iter().sum::<DVec2>() / near.len() as f64)
     }
 
-    /// The crossing that is meant when none is named: the nearest ahead, else the nearest.
+    /// The crossing that is meant if none is named: the nearest ahead, else the nearest.
     pub fn crossing(&self) -> Option<&Vec<DVec2>> {
         let mid = |c: &Vec<DVec2>| c.iter().sum::<DVec2>() / c.len() as f64;
         let cost = |c: &Vec<DVec2>| {
@@ -218,7 +219,7 @@ impl<'a> LaneMap<'a> {
     }
 }
 
-/// Index of the point of a path that is nearest to `p`, the first of several; thousands of places are asked about in an edit.
+/// Index of the point of a path that is nearest to `p`, the first of several; an edit asks for thousands of places.
 fn nearest_of(path: &[(DVec2, DVec2)], p: DVec2) -> usize {
     let (mut at, mut least) = (0, f64::INFINITY);
     for (i, (q, _)) in path.iter().enumerate() {
@@ -274,7 +275,7 @@ fn ego_path(lanes: &[Vec<(DVec2, DVec2)>]) -> Vec<(DVec2, DVec2)> {
             break;
         }
     }
-    // Straight on to the border, so that "ahead" is always somewhere.
+    // Straight on to the border, so that "ahead" always exists.
     let (end, dir) = path[path.len() - 1];
     path.extend(
         (1..=80)

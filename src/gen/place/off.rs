@@ -1,25 +1,25 @@
-//! How far things stand from where a distance was stated: a place may be met and still be metres off.
+//! Deviations of things from their stated distances: a place may fit and still be metres off.
 
 use super::holds::{Target, ego, from_m};
 use super::lanes::LaneMap;
 use scene::SceneBox;
 use scene::graph::{NodeKind, SceneGraph};
 
-/// Off by less than this a distance is as it was stated, m.
+/// Largest deviation at which a distance counts as stated, m.
 pub const TOLERATED_M: f64 = 0.5;
 
-/// A distance that is not as it was stated.
+/// A distance that differs from the stated one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Off {
     /// Index of the edge that states it.
     pub edge: usize,
-    /// As it was stated, m.
+    /// Distance that was stated, m.
     pub asked_m: f64,
-    /// As it is, m.
+    /// Distance that was found, m.
     pub found_m: f64,
 }
 
-/// The distances of a graph that its boxes (the id of each is that of its node) do not have.
+/// The distances of a graph that its boxes do not keep; the id of each box is that of its node.
 pub fn off(graph: &SceneGraph, map: &LaneMap<'_>, boxes: &[SceneBox]) -> Vec<Off> {
     let placed = |id: u32| boxes.iter().find(|b| b.id.0 == id);
     let target = |id: u32| {

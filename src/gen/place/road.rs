@@ -1,4 +1,4 @@
-//! Which road a description gets: a template and the seed whose variation has what is asked for.
+//! The road for a description: a template and the seed whose variation has what is asked for.
 
 use super::description::{Anchor, Description, Environment, Road};
 use super::lanes::LaneMap;
@@ -15,11 +15,11 @@ pub struct Chosen {
     pub template: &'static str,
     /// The layout.
     pub layout: BevLayout,
-    /// What was asked for and could not be had.
+    /// Requirements that no road could meet, in words.
     pub missing: Vec<String>,
 }
 
-/// Variations tried of a template.
+/// Number of variations of a template that are tried.
 const TRIES: u64 = 24;
 
 /// A road for a description and its graph.
@@ -31,7 +31,7 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
         _ if needs.contains(&LaneRole::Carpark) => Road::Parking,
         _ if needs.contains(&LaneRole::Cross) => Road::Intersection,
         Some(Environment::Highway) => Road::Highway,
-        // only a motorway has lanes on both sides of ours that go our way
+        // only a motorway has lanes in our direction on both sides of ours
         _ if needs.contains(&LaneRole::Left) && needs.contains(&LaneRole::Right) => Road::Highway,
         Some(Environment::Suburban | Environment::Residential | Environment::Rural) => Road::Suburb,
         _ => Road::Straight,
@@ -94,7 +94,7 @@ pub fn choose(d: &Description, graph: &SceneGraph, seed: u64) -> Chosen {
     )
 }
 
-/// How much of our street lies before a roundabout, m: what shall stand ahead of us in our lane has room there.
+/// Length of our street before a roundabout, m: it has room for objects that shall stand ahead of us in our lane.
 fn room_ahead_m(d: &Description) -> f64 {
     const LEAST_M: f64 = 14.0;
     const MOST_M: f64 = 24.0;
@@ -107,7 +107,7 @@ fn room_ahead_m(d: &Description) -> f64 {
     (farthest_m + 4.0).clamp(LEAST_M, MOST_M)
 }
 
-/// The same road with no stripes painted on it.
+/// This road without painted crossings.
 fn without_crossings(layout: &BevLayout) -> BevLayout {
     let stripes = BevLayer::PedCrossing.bit();
     let cells = layout.cells().iter().map(|c| c & !stripes).collect();
@@ -120,13 +120,13 @@ fn without_crossings(layout: &BevLayout) -> BevLayout {
     BevLayout::from_cells(cells, lines).unwrap_or_else(|_| layout.clone())
 }
 
-/// What a layout lacks for a description, in words.
+/// Requirements of a description that a layout does not meet, in words.
 pub fn lacks(d: &Description, graph: &SceneGraph, layout: &BevLayout) -> Vec<String> {
     let junction = graph.nodes.iter().any(|n| n.kind == NodeKind::Junction);
     judge(d, &roles(graph), junction, false, graph.nodes.len(), layout).0
 }
 
-/// How many of given vehicles do not stand on the road of a layout, or drive across their lane.
+/// Number of given vehicles that do not stand on the road of a layout, or head across their lane.
 pub fn misplaced(layout: &BevLayout, boxes: &[scene::SceneBox]) -> usize {
     let map = LaneMap::new(layout);
     let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
@@ -144,7 +144,8 @@ pub fn misplaced(layout: &BevLayout, boxes: &[scene::SceneBox]) -> usize {
         .count()
 }
 
-/// A road under given objects: of the templates (or the one that was asked for) the variation that misplaces the fewest.
+/// A road under given objects: of the templates (or the one that was asked for), the variation that misplaces the
+/// fewest.
 pub fn under(d: &Description, graph: &SceneGraph, boxes: &[scene::SceneBox], seed: u64) -> Chosen {
     let mut best: Option<(usize, Chosen)> = None;
     let names: Vec<&'static str> = template::TEMPLATES
@@ -177,7 +178,7 @@ pub fn under(d: &Description, graph: &SceneGraph, boxes: &[scene::SceneBox], see
     best.map_or_else(|| choose(d, graph, seed), |b| b.1)
 }
 
-/// What a layout lacks, in words, and how many softer wishes it leaves open.
+/// Requirements that a layout does not meet, in words, and number of its unmet softer wishes.
 fn judge(
     d: &Description,
     needs: &[LaneRole],
@@ -191,7 +192,7 @@ fn judge(
     (missing, wishes(d, parked, nodes, layout, &map))
 }
 
-/// How much of the lanes of a role lies near the ego vehicle, points.
+/// Number of points of the lanes of a role near the ego vehicle.
 fn points_of(map: &LaneMap<'_>, role: LaneRole) -> usize {
     let near = map
         .points
@@ -200,7 +201,7 @@ fn points_of(map: &LaneMap<'_>, role: LaneRole) -> usize {
     near.count()
 }
 
-/// What a layout lacks, in words.
+/// Requirements that a layout does not meet, in words.
 fn missing(
     d: &Description,
     needs: &[LaneRole],
@@ -259,14 +260,14 @@ fn missing(
     }
     if let Some(lanes) = d.road.lanes {
         let forward = 1 + usize::from(role(LaneRole::Left) > 8) + usize::from(role(LaneRole::Right) > 8);
-        // ("a three-lane motorway" has three each way; of other roads all lanes are counted)
+        // ("a three-lane motorway" has three each way; for other roads all lanes are counted)
         let each_way = d.road.one_way || d.road.kind == Some(Road::Highway) && lanes <= 3;
         let wanted = if each_way {
             lanes as usize
         } else {
             (lanes as usize).div_ceil(2)
         };
-        // (of more than three one sees no more than three: our own and one on either side)
+        // (of more than three, only three count: our own and one on either side)
         if forward != wanted.min(3) {
             missing.push(format!(
                 "{lanes} lanes were asked for, and {forward} of this road go our way"
@@ -276,7 +277,7 @@ fn missing(
     missing
 }
 
-/// How many softer wishes a layout leaves open.
+/// Number of softer wishes that a layout does not meet.
 fn wishes(d: &Description, parked: bool, nodes: usize, layout: &BevLayout, map: &LaneMap<'_>) -> usize {
     let mut wishes = 0;
     let role = |r: LaneRole| points_of(map, r);
@@ -290,7 +291,7 @@ fn wishes(d: &Description, parked: bool, nodes: usize, layout: &BevLayout, map: 
             _ => 2 * (usize::from(!left) + usize::from(!right)),
         };
     }
-    // a motorway has lanes to change to: to the left, and to the right as well unless it has but two
+    // a motorway has lanes to change to: to the left, and also to the right unless it has only two
     if d.road.kind == Some(Road::Highway) && d.road.own_lane.is_none() {
         let two = d
             .road
@@ -298,7 +299,7 @@ fn wishes(d: &Description, parked: bool, nodes: usize, layout: &BevLayout, map: 
             .is_some_and(|n| if d.road.one_way { n < 3 } else { n < 5 });
         wishes += usize::from(role(LaneRole::Left) <= 8) + usize::from(!two && role(LaneRole::Right) <= 8);
     }
-    // who is on the stripes so far ahead wants them there
+    // an object on the crossing at a stated distance needs the crossing there
     for o in &d.foreground {
         let on = o
             .relations
@@ -321,20 +322,20 @@ fn wishes(d: &Description, parked: bool, nodes: usize, layout: &BevLayout, map: 
     }
     let people = d.foreground.iter().any(|o| o.class == scene::Class::Pedestrian);
     wishes += usize::from(people && walkway < 500);
-    // a street has sidewalks, unless it is said to have none
+    // a street has sidewalks, unless the words exclude them
     let street = d.road.kind != Some(Road::Highway) && !d.road.no_sidewalk;
     wishes += usize::from(street && walkway < 500);
     // Many objects need room.
     wishes += usize::from(nodes > 10 && role(LaneRole::Left) + role(LaneRole::Right) < 8);
     let strip = layout.count(BevLayer::CarparkArea);
-    // Right of the ego vehicle there must be room for what drives or parks there.
+    // Right of the ego vehicle there must be room for objects that drive or park there.
     let right = d.foreground.iter().any(|o| {
         o.class != scene::Class::Pedestrian
             && o.relations
                 .iter()
                 .any(|r| r.relation == RelationKind::RightOf && r.anchor == Anchor::Ego)
     });
-    // What drives our way on a side needs a lane there.
+    // Objects that drive in our direction on a side need a lane there.
     for o in &d.foreground {
         let said = |kind: RelationKind| {
             o.relations
@@ -356,7 +357,8 @@ mod tests {
     use super::*;
     use crate::to_graph::to_graph;
 
-    /// Three lanes each way of a motorway are there, or it is said that they are not; so many as nobody could tell are not denied.
+    /// A motorway has three lanes each way, or a missing one is reported. Numbers of lanes that nobody can see are not
+    /// reported as missing.
     #[test]
     fn lanes_that_a_road_lacks_are_said() {
         let of = |kind, lanes, seed| {

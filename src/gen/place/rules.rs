@@ -1,5 +1,6 @@
-//! Constructive placement: every object takes the best free place that its relations allow, most bound ones first;
-//! several orders are tried and the best is kept. Deterministic per seed. What does not fit is left out and named.
+//! Constructive placement: every object takes the best free place that its relations allow, the most constrained ones
+//! first; several orders are tried and the best is kept. Deterministic per seed. Objects that do not fit are left out
+//! and reported.
 
 use std::collections::BTreeMap;
 
@@ -16,11 +17,11 @@ use scene::raster::box_cells;
 use scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
 use world::draw::Draw;
 
-/// As far off, m, is wholly wrong for what should be near.
+/// Distance beyond "near" from which on a place counts as wholly wrong, m.
 const FAR_M: f64 = 9.0;
-/// So far off along the road, m, is about where it was said to be.
+/// Deviation along the road up to which a stated distance counts as roughly met, m.
 const ALONG_M: f64 = 4.0;
-/// Orders that are tried while something is left out or a relation broken.
+/// Orders that are tried while an object is left out or a relation is broken.
 const ATTEMPTS: u64 = 5;
 /// Boxes beyond this many are not tried: the scene is full long before.
 const MOST_BOXES: usize = 300;
@@ -37,7 +38,7 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// How far it is from all that was said: something left out counts as four statements that do not hold.
+    /// Deviation from all statements: an object left out counts as four statements that do not hold.
     pub fn cost(&self) -> usize {
         self.left_out.len() * 4 + self.unmet.len()
     }
@@ -48,7 +49,8 @@ pub fn place(graph: &SceneGraph, layout: &BevLayout, seed: u64) -> Vec<SceneBox>
     place_with(graph, layout, seed, &BTreeMap::new(), &[]).boxes
 }
 
-/// The same with usual sizes of nodes (length, width, height, m), around boxes that belong to no node; locked boxes stay.
+/// A placement with usual sizes of nodes (length, width, height, m), around boxes that belong to no node; locked boxes
+/// stay.
 pub fn place_with(
     graph: &SceneGraph,
     layout: &BevLayout,
@@ -59,7 +61,7 @@ pub fn place_with(
     place_from(graph, &LaneMap::new(layout), seed, sizes_m, others, None)
 }
 
-/// The same for a box that is moved: of all places that fit the one nearest to where it was is taken.
+/// A placement for a box that is moved: of all places that fit, the one nearest to its old place is taken.
 pub fn place_from(
     graph: &SceneGraph,
     map: &LaneMap<'_>,
@@ -81,7 +83,7 @@ pub fn place_from(
             exact: if attempt == 0 { 0.8 } else { 0.1 },
         };
         let found = placer.run();
-        let full = found.boxes.len() > 60; // more orders help nothing in a crowd
+        let full = found.boxes.len() > 60; // more orders do not help in a crowd
         if best.as_ref().is_none_or(|b| found.cost() < b.cost()) {
             best = Some(found);
         }
@@ -92,7 +94,7 @@ pub fn place_from(
     best.unwrap_or_default()
 }
 
-/// Nodes of which a statement does not hold where their boxes stand.
+/// Nodes with a statement that does not hold for their boxes.
 pub fn broken(graph: &SceneGraph, layout: &BevLayout, boxes: &BTreeMap<u32, SceneBox>) -> Vec<u32> {
     let map = LaneMap::new(layout);
     let placer = Placer {
@@ -116,8 +118,8 @@ struct Placer<'a> {
     sizes_m: &'a BTreeMap<u32, [f64; 3]>,
     placed: BTreeMap<u32, SceneBox>,
     others: &'a [SceneBox],
-    from: Option<&'a SceneBox>, // where the box that is moved was
-    exact: f64,                 // what a metre beside a stated distance costs
+    from: Option<&'a SceneBox>, // old place of the moved box
+    exact: f64,                 // cost of a metre of deviation from a stated distance
 }
 
 impl Placer<'_> {
@@ -149,7 +151,7 @@ impl Placer<'_> {
                 continue;
             }
             let edges = edges_of.get(&id).unwrap_or(&none);
-            // What found no room for its twin finds none either.
+            // If an equal object found no room, this one finds none either.
             let kind = format!(
                 "{object:?} {:?}",
                 edges
@@ -184,7 +186,8 @@ impl Placer<'_> {
         out
     }
 
-    /// Ids: anchors before what refers to them, then the most bound and the longest first.
+    /// Ids in order of placement: anchors before the nodes that refer to them, then the most constrained and the
+    /// longest first.
     fn order(&mut self, edges_of: &BTreeMap<u32, Vec<usize>>) -> Vec<u32> {
         let mut waiting: Vec<(u32, f64)> = Vec::new();
         for (id, o) in self.graph.objects() {
@@ -235,7 +238,7 @@ impl Placer<'_> {
         })
     }
 
-    /// The two ends of the line that something shall be between.
+    /// The two ends of the line between which an object shall be.
     fn line(&self, e: &Edge, first: &Option<Target>) -> Option<[DVec2; 2]> {
         let at = |t: Target| match t {
             Target::Thing(b) if b.id.0 == u32::MAX => Some(DVec2::ZERO),
@@ -306,13 +309,13 @@ impl Placer<'_> {
         let along = stated.iter().any(|(e, _)| {
             matches!(e.relation, RelationKind::InFrontOf | RelationKind::Behind) && e.distance_m.is_some()
         });
-        // Told to stand close to the ego vehicle it may.
+        // An object that shall stand close to the ego vehicle may do so.
         let close = stated.iter().any(|(e, t)| {
             let half_m = if along { size_m.x / 2.0 } else { 0.0 };
             matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
                 && e.distance_m.is_some_and(|d| d < 8.0_f64.max(half_m + 5.5))
         });
-        // What is told to be so far ahead at the edge of a wide road is there rather than farther ahead.
+        // An object at the edge of a wide road keeps the stated distance ahead, rather than standing farther ahead.
         let strip = stated.iter().any(|(e, t)| {
             matches!(e.relation, RelationKind::On | RelationKind::ParkedOn)
                 && matches!(t, Some(Target::Lane(role)) if is_beside(*role))
@@ -347,12 +350,12 @@ impl Placer<'_> {
                 }
                 break;
             }
-            // What is ahead but not so far is nearer to what was said than what is behind.
+            // A place ahead at another distance is nearer to the statement than one behind.
             let wholly = stated
                 .iter()
                 .filter(|(e, t)| self.misses(e, t, &b, strip))
                 .count();
-            // (what cannot be near is as near as can be)
+            // (a thing that cannot be near is put as near as possible)
             let off_by = |(e, t): &(Edge, Option<Target>)| {
                 let along = || {
                     self.off_along(e, t, &b)
@@ -366,10 +369,10 @@ impl Placer<'_> {
                 best = Some((total, b));
             }
         }
-        // Several in one lane: a place that breaks what was said is none.
-        // (one that only misses the metres is better than none: "three cars 12 m ahead" are three)
+        // Several in one lane: a place that breaks a statement is not taken if an equal object meets all of them. One
+        // that only misses the distance is better than none: "three cars 12 m ahead" are three.
         match best {
-            // (where none at all holds, a wrong place is better than none, and is reported)
+            // (if none holds, a wrong place is better than none, and is reported)
             Some((_, b))
                 if stated.iter().any(|(e, t)| self.misses(e, t, &b, strip))
                     && self.a_twin_holds(&siblings, o.class, &stated) =>
@@ -381,8 +384,8 @@ impl Placer<'_> {
         }
     }
 
-    /// Candidates by a rough cost, the least first: the costly tests only for those that could win. `simply`: nothing is said of
-    /// where the object is.
+    /// Candidates by a rough cost, the least first, so that the costly tests are made only for promising ones.
+    /// `simply`: no place was stated.
     fn ranked(
         &mut self,
         o: &ObjectNode,
@@ -401,7 +404,7 @@ impl Placer<'_> {
             let chance = self.draw.unit();
             let mut cost = match self.from {
                 Some(old) => s.cost + 0.3 * chance + moved_far(old, s),
-                // (what is described is seen from the front, if nothing else was said)
+                // (described objects are in view ahead, if nothing else was stated)
                 None => s.cost + 0.02 * (far - 14.0).abs() + 0.05 * (-s.p.x).clamp(0.0, 25.0) + chance * 1.2,
             };
             cost += self.exact * off_measure(stated, s, size_m);
@@ -412,9 +415,9 @@ impl Placer<'_> {
                     _ => 0.02 * near,
                 };
             }
-            // What is before or behind a thing is by it.
+            // An object before or behind a thing is close to it.
             cost += stated.iter().map(|(e, t)| off_thing(e, t, s.p)).sum::<f64>();
-            // In a lane is rather in its middle than on its edge.
+            // "In a lane" means in its middle rather than at its edge.
             if small {
                 cost += stated
                     .iter()
@@ -426,7 +429,7 @@ impl Placer<'_> {
                 let along = |q: &DVec2| (s.p - *q).dot(DVec2::from_angle(s.yaw_rad)).abs();
                 cost += 3.0 * siblings.iter().map(along).min_by(f64::total_cmp).unwrap_or(0.0);
             }
-            // what is ahead or behind is rather in our lane or near it
+            // ahead or behind means in our lane or near it
             let along = stated.iter().any(|(e, t)| {
                 matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
                     && matches!(e.relation, RelationKind::InFrontOf | RelationKind::Behind)
@@ -435,7 +438,7 @@ impl Placer<'_> {
                 let off = self.map.course(s.p).map_or(s.p.y, |c| c.1).abs();
                 cost += 0.15 * (off - 3.0).max(0.0);
             }
-            // "Left" at its plainest is beside.
+            // Plain "left" or "right" means beside.
             let beside = stated.iter().any(|(e, t)| {
                 let ego = matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
                 ego && matches!(e.relation, RelationKind::LeftOf | RelationKind::RightOf)
@@ -443,19 +446,19 @@ impl Placer<'_> {
             if beside && s.p.x.abs() > (2.0 * s.p.y.abs()).max(6.3) {
                 cost += 1.5 + 0.03 * s.p.x.abs();
             }
-            // behind something ahead is rather between it and the ego vehicle
+            // behind a thing ahead means between it and the ego vehicle
             let beyond = stated.iter().any(|(e, t)| {
-                // (who follows what comes towards us is beyond it)
+                // (a follower of an oncoming vehicle is beyond it)
                 let follows = |b: &SceneBox| e.relation == RelationKind::Following && b.heading().x > 0.0;
                 matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX
                     && b.center_m.x > 6.0
                     && (e.relation == RelationKind::Behind || follows(b)))
             });
             if beyond && s.p.x < 0.0 {
-                // (however long the way there is)
+                // (regardless of the distance to get there)
                 cost += if self.from.is_some() { 10.0 } else { 2.0 };
             }
-            // what comes towards the ego vehicle has not passed it yet
+            // an oncoming vehicle has not passed the ego vehicle yet
             let comes = stated.iter().any(|(e, t)| {
                 matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
                     && e.relation == RelationKind::OppositeDirection
@@ -464,7 +467,7 @@ impl Placer<'_> {
                 cost += 2.0;
             }
             if simply && s.p.x < -2.0 {
-                cost += 0.8; // what is simply there is seen rather ahead
+                cost += 0.8; // without a stated place, ahead is preferred
             }
             ranked.push((cost, i));
         }
@@ -472,8 +475,8 @@ impl Placer<'_> {
         ranked
     }
 
-    /// True if a statement does not hold even roughly: not but for the metres, and nothing like it. `strip`: a strip of the road
-    /// was named, and along it metres are measured.
+    /// True if a statement does not hold even roughly: neither without its distance nor nearly. `strip`: a strip of the
+    /// road was named, and distances are measured along it.
     fn misses(&self, e: &Edge, to: &Option<Target>, b: &SceneBox, strip: bool) -> bool {
         let whole = Edge {
             distance_m: None,
@@ -484,8 +487,8 @@ impl Placer<'_> {
             || strip && self.off_along(e, to, b).is_some_and(|off| off < ALONG_M))
     }
 
-    /// Metres that something is off along the road, at most 30, that was said to be so far ahead of the ego vehicle or behind
-    /// it: in a curve that is not straight ahead.
+    /// Deviation along the road from a stated distance ahead of the ego vehicle or behind it, m, at most 30; in a curve
+    /// this is not straight ahead.
     fn off_along(&self, e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f64> {
         let ego = matches!(to, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
         let way = match e.relation {
@@ -521,7 +524,7 @@ impl Placer<'_> {
             .any(|b| stated.iter().all(|(e, _)| self.edge_holds(e, b)))
     }
 
-    /// Where boxes that the same was said of stand.
+    /// Places of boxes with the same statements.
     fn siblings(&self, id: u32, o: &ObjectNode, edges: &[usize]) -> Vec<DVec2> {
         let said = |i: &[usize]| {
             i.iter()
@@ -557,7 +560,7 @@ impl Placer<'_> {
         let walk = BevLayer::Walkway.bit() | BevLayer::PedCrossing.bit();
         let mut on = true;
         let allowed = match class {
-            _ if vehicle && spot.anywhere => surface | walk, // left on the sidewalk
+            _ if vehicle && spot.anywhere => surface | walk, // left behind on the sidewalk
             _ if vehicle => surface,
             Class::Pedestrian if !spot.anywhere => walk | if spot.on_road { surface } else { 0 },
             Class::Bicycle if !spot.anywhere => surface | walk,
@@ -589,7 +592,7 @@ impl Placer<'_> {
     }
 }
 
-/// True if the relation binds an object to a lane role that only holds for standing things.
+/// True if the relation ties an object to a lane role that only holds for standing things.
 pub fn stands(relation: RelationKind) -> bool {
     matches!(
         relation,

@@ -1,5 +1,5 @@
 //! Places that an object of a class may take: along lanes, at their edge, on sidewalks, crossings and car parks, and
-//! around what it was said to stand by.
+//! around the things that it is placed by.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -19,15 +19,15 @@ pub struct Spot {
     pub p: DVec2,
     /// Heading.
     pub yaw_rad: f64,
-    /// How unusual it is, in the unit of the placer's cost.
+    /// Cost for being unusual, in the unit of the placer.
     pub cost: f64,
-    /// What stands here stands still.
+    /// True if an object here stands still.
     pub still: bool,
-    /// What is here moves.
+    /// True if an object here moves.
     pub moves: bool,
-    /// People may be on the road here.
+    /// True if people may be on the road here.
     pub on_road: bool,
-    /// Any ground will do.
+    /// True if any ground will do.
     pub anywhere: bool,
 }
 
@@ -37,13 +37,13 @@ pub(super) struct Gather<'a, 'b> {
     pub(super) draw: &'b mut Draw,
     pub(super) out: Vec<Spot>,
     pub(super) base: Spot,
-    against: bool,               // it comes towards the ego
-    with: bool,                  // it goes the ego's way
+    against: bool,               // it drives towards the ego
+    with: bool,                  // it drives in the ego's direction
     own_way: bool,               // traffic of the ego's direction is meant
-    pub(super) either_way: bool, // how it faces was said: what is parked may face against the traffic
+    pub(super) either_way: bool, // its facing was stated: parked, it may face against the traffic
 }
 
-/// Places for an object with what was said of it (targets that are placed already).
+/// Places for an object, with its statements (whose targets are placed already).
 pub fn spots(
     map: &LaneMap<'_>,
     o: &ObjectNode,
@@ -84,7 +84,7 @@ pub fn spots(
             on_road: false,
             anywhere: false,
         },
-        // (who looks at the ego vehicle from ahead in its own lane stands against the traffic)
+        // (an object ahead in the ego's lane that faces the ego vehicle stands against the traffic)
         against: said(RelationKind::OppositeDirection)
             || said(RelationKind::Facing) && said(RelationKind::InFrontOf),
         with: said(RelationKind::SameDirection),
@@ -115,7 +115,7 @@ pub fn spots(
         _ => g.vehicle(o, lane_role, stated, near_thing),
     }
     let mut out = g.out;
-    // The named way to look.
+    // The stated facing.
     for (e, t) in stated {
         let toward = match e.relation {
             RelationKind::Facing => 0.0,
@@ -270,7 +270,7 @@ impl Gather<'_, '_> {
             Some((_, LaneRole::Carpark)) => self.carpark(),
             Some((_, role)) if is_roadside(role) => self.edge(role),
             Some((_, role)) if is_walk(role) && o.class == Class::Bicycle => self.walks(),
-            // Left on the sidewalk, along the road.
+            // Left behind on the sidewalk, along the road.
             Some((relation, role)) if is_walk(role) => {
                 (self.base.still, self.base.moves, self.base.anywhere) = (true, false, true);
                 let map = self.map;
@@ -300,7 +300,7 @@ impl Gather<'_, '_> {
                 }
             }
             None if parked => {
-                // (where there are parking spaces they are used first)
+                // (parking spaces are used first, if there are any)
                 let lot = self.map.layout.count(BevLayer::CarparkArea) > 200;
                 let (edge, spaces) = if lot { (0.8, 0.0) } else { (0.0, 0.4) };
                 self.base.cost += edge;
@@ -345,7 +345,7 @@ impl Gather<'_, '_> {
         }
     }
 
-    /// Who waits does so where nobody crosses: in no junction, on no stripes.
+    /// Makes places in junctions and on crossings costly: an object that waits keeps them free.
     fn keep_out_of_junctions(&mut self) {
         const NEAR_M: f64 = 4.5;
         let half_m = self.size_m.x / 2.0;
@@ -386,7 +386,7 @@ impl Gather<'_, '_> {
             if !roadwide && l.role != role {
                 continue;
             }
-            // Traffic keeps to its lane; the ego's is kept free where nothing else was said.
+            // Traffic keeps to its lane; the ego's lane is kept free if nothing else was stated.
             let extra = if roadwide && l.role == LaneRole::Ego && l.p.length() < 9.0 {
                 1.5
             } else {
@@ -424,7 +424,7 @@ impl Gather<'_, '_> {
         self.base.on_road = true;
         const SIDE_ROAD_M: f64 = 4.0;
         let old = self.base.cost;
-        // On a crossing if there is one, rather on one of our road than of another; else right across the road.
+        // On a crossing if there is one, preferably one of our road; else straight across the road.
         for outline in &self.map.crossings {
             let mid = outline.iter().sum::<DVec2>() / outline.len() as f64;
             let of_ours = self.map.course(mid).is_none_or(|c| c.1.abs() < SIDE_ROAD_M);

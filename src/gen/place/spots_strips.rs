@@ -9,7 +9,7 @@ use scene::graph::LaneRole;
 use scene::{BevLayer, Class};
 
 impl Gather<'_, '_> {
-    /// At the outer edge of the outermost lanes, in the direction of the lane.
+    /// Adds places at the outer edge of the outermost lanes, in the direction of the lane.
     pub(super) fn edge(&mut self, role: LaneRole) {
         let surface = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
         let half = self.size_m.y / 2.0;
@@ -20,13 +20,13 @@ impl Gather<'_, '_> {
             }
             for side in [-1.0, 1.0] {
                 let out = l.dir.perp() * side;
-                // How far the surface goes on.
+                // How far the paved surface extends.
                 let mut reach = 0.0;
                 while reach < 9.5 && self.map.has(surface, l.p + out * (reach + 0.2)) {
                     reach += 0.2;
                 }
                 let blocked = reach >= 9.4 || reach < half;
-                // Another lane lies between: not the outermost.
+                // Another lane lies between, so this is not the outermost.
                 let inner = self.map.points.iter().any(|m| {
                     let d = m.p - l.p;
                     d.length_squared() < 36.0 && d.dot(out) > 2.0 && d.dot(l.dir).abs() < 1.0
@@ -49,12 +49,12 @@ impl Gather<'_, '_> {
                 self.base.cost += if crosses { 0.7 } else { 0.0 };
                 let (still, moves) = (self.base.still, self.base.moves);
                 if off > 2.0 {
-                    // Off the lane nothing drives.
+                    // Off the lane objects only stand.
                     (self.base.still, self.base.moves) = (true, false);
                 }
                 self.push(l.p + out * off, l.dir.to_angle());
                 if still && self.either_way {
-                    // parked against the traffic, if that is how it faces
+                    // parked against the traffic, if that facing was stated
                     self.base.cost += 0.5;
                     self.push(l.p + out * off, l.dir.to_angle() + PI);
                 }
@@ -67,7 +67,7 @@ impl Gather<'_, '_> {
         }
     }
 
-    /// Across a lane, for cones and barriers: beside one another.
+    /// Adds places across a lane, beside one another, for cones and barriers.
     pub(super) fn across_lane(&mut self, role: LaneRole, class: Class) {
         let roadwide = matches!(role, LaneRole::Road);
         for i in 0..self.map.points.len() {
@@ -90,7 +90,7 @@ impl Gather<'_, '_> {
         }
     }
 
-    /// On the road, across the lane.
+    /// Adds places on the road, across the lane.
     pub(super) fn crosswise(&mut self, role: LaneRole) {
         for i in 0..self.map.points.len() {
             let l = self.map.points[i];
@@ -135,7 +135,7 @@ impl Gather<'_, '_> {
         }
     }
 
-    /// On the road where the lanes meet: the nearer to the middle, the better.
+    /// Adds places on the road where the lanes meet; the nearer to the middle, the better.
     pub(super) fn amid_junction(&mut self) {
         let Some(center) = self.map.junction else {
             return;
@@ -169,7 +169,7 @@ impl Gather<'_, '_> {
         }
     }
 
-    /// Beside the road where no sidewalk is.
+    /// Adds places beside the road where there is no sidewalk.
     pub(super) fn verge(&mut self) {
         for i in 0..self.map.points.len() {
             let l = self.map.points[i];

@@ -7,10 +7,10 @@ use scene::Class;
 use scene::graph::{Edge, LaneRole, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph};
 use world::draw::Draw;
 
-/// Most things of one kind that a scene is asked for.
+/// Most things of one kind in a scene.
 pub const MOST_OF_ONE: u32 = 400;
 
-/// A graph with what it was made from.
+/// A graph with its origin in the description.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Graphed {
     /// The graph.
@@ -23,7 +23,7 @@ pub struct Graphed {
     pub fill: Vec<u32>,
 }
 
-/// The graph of a description; `seed` varies what a busy scene is filled with.
+/// The graph of a description; `seed` varies the objects that fill a busy scene.
 pub fn to_graph(d: &Description, seed: u64) -> Graphed {
     let mut out = Graphed {
         graph: SceneGraph::with_ego(),
@@ -70,7 +70,8 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
     };
     for (i, o) in d.foreground.iter().enumerate() {
         for r in &o.relations {
-            // Beside what stands anywhere: that stands beside this, whose own place was said.
+            // If the other object has no place of its own, the relation is turned around: that object stands beside
+            // this one, whose place was stated.
             if let (RelationKind::Near | RelationKind::NextTo, Anchor::Object(j), None) =
                 (r.relation, r.anchor, r.distance_m)
                 && j != i
@@ -141,7 +142,8 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
     out
 }
 
-/// How much farther off than the first the next of a group is: two cars so far ahead in one lane stand one behind the other.
+/// Extra distance of the `k`-th vehicle of a group from the first, m: two cars at a stated distance in one lane stand
+/// one behind the other.
 fn in_line_m(o: &ObjectSpec, r: &Stated, k: usize) -> f64 {
     const GAP_M: f64 = 2.5;
     let along = matches!(r.relation, RelationKind::InFrontOf | RelationKind::Behind);
@@ -159,7 +161,7 @@ fn in_line_m(o: &ObjectSpec, r: &Stated, k: usize) -> f64 {
     k as f64 * (length + GAP_M)
 }
 
-/// What a busy scene holds beside what was named: classes that were named or denied stay as they were said.
+/// Adds objects that a busy scene holds besides the named ones. Classes that were named or excluded stay as stated.
 fn fill(d: &Description, seed: u64, out: &mut Graphed) {
     let mut draw = Draw::new(seed, "text fill");
     let wanted: &[(Class, u32, Option<ObjectState>)] = match d.density {

@@ -1,4 +1,5 @@
-//! Whether every content word of a text is in its reading: what is not is named, never passed over in silence.
+//! Checks whether every content word of a text is in its reading. Words that are not are reported, never dropped
+//! silently.
 
 use serde::Serialize;
 
@@ -16,26 +17,26 @@ use place::beside_road::Span;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Why {
-    /// No list has it.
+    /// No list has the word.
     Unknown,
-    /// It is understood, and nothing of it is carried out.
+    /// The word is understood, but nothing of it is carried out.
     NotCarriedOut,
-    /// It lies beyond the longest text that is read.
+    /// The word lies beyond the longest text that is read.
     TooLong,
 }
 
-/// Where, and why.
+/// A word that the reading does not hold, with its place and the reason.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Missing {
-    /// Bytes of the text.
+    /// Bytes of the text that it takes.
     pub span: Span,
     /// The words.
     pub words: String,
-    /// Why.
+    /// The reason.
     pub why: Why,
 }
 
-/// Words by which numbers are worked out: numbers this near to them need not stand in the reading.
+/// Words of arithmetic: numbers near them need not be in the reading.
 const ARITHMETIC: [&str; 27] = [
     "half",
     "twice",
@@ -65,7 +66,7 @@ const ARITHMETIC: [&str; 27] = [
     "dozen",
     "couple",
 ];
-/// Words that take back what stands before them.
+/// Words that retract the words before them.
 const CORRECTS: [&str; 7] = [
     "sorry",
     "mean",
@@ -75,9 +76,9 @@ const CORRECTS: [&str; 7] = [
     "actually",
     "wait",
 ];
-/// So many tokens away.
+/// Number of tokens within which a word is near another.
 const NEAR: usize = 5;
-/// What follows them is what is not meant.
+/// Words before something that is not meant.
 const NOT: [&str; 10] = [
     "not", "no", "than", "from", "isnt", "wasnt", "of", "was", "were", "instead",
 ];
@@ -132,11 +133,11 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
             let word = t.text.chars().count() > 2 && t.text.chars().all(char::is_alphabetic);
             let known =
                 speller.is_common(&t.text) || grammar::knows(&t.text) || number_word(&t.text).is_some();
-            // (verbs and adverbs tell how, and most say what the reading says)
+            // (verbs and adverbs tell how, and most repeat what the reading holds)
             let tells = is_english(&t.text) && !is_other_thing(&t.text);
             (word && !known && !tells).then_some(Why::Unknown)
         };
-        // (what was said before a correction is not meant)
+        // (words before a correction are not meant)
         let taken_back = i < corrected && why == Some(Why::NotCarriedOut);
         if let Some(why) = why.filter(|_| !taken_back) {
             let span = t.span.to(tokens[end - 1].span);
@@ -151,7 +152,7 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
     out
 }
 
-/// The numbers that a reading holds, and what the words around those of the text say of them.
+/// The numbers that a reading holds, and hints on the numbers of the text from the words around them.
 struct Numbers<'t> {
     tokens: &'t [Token],
     slots: Vec<Slot>,
@@ -171,7 +172,7 @@ impl<'t> Numbers<'t> {
         }
     }
 
-    /// True if a number of the text is in the reading as what it is, or is not meant.
+    /// True if a number of the text is in the reading with its meaning, or is not meant.
     fn hold(&self, m: &Measure) -> bool {
         self.is_taken_back(m)
             || self.slots.iter().any(|s| s.is(m))
@@ -188,7 +189,7 @@ impl<'t> Numbers<'t> {
         i.and_then(|i| self.tokens.get(i)).map_or("", |t| t.text.as_str())
     }
 
-    /// True if a number of things is one that others add up to, or that is too small to be written as one.
+    /// True if a number of things is a sum of others, or too small to be written as one.
     fn is_worked_out(&self, m: &Measure) -> bool {
         let i = m.from;
         let before = self.word(i.checked_sub(1));
@@ -220,7 +221,7 @@ impl<'t> Numbers<'t> {
 /// A thing that a reading names.
 struct Named {
     noun: Noun,
-    /// It stands for every thing there is: "remove all objects".
+    /// True if it stands for every thing there is: "remove all objects".
     is_everything: bool,
 }
 
@@ -255,7 +256,7 @@ fn named(reading: &Reading) -> Vec<Named> {
     out
 }
 
-/// What numbers of things add up to: "five cars, one of them red" is four and one.
+/// Sums of the numbers of things: "five cars, one of them red" is four and one.
 fn sums(reading: &Reading) -> Vec<f64> {
     const MOST: u32 = 60;
     let mut sums = vec![0];
@@ -286,11 +287,11 @@ fn sense_is_said(kind: &str, symbol: &str, said: &[&str], nouns: &[Named]) -> bo
         return true;
     }
     match kind {
-        // (what is called by a wider or a finer word; a pronoun stands for what was named, and for nothing else)
+        // (a wider or a narrower word names it too; a pronoun stands only for a thing that was named)
         "noun" => {
             let Some(noun) = Noun::of(symbol) else { return true };
             let stands_for = |n: Noun| matches!(n, Noun::It | Noun::One | Noun::Thing);
-            // (who rides or drives is what is ridden)
+            // (a rider or driver stands for what is ridden)
             let rides = |n: Noun| {
                 matches!(
                     n,
@@ -313,7 +314,8 @@ fn sense_is_said(kind: &str, symbol: &str, said: &[&str], nouns: &[Named]) -> bo
     }
 }
 
-/// "Left" and "right" of a sentence stand in its reading, but where they say that something has left, or is right there.
+/// True if the token is not a side ("left" or "right" after words such as "the"; not "has left" or "right there"), or
+/// if the reading holds that side.
 fn side_is_said(t: &Token, before: &str, said: &[&str]) -> bool {
     let side = t.text.as_str();
     let is_side = matches!(side, "left" | "right");

@@ -12,11 +12,11 @@ use super::stage::Outcome;
 use scene::clip::{Manoeuvre, Pace, Template};
 use scene::graph::{LaneRole, ObjectState, SizeHint};
 
-/// Longest list of words that are named as having no effect.
+/// Most words in a list of words without effect.
 const MOST_WORDS: usize = 6;
 
-/// What a reading does, in a sentence. `outcome` tells what of it came about in a scene that was there; `remarks` what could not
-/// be done as it was said, by act.
+/// A sentence on the effect of a reading. `outcome` is the result in an open scene; `remarks` tell by act what could
+/// not be done as it was said.
 pub fn answer(
     reading: &Reading,
     outcome: Option<&Outcome>,

@@ -1,11 +1,11 @@
-//! One order for what can be said in any order: readings that ask for the same are equal. Twin of
+//! A canonical order for acts that can be said in any order: readings that ask for the same are equal. Twin of
 //! `training/words/canonical.py`.
 
 use super::mode::Mode;
 use super::reading::{Act, Anchor, Destination, Place, Reading, Relation, Thing, Turn, What};
 use scene::graph::{LaneRole, ObjectState};
 
-/// The acts in that order, without spans and confidences, and nothing beside the road.
+/// The acts in that order, without spans and confidences, and without acts on scenery.
 pub fn canonical(reading: &Reading, mode: Mode) -> Reading {
     let mut out: Vec<What> = Vec::new();
     for act in &reading.acts {
@@ -20,7 +20,7 @@ pub fn canonical(reading: &Reading, mode: Mode) -> Reading {
         }
     }
     out.sort_by_key(|what| rank(what, mode));
-    // (what stood apart before stands together now)
+    // (acts that were apart may now be adjacent)
     let mut acts: Vec<Act> = Vec::new();
     for what in out {
         match (acts.last_mut().map(|a| &mut a.what), what) {
@@ -93,7 +93,7 @@ fn sort_what(what: &mut What) {
 
 fn sort_all(things: &mut [Thing]) {
     for t in things {
-        // (what is parked on the right stands at the right kerb)
+        // (objects parked on the right stand at the right kerb)
         if t.state == Some(ObjectState::Parked) {
             t.places.iter_mut().for_each(at_the_kerb);
         }

@@ -1,4 +1,4 @@
-//! A second look after a reading was carried out: what it says must hold of the scene that came of it.
+//! A check after a reading was carried out: its statements must hold in the resulting scene.
 
 use super::nouns::Noun;
 use super::reading::{Amount, Quantity, Reading, Thing, What};
@@ -30,16 +30,16 @@ pub(super) fn look_again(stage: &mut Stage<'_>, reading: &Reading) {
     }
 }
 
-/// True if a later act brings things, so that a number need not hold in the end.
+/// True if a later act adds things, so that a number need not hold in the end.
 fn undone_later(reading: &Reading, i: usize) -> bool {
     let brings = |w: &What| matches!(w, What::Add { .. } | What::Replace { .. } | What::Count { .. });
     reading.acts[i + 1..].iter().any(|a| brings(&a.what))
 }
 
-/// What was said to stay must be as it was.
+/// Adds a remark if boxes that were to stay have changed.
 fn spared(stage: &mut Stage<'_>, t: &Thing) {
     if t.other || matches!(t.noun, Noun::It | Noun::One) {
-        return; // (who that was is known no more)
+        return; // (it is no longer known which one was meant)
     }
     let now = std::mem::replace(&mut stage.boxes, stage.first.clone());
     let meant = stage.fitting(t);
@@ -54,7 +54,7 @@ fn counted(stage: &mut Stage<'_>, t: &Thing, least: usize, most: usize) {
         quantity: Quantity::All,
         ..t.clone()
     });
-    // (what was said to stay is not too many)
+    // (boxes that were to stay are not surplus)
     let spared = fits.iter().filter(|id| stage.stays.contains(id)).count();
     let (there, most) = (fits.len(), most.max(spared));
     let asked = stage.out.questions.iter().any(|q| q.act == stage.act);

@@ -1,5 +1,5 @@
-//! What a text says of time of day and weather. The phrases are the lexicon's; this file knows what takes them back:
-//! "no rain", "it is no longer raining", "the fog has lifted", "dry road after the rain".
+//! Time of day and weather of a text. The phrases are in the lexicon; this file knows the words that negate them: "no
+//! rain", "it is no longer raining", "the fog has lifted", "dry road after the rain".
 
 use super::lexicon::{LONGEST_PHRASE, Lexicon};
 use super::reading::{Act, Reading, What};
@@ -7,7 +7,7 @@ use super::tokens::{Token, tokens};
 use place::beside_road::Span;
 use scene::{Conditions, TimeOfDay, Weather};
 
-/// What a text says; nothing is said of what is none.
+/// Time of day and weather of a text; `None` where it has no statement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Said {
     /// Time of day.
@@ -20,9 +20,9 @@ pub struct Said {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Mention {
     what: Named,
-    /// Tokens from, and up to but not including.
+    /// Tokens: from the first up to, but not including, the second.
     at: (usize, usize),
-    /// True if the text takes it back.
+    /// True if the text negates it.
     denied: bool,
 }
 
@@ -32,20 +32,20 @@ enum Named {
     Weather(Weather),
 }
 
-/// Words that take back what follows.
+/// Words that negate the phrase after them.
 const NOT: [&str; 15] = [
     "no", "not", "without", "never", "nor", "neither", "isnt", "arent", "wasnt", "doesnt", "dont", "didnt",
     "aint", "hardly", "free",
 ];
-/// Words that do so only right before it: who "stopped in the rain" stands in it.
+/// Words that negate a phrase only right before it: in "stopped in the rain" it rains.
 const STOP: [&str; 3] = ["stop", "stops", "stopped"];
-/// Words that may stand between one of those and what it takes back.
+/// Words that may stand between a negating word and the phrase.
 const BETWEEN: [&str; 14] = [
     "a", "an", "any", "the", "longer", "more", "at", "all", "in", "under", "of", "it", "being", "either",
 ];
-/// Words that join what is taken back by one "no": "no rain or snow".
+/// Words that join phrases negated by one "no": "no rain or snow".
 const JOINS: [&str; 3] = ["or", "nor", "and"];
-/// What follows a weather that is over.
+/// Words after a weather that is over.
 const OVER: [&[&str]; 16] = [
     &["has", "stopped"],
     &["has", "ended"],
@@ -64,17 +64,17 @@ const OVER: [&[&str]; 16] = [
     &["anymore"],
     &["any", "longer"],
 ];
-/// What stands before a weather that is over.
+/// Words before a weather that is over.
 const AFTER: [&str; 2] = ["after", "following"];
-/// Where one clause ends and another begins.
+/// Words and marks that end a clause.
 const ENDS: [&str; 6] = [".", ";", "!", "?", ":", "but"];
 
-/// Reads a text: what it says last is weighed against the rest by how much it shows, a storm above rain, rain above clouds.
+/// Reads a text. Of several statements the one with the strongest effect counts: a storm over rain, rain over clouds.
 pub fn read(text: &str) -> Said {
     said(&mentions(&tokens(text, None)))
 }
 
-/// The conditions that a style text asks for: what it does not name is a clear day.
+/// The conditions that a style text asks for; a clear day where it has no statement.
 pub fn of_style(text: &str, seed: u64) -> Conditions {
     let said = read(text);
     Conditions::usual(
@@ -84,7 +84,7 @@ pub fn of_style(text: &str, seed: u64) -> Conditions {
     )
 }
 
-/// Sets right what a reading says against the denials of its text: a weather that is taken back is a clear one.
+/// Corrects a reading by the negations of its text: a negated weather becomes a clear one.
 pub(super) fn set_right(reading: &mut Reading, tokens: &[Token]) {
     let mentions = mentions(tokens);
     let denied = |what: Named| {
@@ -104,10 +104,10 @@ pub(super) fn set_right(reading: &mut Reading, tokens: &[Token]) {
             _ => return true,
         };
         act.what = right;
-        // (what another act says needs no second one)
+        // (conditions of another act need no second act)
         !others.contains(&act.what)
     });
-    // A denial that the readers passed over.
+    // A negation that the readers missed.
     let speaks = |test: fn(&What) -> bool| reading.acts.iter().any(|a| test(&a.what));
     let back = mentions
         .iter()
@@ -128,7 +128,7 @@ fn span(tokens: &[Token], (from, to): (usize, usize)) -> Option<Span> {
     part.iter().map(|t| t.span).reduce(Span::to)
 }
 
-/// What all mentions come to.
+/// The time and weather that all mentions together give.
 fn said(mentions: &[Mention]) -> Said {
     let times = [TimeOfDay::Night, TimeOfDay::Dusk, TimeOfDay::Dawn, TimeOfDay::Day];
     let weathers = [
@@ -142,7 +142,7 @@ fn said(mentions: &[Mention]) -> Said {
     let is = |what: Named, denied: bool| mentions.iter().any(|m| m.what == what && m.denied == denied);
     let time = times.into_iter().find(|t| is(Named::Time(*t), false));
     let weather = weathers.into_iter().find(|w| is(Named::Weather(*w), false));
-    // What is only taken back leaves the plain day: "not at night", "no rain".
+    // If a condition is only negated ("not at night", "no rain"), it is day or clear.
     let dark = times[..3].iter().any(|t| is(Named::Time(*t), true));
     let bad = weathers[..5].iter().any(|w| is(Named::Weather(*w), true));
     Said {
@@ -151,7 +151,7 @@ fn said(mentions: &[Mention]) -> Said {
     }
 }
 
-/// All phrases for times and weathers, the longest that begins at each word.
+/// All phrases for times and weathers: at each word the longest that begins there.
 fn mentions(tokens: &[Token]) -> Vec<Mention> {
     let mut out: Vec<Mention> = Vec::new();
     let mut i = 0;
@@ -166,7 +166,7 @@ fn mentions(tokens: &[Token]) -> Vec<Mention> {
             i += 1;
             continue;
         };
-        // ("a grey van" is no grey sky, "a dark red car" no night)
+        // ("a grey van" is not a grey sky, "a dark red car" not night)
         let next = tokens.get(i + n).map_or(&[][..], |t| &t.senses);
         let paints = senses.iter().any(|s| s.kind == "paint");
         let of_a_thing = next
@@ -187,7 +187,7 @@ fn mentions(tokens: &[Token]) -> Vec<Mention> {
     out
 }
 
-/// True if words around a phrase take it back.
+/// True if words around a phrase negate it.
 fn is_denied(tokens: &[Token], what: Named, (from, to): (usize, usize)) -> bool {
     let word = |i: usize| tokens.get(i).map_or("", |t| t.text.as_str());
     let mut before = tokens[..from].iter().rev().map(|t| t.text.as_str());
@@ -199,7 +199,7 @@ fn is_denied(tokens: &[Token], what: Named, (from, to): (usize, usize)) -> bool 
         .map(|t| t.text.as_str())
         .find(|w| *w != "the");
     let stop = right_before.is_some_and(|w| STOP.contains(&w));
-    // ("after dusk" is a time of its own)
+    // ("after dusk" is a time itself)
     let after = AFTER.contains(&first) && matches!(what, Named::Weather(_));
     let over = OVER
         .iter()
@@ -207,7 +207,7 @@ fn is_denied(tokens: &[Token], what: Named, (from, to): (usize, usize)) -> bool 
     NOT.contains(&first) || stop || no_longer || after || over
 }
 
-/// True if a phrase is joined to one that is taken back: "no rain or snow".
+/// True if a phrase is joined to a negated one: "no rain or snow".
 fn is_joined(tokens: &[Token], last: Option<&Mention>, from: usize) -> bool {
     let Some(last) = last.filter(|m| m.denied) else {
         return false;

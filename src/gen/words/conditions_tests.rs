@@ -122,7 +122,7 @@ fn edits_by_words_set_the_conditions() {
     assert_eq!(after("make it night", night), (None, None), "it is night already");
 }
 
-/// Words of paint, and who stopped where, are no weather.
+/// Words of paint, and people who stopped in some weather, do not change the weather.
 #[test]
 fn what_only_looks_like_weather() {
     let of = |text: &str| {

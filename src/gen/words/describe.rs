@@ -15,14 +15,14 @@ use scene::Class;
 use scene::clip::{Manoeuvre, Template};
 use scene::graph::{LaneRole, RelationKind};
 
-/// A description and where it comes from.
+/// A description and the acts that it comes from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Described {
     /// The description.
     pub description: Description,
-    /// What of the reading it cannot hold, by act.
+    /// Parts of the reading that it cannot hold, by act.
     pub remarks: Vec<(usize, Remark)>,
-    /// Of each object of the foreground: the act and the thing of it that named it.
+    /// Origin of each object of the foreground: the act, and the thing of that act, that named it.
     pub from: Vec<(usize, usize)>,
 }
 
@@ -30,7 +30,7 @@ pub struct Described {
 ///
 /// # Errors
 ///
-/// If it is none.
+/// If the line is not valid notation.
 pub fn described(line: &str) -> Result<Description, NotationError> {
     Ok(describe(&notation::parse(line)?).description)
 }
@@ -50,7 +50,7 @@ pub fn describe(reading: &Reading) -> Described {
     out
 }
 
-/// What stands beside the road. Where a crossing or a junction is spoken of, the road has one.
+/// Adds the scenery of a reading. If it mentions a crossing or a junction, the road gets one.
 fn beside(background: &[Beside], d: &mut Description) {
     for said in background {
         match said.place.near {
@@ -69,7 +69,7 @@ struct Describing {
     d: Description,
     plan: Plan,
     remarks: Vec<(usize, Remark)>,
-    /// Nothing else shall be there.
+    /// True if nothing else shall be there.
     alone: bool,
     act: usize,
 }
@@ -140,7 +140,7 @@ impl Describing {
         self.plan.add(things, &mut Nowhere);
     }
 
-    /// Things, and what is said of those that were named.
+    /// Adds things, and applies statements about things that were named.
     fn things(&mut self, what: &What) {
         match what {
             What::Add { things } => self.add(things),
@@ -183,7 +183,7 @@ impl Describing {
         }
     }
 
-    /// Objects that a thing means; remarks if there are none.
+    /// Objects that a thing means, with a remark if there are none.
     fn those(&mut self, t: &Thing) -> Vec<usize> {
         let them = self.matching(t);
         if them.is_empty() {
@@ -206,7 +206,7 @@ impl Describing {
         }
     }
 
-    /// Objects move; what nobody spoke of before is new.
+    /// Makes objects move; an object that was not named before is new.
     fn go(&mut self, t: &Thing, how: &Manoeuvre) {
         let mut them = self.matching(t);
         if them.is_empty() {
@@ -234,7 +234,7 @@ impl Describing {
         }
     }
 
-    /// Where something starts of which nobody said in which lane or at which side it is.
+    /// Lane or strip in which an object starts a manoeuvre if neither its lane nor its side was stated.
     fn usual_start(&self, k: usize, what: Template) -> Option<LaneRole> {
         let spec = &self.plan.specs[k];
         let is_lane = |r: &place::description::Stated| {
@@ -305,7 +305,7 @@ impl Describing {
         if matches!(t.noun, Noun::It | Noun::One) && t.quantity != Quantity::All {
             fit = fit.last().copied().into_iter().collect();
         }
-        // (which of several like it is the nearest is not known before they are placed)
+        // (before they are placed it is unknown which of several equal ones is the nearest)
         let one = t.nth.or(t.pick.map(|_| 1)).filter(|_| fit.len() > 1);
         if let Some(n) = one {
             let k = fit.len() - 1;
@@ -349,7 +349,7 @@ impl Describing {
     }
 }
 
-/// Things that were named as if they were there, as new ones.
+/// Things that were named as existing, as new ones.
 fn as_new(t: &Thing) -> Thing {
     let quantity = match t.quantity {
         Quantity::The | Quantity::Unsaid => Quantity::N(1),

@@ -1,5 +1,5 @@
-//! What the network reads where no word of the text names it, "three tractors" for "three deer": things that nobody named
-//! are not put in, moved or taken away; of people, who are called by countless words, the reader is unsure.
+//! Guesses of the network that no word of the text supports, such as "three tractors" for "three deer". Things that
+//! were not named are not added, moved or removed. Acts on people, who have countless names, are marked as unsure.
 
 use super::grammar;
 use super::lexicon::{Lexicon, is_other_thing};
@@ -10,7 +10,7 @@ use super::tokens::Token;
 use place::beside_road::Span;
 use scene::Class;
 
-/// Words that mean people and name no kind of them.
+/// Words for people that name no kind of person.
 const SOMEBODY: [&str; 20] = [
     "he",
     "she",
@@ -34,10 +34,11 @@ const SOMEBODY: [&str; 20] = [
     "body",
 ];
 
-/// Takes out of a reading what no word of its text names; answers where the acts stood that lost something.
+/// Removes from a reading the things that no word of its text names. Returns the spans of the acts that lost something.
 pub(super) fn take_out_guesses(reading: &mut Reading, tokens: &[Token]) -> Vec<Option<Span>> {
     let mut lost = Vec::new();
-    // Beside a word for what no scene holds, "three deer next to the bus", a kind is read once for each word that names it.
+    // In a text with a word for something that no scene holds ("three deer next to the bus"), a kind is read at most
+    // once for each word that names it.
     let foreign = (0..tokens.len()).any(|i| is_foreign(&tokens[i..]));
     let line = notation::write(reading);
     let is_extra = |t: &Thing, among: usize| {
@@ -90,13 +91,13 @@ fn anchors(t: &Thing) -> impl Iterator<Item = &Thing> {
     })
 }
 
-/// True if the tokens begin with a word for what no scene holds.
+/// True if the tokens begin with a word for something that no scene holds.
 fn is_foreign(tokens: &[Token]) -> bool {
     let t = &tokens[0];
     t.senses.is_empty() && (grammar::cannot(tokens).is_some() || is_other_thing(&t.text))
 }
 
-/// True for what any word may mean.
+/// True for a thing that any word may mean.
 fn is_general(t: &Thing) -> bool {
     let general = matches!(
         t.noun,
@@ -116,16 +117,16 @@ pub(super) fn names_noun(token: &Token, noun: Noun) -> bool {
     names(token, &|symbol: &str| fits(symbol, noun))
 }
 
-/// True if a token names what fits.
+/// True if a token names a noun for which `fits` is true.
 fn names(token: &Token, fits: &dyn Fn(&str) -> bool) -> bool {
-    // (alone, too: "a bus stands" is no bus stand)
+    // (also by itself: "a bus stands" is not a bus stand)
     let alone = Lexicon::bundled().senses(&token.text).unwrap_or_default();
     let senses = token.senses.iter().chain(alone);
     let mut senses = senses.filter(|s| matches!(s.kind, "noun" | "group"));
     senses.any(|s| fits(s.symbol)) || token.slip_of.iter().any(|s| fits(s))
 }
 
-/// True if a word of the text names the kind of a thing, or is a slip of a word that does.
+/// True if a word of the text, or a word with a typing error, names the kind of a thing.
 fn is_named(t: &Thing, tokens: &[Token]) -> bool {
     let people = t.noun.classes() == [Class::Pedestrian];
     let somebody = |token: &Token| people && SOMEBODY.contains(&token.text.as_str());

@@ -1,4 +1,4 @@
-//! "Nobody moves any more": what moves shall stand. It takes nobody away.
+//! "Nobody moves any more": moving things shall stand. It removes none of them.
 
 use super::account::{Missing, Why};
 use super::lexicon::LONGEST_PHRASE;
@@ -25,15 +25,16 @@ const MOVES: [&str; 25] = [
     "riding", "run", "runs", "running", "go", "goes", "going", "travel", "travels", "roll", "rolls",
     "rolling", "budge", "stir",
 ];
-/// Words that may stand between who and moving.
+/// Words that may stand between the subject and the verb of moving.
 const BETWEEN: [&str; 16] = [
     "is", "are", "be", "being", "should", "shall", "must", "may", "can", "will", "else", "of", "them",
     "here", "now", "there",
 ];
-/// So many words may stand between.
+/// Most words between them.
 const APART: usize = 4;
 
-/// Who shall move no more: the nouns (none for everybody), and the tokens from and up to but not including.
+/// Things that shall stop: their noun (`None` for all of them), and the tokens from the first up to, but not including,
+/// the second.
 struct Halt {
     who: Option<Noun>,
     at: (usize, usize),
@@ -65,7 +66,7 @@ fn find(tokens: &[Token]) -> Option<Halt> {
         let verb = (end..end + APART)
             .take_while(|k| *k == end || BETWEEN.contains(&word(*k - 1)))
             .find(|k| MOVES.contains(&word(*k)))?;
-        // (who "goes there" is not there)
+        // ("nobody goes there" says that nobody is there)
         let mut to = verb + 1;
         for over in [["any", "more"], ["any", "longer"]] {
             if [word(to), word(to + 1)] == over {
@@ -88,11 +89,12 @@ fn noun_at(tokens: &[Token], i: usize) -> Option<(Noun, usize)> {
     })
 }
 
-/// Sets right what a reading makes of it. In words for a new scene, where it cannot be carried out, the words are named.
+/// Corrects the acts that a reading made of it. In words for a new scene, where it cannot be carried out, returns the
+/// words as missing.
 pub(super) fn set_right(reading: &mut Reading, text: &str, tokens: &[Token], mode: Mode) -> Option<Missing> {
     let halt = find(tokens)?;
     let span = tokens[halt.at.0].span.to(tokens[halt.at.1 - 1].span);
-    // (nobody may be read as no person, no vehicle and nothing)
+    // (the reader may take "nobody" for no person, no vehicle or nothing)
     let is_anybody = |n: Noun| {
         let general = matches!(
             n,
@@ -172,7 +174,7 @@ mod tests {
                 "remove the bus ; no person",
                 "remove the bus ; set all thing waiting",
             ),
-            // Nobody is there, which is another thing.
+            // This says that nobody is there, which is a different request.
             (
                 "nobody on the crossing",
                 "no person ( on crossing )",

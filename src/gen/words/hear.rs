@@ -1,4 +1,4 @@
-//! Both readers at once: where they agree a text is read; where they differ, or one is unsure, that is said.
+//! Runs both readers. Where they agree, a text is read; where they differ, or one is unsure, the result tells so.
 
 use serde::Serialize;
 
@@ -19,17 +19,17 @@ use super::tokens::{LONGEST, Token, tokens};
 use nn::weights::WeightsError;
 use place::beside_road::Span;
 
-/// Below this confidence an act is said to be unsure: the least threshold that leaves at most 8 % of sentences in six voices
-/// that the reader had not learned wrong without a word, for prompts and for edits.
+/// Confidence below which an act is reported as unsure: the least threshold at which at most 8 % of sentences, in six
+/// styles that the reader had not learned, are wrong without any report, for prompts and for edits.
 pub const UNSURE: f64 = 0.85;
 
-/// Who read it.
+/// Reader of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum By {
-    /// Both readers say the same.
+    /// The grammar and the learned reader, which agree.
     Both,
-    /// The grammar, to the last word.
+    /// The grammar, which read every word.
     Grammar,
     /// The learned reader.
     Learned,
@@ -48,14 +48,14 @@ pub struct Mended {
     pub to: String,
 }
 
-/// What was heard.
+/// Result of reading a text.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Heard {
-    /// What is carried out.
+    /// The reading that is carried out.
     pub reading: Reading,
-    /// Who read it.
+    /// The reader that it comes from.
     pub by: By,
-    /// What the other reader says, where it says something else.
+    /// The other reader's reading, if it differs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other: Option<Reading>,
     /// Indices of acts that the reader is unsure of.
@@ -67,13 +67,13 @@ pub struct Heard {
 }
 
 impl Heard {
-    /// True if there is nothing to say about how it was read.
+    /// True if there is nothing to report about the reading.
     pub fn is_plain(&self) -> bool {
         self.other.is_none() && self.unsure.is_empty() && self.missing.is_empty()
     }
 }
 
-/// Reads a text: what is said of things beside the road first, the rest with both readers.
+/// Reads a text: clauses on scenery first, the rest with both readers.
 ///
 /// # Errors
 ///
@@ -94,7 +94,7 @@ pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     Ok(heard)
 }
 
-/// Reads a text in which nothing stands beside the road.
+/// Reads a text without clauses on scenery.
 ///
 /// # Errors
 ///
@@ -107,7 +107,7 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     let agree = plain.is_whole() && says_the_same(&plain.reading, &said.reading, mode);
     let (by, reading, mut other) = match (agree, plain.is_whole()) {
         (true, _) => (By::Both, plain.reading, None),
-        // (what the grammar reads to the last word is plain English)
+        // (a text that the grammar reads completely is plain English)
         (false, true) => (By::Grammar, plain.reading, Some(said.reading)),
         (false, false) => (By::Learned, said.reading, None),
     };
@@ -138,7 +138,7 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
         })
     });
     let mut missing = missing(text, &said.tokens, &reading, learned.speller());
-    // (a word of it that is named says enough)
+    // (one reported word of it is enough)
     let is_named = |span: &Span| {
         missing
             .iter()
@@ -180,8 +180,8 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     })
 }
 
-/// The tokens without words that no list knows, and the articles before them: these are named, and what is plain beside them
-/// is read all the same.
+/// The tokens without words that no list knows, and without the articles before them: these words are reported, and the
+/// plain rest is read.
 fn without_unknown(tokens: &[Token], known: &dyn Fn(&Token) -> bool) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     for t in tokens {
@@ -198,13 +198,13 @@ fn without_unknown(tokens: &[Token], known: &dyn Fn(&Token) -> bool) -> Vec<Toke
     out
 }
 
-/// True if two readings ask for the same in whatever order and form.
+/// True if two readings ask for the same, regardless of order and form.
 fn says_the_same(a: &Reading, b: &Reading, mode: Mode) -> bool {
     notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode))
 }
 
-/// A reading from elsewhere, beside what the readers of this program heard. Where it says nothing of things beside the road,
-/// what was heard of them holds.
+/// A reading from elsewhere, combined with the reading of this program's readers. If it has no clause on scenery, the
+/// clauses that this program read are kept.
 ///
 /// # Errors
 ///
@@ -216,7 +216,7 @@ pub fn against(
     mode: Mode,
 ) -> Result<Heard, WeightsError> {
     let learned = LearnedReader::bundled()?;
-    // (what the program itself read beside the road is accounted for)
+    // (clauses on scenery that the program read count as read)
     let said = own.map_or_else(
         || take(text, mode == Mode::Edit).said,
         |o| o.reading.background.clone(),

@@ -5,12 +5,12 @@ use super::nouns::Noun;
 use super::reading::{Quantity, Reading, Thing, What};
 use super::tokens::Token;
 
-/// Words before a thing that is not a certain one.
+/// Words before a thing that is not a specific one.
 const ARTICLES: [&str; 3] = ["a", "an", "another"];
-/// An article stands so many words before its noun at most: "a small red car".
+/// Most words from an article to its noun: "a small red car".
 const APART: usize = 3;
 
-/// Whoever moves, and is named by an indefinite article and in no act before, is one of whichever fit.
+/// Makes a thing that moves, has an indefinite article and was not named in an earlier act mean any one that fits.
 pub(super) fn set_right(reading: &mut Reading, tokens: &[Token]) {
     let mut spoken_of: Vec<Noun> = Vec::new();
     for act in &mut reading.acts {
@@ -41,7 +41,7 @@ fn is_indefinite(noun: Noun, tokens: &[Token]) -> bool {
         return false;
     };
     let before = tokens[..first].iter().rev().take(APART);
-    // (the article of another noun is not its own)
+    // (the article belongs to another noun)
     before
         .take_while(|t| !t.senses.iter().any(|s| s.kind == "noun"))
         .any(|t| ARTICLES.contains(&t.text.as_str()))

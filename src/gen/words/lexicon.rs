@@ -1,4 +1,4 @@
-//! What words mean, from `assets/words/lexicon.txt`: phrases of up to five words to senses. Twin of
+//! Meanings of words, from `assets/words/lexicon.txt`: phrases of up to five words to senses. Twin of
 //! `training/words/lexicon.py`.
 
 use std::collections::{BTreeSet, HashMap};
@@ -12,18 +12,18 @@ pub const LONGEST_PHRASE: usize = 5;
 pub struct Sense {
     /// `noun`, `group`, `paint`, `time`, `weather`, `env`, `density`, `road`, `place`, `ego`.
     pub kind: &'static str,
-    /// What: `police_car`, `night`.
+    /// Symbol of the sense: `police_car`, `night`.
     pub symbol: &'static str,
-    /// A plural.
+    /// True for a plural.
     pub many: bool,
 }
 
 /// A unit of length or of speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// So many metres, or km/h.
+    /// Factor to metres, or to km/h.
     pub times: f64,
-    /// It is one of speed.
+    /// True for a unit of speed.
     pub is_speed: bool,
 }
 
@@ -48,7 +48,7 @@ static THINGS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     words.filter(|w| !w.starts_with('#')).collect()
 });
 
-/// True for a noun of something that no scene holds, one or several of them.
+/// True for a noun, singular or plural, of something that no scene holds.
 pub fn is_other_thing(word: &str) -> bool {
     let is = |w: &str| THINGS.binary_search(&w).is_ok();
     let one = [word.strip_suffix("es"), word.strip_suffix('s')];
@@ -61,7 +61,7 @@ pub fn is_english(word: &str) -> bool {
 }
 
 impl Lexicon {
-    /// The one that ships with the program.
+    /// The lexicon that ships with the program.
     pub fn bundled() -> &'static Self {
         &LEXICON
     }
@@ -121,22 +121,22 @@ impl Lexicon {
         self.units.get(phrase).copied()
     }
 
-    /// Number of a sense, from 1: the reader network's.
+    /// Number of a sense in the reader network, from 1.
     pub fn id(&self, sense: &Sense) -> usize {
         self.ids.get(sense).copied().unwrap_or(0)
     }
 
-    /// How many senses there are.
+    /// Number of senses.
     pub fn len(&self) -> usize {
         self.ids.len()
     }
 
-    /// True if there are none.
+    /// True if there are no senses.
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()
     }
 
-    /// Words of about as many letters that name a kind of thing, each with its symbol.
+    /// Words of a similar length that name a kind of thing, each with its symbol.
     pub fn nouns_near(&self, word: &str) -> impl Iterator<Item = (&str, &'static str)> {
         let n = word.chars().count();
         let lists = [n.saturating_sub(1), n, n + 1];

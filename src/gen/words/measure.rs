@@ -1,13 +1,14 @@
-//! What the numbers of a text measure: a length, a speed, a time, a rate, an angle, a share, the time of day, or how many. A
-//! number never becomes another quantity than it was said to be: "8 km/h" is no 8 m, and "30 km/h" are no thirty things.
+//! Quantities of the numbers in a text: a length, a speed, a time, a rate, an angle, a share, the time of day, or a
+//! count. A number is never taken for another quantity than the stated one: "8 km/h" is not 8 m, and "30 km/h" is not
+//! thirty things.
 
 use super::tokens::Token;
 use place::beside_road::Span;
 
-/// What a number measures.
+/// Quantity that a number measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// How many, or a number without a unit.
+    /// A count, or a number without a unit.
     Count,
     /// m.
     Length,
@@ -19,22 +20,22 @@ pub enum Kind {
     Rate,
     /// Degrees.
     Angle,
-    /// Parts of a hundred.
+    /// Percent.
     Share,
     /// Hours after midnight.
     Clock,
     /// Storeys of a building.
     Storeys,
-    /// Anything else that no slot of a reading holds: tonnes, years, degrees Celsius.
+    /// Another quantity, which no slot of a reading holds: tonnes, years, degrees Celsius.
     Foreign,
 }
 
 /// A number of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
-    /// What it measures.
+    /// Quantity that it measures.
     pub kind: Kind,
-    /// In the unit of its kind.
+    /// Value in the unit of its kind.
     pub value: f64,
     /// The number as it was typed.
     pub raw: f64,
@@ -45,14 +46,14 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// Bytes of the text.
+    /// Bytes of the text that it takes.
     pub fn span(&self, tokens: &[Token]) -> Span {
         let last = tokens[self.to - 1].span;
         tokens[self.from].span.to(last)
     }
 }
 
-/// Units that stand as words of their own, with so many of the kind's unit.
+/// Units that are separate words, with their size in the kind's unit.
 const UNITS: [(Kind, f64, &[&str]); 10] = [
     (Kind::Time, 1.0, &["s", "sec", "secs", "second", "seconds"]),
     (
@@ -80,7 +81,7 @@ const UNITS: [(Kind, f64, &[&str]); 10] = [
     ),
 ];
 
-/// Units and other words after a number that say it counts no things of the road.
+/// Units and other words after a number which show that it does not count things of the road.
 const FOREIGN: [&str; 80] = [
     "wheeler",
     "wheelers",
@@ -164,7 +165,7 @@ const FOREIGN: [&str; 80] = [
     "k",
 ];
 
-/// So many tokens after a number "per minute" belongs to it: "five cars per minute".
+/// Number of tokens after a number within which "per minute" belongs to it: "five cars per minute".
 const PER_WITHIN: usize = 3;
 
 /// The numbers of a text, in order.
@@ -172,7 +173,7 @@ pub fn measures(tokens: &[Token]) -> Vec<Measure> {
     let mut out: Vec<Measure> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
-        // ("an 18 wheeler" is a word)
+        // ("18 wheeler" is a phrase, not a number)
         let is_number = tokens[i].value.is_some() && tokens[i].senses.is_empty();
         match is_number.then(|| measure(tokens, i)).flatten() {
             Some(m) => {
@@ -247,7 +248,7 @@ fn measure(tokens: &[Token], i: usize) -> Option<Measure> {
     if FOREIGN.contains(&next) {
         return made(Kind::Foreign, value, i + 2);
     }
-    // "five cars per minute" are no five cars
+    // "five cars per minute" are not five cars
     let per = (i + 1..=i + PER_WITHIN).find(|k| {
         let unit = word(tokens, k + 1);
         word(tokens, *k) == "per" && UNITS.iter().any(|u| u.0 == Kind::Time && u.2.contains(&unit))
@@ -272,7 +273,7 @@ fn power(tokens: &[Token], i: usize) -> Option<usize> {
     }
 }
 
-/// The token after "per second": of a speed that is a rate.
+/// The token after "per second", which makes a rate of a speed.
 fn per_second(tokens: &[Token], i: usize) -> Option<usize> {
     let joins = matches!(word(tokens, i), "per" | "/" | "a" | "each" | "every");
     let second = matches!(word(tokens, i + 1), "s" | "sec" | "second");
@@ -299,7 +300,7 @@ fn hour(value: f64, half: Option<bool>) -> f64 {
     }
 }
 
-/// "20 to 30 m", "between 5 and 8 s": the first number is of the unit of the second.
+/// "20 to 30 m", "between 5 and 8 s": gives the first number the unit of the second.
 fn ranges(all: &mut [Measure], tokens: &[Token]) {
     for k in 1..all.len() {
         let (one, two) = (all[k - 1], all[k]);
@@ -319,7 +320,7 @@ mod tests {
     use super::super::tokens::tokens;
     use super::*;
 
-    /// Every unit that people write, each with what it is.
+    /// Every unit that people write, with its quantity.
     #[test]
     fn every_unit_has_its_kind() {
         for (text, kind, value) in [

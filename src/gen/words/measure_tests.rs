@@ -1,5 +1,5 @@
-//! Sentences with every kind of number in every place that takes one: none becomes another quantity, and what is not carried out
-//! is named.
+//! Sentences with every kind of number in every place that takes one: no number becomes another quantity, and numbers
+//! that are not carried out are reported.
 
 use super::account::Why;
 use super::hear::hear;
@@ -8,7 +8,7 @@ use super::reader::{LearnedReader, Mode};
 use super::slots::{SlotKind, slots};
 use super::tokens::tokens;
 
-/// Numbers that differ, so that each is known again.
+/// Numbers that differ, so that each can be identified.
 const UNITS: [&str; 22] = [
     "8 m",
     "27 feet",
@@ -57,7 +57,7 @@ const PLACES: [(&str, bool); 20] = [
     ("we drive {} faster than the bus", false),
 ];
 
-/// The numbers of a text that none of its words name, of those that a thing beside the road does not have.
+/// Numbers of a text that are neither in its reading nor reported as missing.
 fn unnamed(text: &str, mode: Mode) -> Vec<String> {
     let heard = hear(text, mode).expect("weights");
     let speller = LearnedReader::bundled().expect("weights");
@@ -72,7 +72,7 @@ fn unnamed(text: &str, mode: Mode) -> Vec<String> {
     let mut out = Vec::new();
     for m in &numbers {
         let span = m.span(&tokens);
-        // (lengths and storeys of what stands beside the road are its own)
+        // (counts, lengths and storeys in clauses on scenery belong to them)
         let beside = heard
             .reading
             .background
@@ -100,7 +100,7 @@ fn unnamed(text: &str, mode: Mode) -> Vec<String> {
             out.push(format!("{text}: {s:?} is another number"));
         }
     }
-    // And nothing beside the road counts what is no count.
+    // Clauses on scenery count only with numbers that are counts.
     for said in &heard.reading.background {
         let n = said.count.map(f64::from);
         let counts = |m: &Measure| m.kind != Kind::Count && n == Some(m.raw);
@@ -128,7 +128,7 @@ fn every_unit_in_every_place_is_carried_out_or_named() {
     );
 }
 
-/// A sign of 30 km/h is one sign, and the number is named.
+/// A sign of 30 km/h is one sign, and the number is reported.
 #[test]
 fn a_speed_is_no_count() {
     for (text, mode) in [
@@ -144,7 +144,7 @@ fn a_speed_is_no_count() {
     }
 }
 
-/// Texts that took minutes, and others of their kind: what the readers do is bounded by what they look at.
+/// Texts that took minutes, and similar ones: the work of the readers is bounded.
 #[test]
 fn long_texts_of_nothing_end() {
     for piece in [
@@ -170,8 +170,8 @@ fn long_texts_of_nothing_end() {
     }
 }
 
-/// What a text costs is what its parts cost: of a word that stands there a thousand times, what it may be a slip of is looked up
-/// once, and a number is a slip of nothing.
+/// The cost of a text is that of its parts: the possible corrections of a word that occurs a thousand times are looked
+/// up once, and a number is not taken for a typing error.
 #[test]
 fn numbers_are_slips_of_nothing() {
     let all = tokens(&"10 m bsu ".repeat(300), None);
@@ -180,7 +180,8 @@ fn numbers_are_slips_of_nothing() {
     assert_eq!(of("bsu").map(|s| s.contains(&"bus")), Some(true));
 }
 
-/// Sentences with readings written by hand: the account finds next to nothing missing of them, or its warnings would be noise.
+/// Sentences with readings written by hand: the account must report next to nothing as missing, or its warnings would
+/// be noise.
 #[test]
 fn right_readings_are_said_to_be_whole() {
     use super::account::missing;

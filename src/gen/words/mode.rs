@@ -1,4 +1,4 @@
-//! What a text is for.
+//! Purpose of a text.
 
 /// Whether a text makes a scene or changes one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,13 +7,13 @@ macro_rules! named {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
         pub enum $name { $(#[serde(rename = $text)] $variant),+ }
         impl $name {
-            /// All of them.
+            /// All values.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
             /// Its name in the notation and in JSON.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$variant => $text),+ }
             }
-            /// The one of that name.
+            /// The value of that name.
             pub fn of(name: &str) -> Option<Self> {
                 match name { $($text => Some(Self::$variant),)+ _ => None }
             }

@@ -1,4 +1,4 @@
-//! What can be named: kinds of objects finer than the classes of boxes, and words that name several kinds.
+//! Nouns of a reading: kinds of objects finer than the classes of boxes, and words that name several kinds.
 
 use super::named::named;
 use scene::{BoxName, Class};
@@ -80,7 +80,7 @@ impl Noun {
         })
     }
 
-    /// True if it says no more than the class: boxes of that noun bear no name.
+    /// True if it is no more specific than the class: boxes of that noun have no name.
     pub fn is_plain(self) -> bool {
         matches!(
             self,
@@ -107,7 +107,7 @@ impl Noun {
         self.name().replace('_', " ")
     }
 
-    /// The name that a box of it bears; empty for plain ones.
+    /// The name that a box of this noun gets; empty for plain nouns.
     pub fn label(self) -> BoxName {
         if self.is_plain() {
             BoxName::default()

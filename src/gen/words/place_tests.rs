@@ -1,4 +1,4 @@
-//! Descriptions to boxes: nothing overlaps, what does not fit is counted, the same seed gives the same.
+//! Descriptions to boxes: nothing overlaps, objects that do not fit are counted, the same seed gives the same result.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,5 @@
-//! New things as a description: what is named together, and what it is placed by. Of a scene that is there, anchors are its
-//! boxes; without one, they are what was named before.
+//! New things as a description: things that are named together, and the anchors that they are placed by. In an open
+//! scene, anchors are its boxes; without one, they are things named before.
 
 use super::nouns::Noun;
 use super::reading::{Anchor as Said, PaintWish, Place, Quantity, Relation, Thing};
@@ -12,17 +12,17 @@ use scene::{BoxLabel, Class, SceneBox};
 /// Most kinds of things of one reading.
 const MOST_SPECS: usize = 200;
 
-/// The scene that new things come into.
+/// The scene that new things are added to.
 pub(super) trait Site {
     /// The boxes that an anchor means; `Err` after a question.
     fn find(&mut self, t: &Thing) -> Result<Vec<SceneBox>, ()>;
     /// The lane or strip that a box of it is in.
     fn role(&self, b: &SceneBox) -> Option<LaneRole>;
-    /// The kind of what was spoken of last.
+    /// The noun of the thing that was named last.
     fn last_noun(&self) -> Option<Noun>;
 }
 
-/// No scene: all anchors are named in the text.
+/// A site without a scene: all anchors are named in the text.
 pub(super) struct Nowhere;
 
 impl Site for Nowhere {
@@ -37,27 +37,27 @@ impl Site for Nowhere {
     }
 }
 
-/// What is to be placed, and what stands already.
+/// Things to be placed, and boxes that stand already.
 #[derive(Default)]
 pub(super) struct Plan {
-    /// One for each kind that was named; anchors too.
+    /// One spec for each kind that was named, anchors included.
     pub(super) specs: Vec<ObjectSpec>,
-    /// The boxes of those that stand already.
+    /// Boxes of the specs that stand already.
     pub(super) held: Vec<Option<Vec<SceneBox>>>,
-    /// What was named in each.
+    /// Thing that each spec was named by.
     pub(super) named: Vec<Thing>,
-    /// The act and the thing of it that each was named by.
+    /// Act that named each spec, and index of the thing in the act.
     pub(super) from: Vec<(usize, usize)>,
-    /// Those of what is put in now.
+    /// Act and thing that are being added now.
     pub(super) at: (usize, usize),
-    /// Something asked back.
+    /// True if a question was asked.
     pub(super) asked: bool,
-    /// What is behind a driver follows it, if it can.
+    /// True if a driver placed behind another follows it, if it can.
     pub(super) follows: bool,
 }
 
 impl Plan {
-    /// Puts new things in, with what they are placed by.
+    /// Adds new things, with the anchors that they are placed by.
     pub(super) fn add(&mut self, things: &[Thing], site: &mut dyn Site) {
         let mut own = Vec::new();
         for (k, t) in things.iter().enumerate() {
@@ -108,9 +108,9 @@ impl Plan {
         let class = self.specs[i].class;
         let mut metres = p.metres;
         let relation = match (p.relation, to) {
-            // (so far away is ahead, where one looks)
+            // (a mere distance is meant ahead)
             (Relation::At, Said::Ego) => Some(RelationKind::InFrontOf),
-            // (what shall be on the pavement as she is)
+            // ("on the pavement, as she is")
             (Relation::Like, _) => {
                 if let Some(anchor) = self.anchor(i, to, site, depth) {
                     self.like(i, anchor, site);
@@ -134,7 +134,7 @@ impl Plan {
                 Some(RelationKind::Near)
             }
             (Relation::On, Said::Lane(role)) if is_kerb(*role) && class.is_vehicle() && state.is_none() => {
-                // (what is at the kerb stands there)
+                // (a thing at the kerb is parked there)
                 self.specs[i].state = Some(ObjectState::Parked);
                 Some(RelationKind::ParkedOn)
             }
@@ -147,7 +147,7 @@ impl Plan {
         if let (Said::Thing(t), Anchor::Object(j)) = (to, anchor)
             && t.quantity == Quantity::Each
         {
-            // (the graph gives them to the anchors in turn)
+            // (the graph assigns them to the anchors in turn)
             let n = self.specs[i].count.n.saturating_mul(self.count_of(j) as u32);
             self.specs[i].count = Count::exactly(n.min(MOST_OF_ONE));
         }
@@ -159,7 +159,7 @@ impl Plan {
                 _ => Anchor::Ego,
             });
         }
-        // Behind a driver is in its lane, going its way.
+        // Behind a driver means in its lane and in its direction.
         let drives = (class.is_vehicle() || matches!(class, Class::Motorcycle | Class::Bicycle))
             && state != Some(ObjectState::Parked);
         let lane = self.named[i]
@@ -202,7 +202,7 @@ impl Plan {
             .map_or(self.specs[i].count.n as usize, Vec::len)
     }
 
-    /// In the lane or strip of an anchor, or beside it where that is not known.
+    /// Places a thing in the lane or strip of an anchor, or beside the anchor where that is unknown.
     fn like(&mut self, i: usize, anchor: Anchor, site: &dyn Site) {
         let Anchor::Object(j) = anchor else { return };
         let mut lanes: Vec<(RelationKind, Anchor)> = self.specs[j]
@@ -230,7 +230,7 @@ impl Plan {
             Said::Crossing => Anchor::Crossing,
             Said::Junction => Anchor::Junction,
             Said::Lane(role) => Anchor::Lane(*role),
-            // (of something new, the other side is the far one)
+            // (for a new thing the other side is the far one)
             Said::OtherSide => Anchor::Lane(LaneRole::LeftRoadside),
             Said::OtherLane => Anchor::Lane(LaneRole::Oncoming),
             Said::EachOther => return None,
@@ -263,7 +263,7 @@ impl Plan {
         })
     }
 
-    /// What was named before by the same noun, the last one: `the bus`, `it`.
+    /// The last spec named before that fits the thing: `the bus`, `it`.
     fn named_before(&self, of: usize, t: &Thing) -> Option<usize> {
         if t.id.is_some() || t.pick.is_some() || t.nth.is_some() {
             return None;
@@ -284,7 +284,7 @@ impl Plan {
         (0..self.specs.len()).rev().filter(|i| *i != of).find(fits)
     }
 
-    /// Says more of where a thing is.
+    /// Adds places to a thing.
     pub(super) fn also_at(&mut self, i: usize, places: &[Place], site: &mut dyn Site) {
         let state = self.named[i].state;
         for p in places {
@@ -293,12 +293,12 @@ impl Plan {
         }
     }
 
-    /// What was named in an object.
+    /// The thing that a spec was named by.
     pub(super) fn thing_of(&self, i: usize) -> &Thing {
         &self.named[i]
     }
 
-    /// What is said of a group: in a row, side by side, facing each other.
+    /// Applies the places of a group: in a row, side by side, facing each other.
     fn group(&mut self, i: usize, t: &Thing, mate: Option<usize>) {
         for p in &t.places {
             let each = matches!(p.to, Some(Said::EachOther));
@@ -324,7 +324,7 @@ impl Plan {
         }
     }
 
-    /// One spec of `n` as `n` of one, each placed by the one before.
+    /// Splits a spec of `n` things into `n` specs of one, each placed by the one before.
     fn chain(&mut self, i: usize, relation: RelationKind, each: bool) {
         let n = self.specs[i].count.n;
         self.specs[i].count = Count::exactly(1);
@@ -357,7 +357,7 @@ fn is_kerb(role: LaneRole) -> bool {
     )
 }
 
-/// How many things a number means.
+/// The count that a quantity means.
 pub fn count_of(q: Quantity) -> Count {
     let at_most = |n: u32| n.min(MOST_OF_ONE);
     match q {
@@ -370,10 +370,10 @@ pub fn count_of(q: Quantity) -> Count {
     }
 }
 
-/// A thing without its places.
+/// The spec of a thing without its places.
 fn spec_of(t: &Thing) -> ObjectSpec {
     let noun = match t.noun {
-        // (any vehicle that is added is a car; what shall be anything, too)
+        // (a vehicle or thing of no stated kind is added as a car)
         Noun::Vehicle | Noun::Thing | Noun::It | Noun::One => Noun::Car,
         Noun::TwoWheeler => Noun::Bicycle,
         noun => noun,

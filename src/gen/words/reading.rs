@@ -1,5 +1,5 @@
-//! What a sentence asks of a scene, as plain values: the same from every reader. Nothing here knows a scene. The JSON of
-//! these types has a published schema (`sceneloom prompt --schema`); `notation` is their one-line form.
+//! Requests of a sentence to a scene, as plain values: the same from every reader. Nothing here knows a scene. The JSON
+//! of these types has a published schema (`sceneloom prompt --schema`); `notation` is their one-line form.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,19 +13,19 @@ use scene::clip::Manoeuvre;
 use scene::graph::{LaneRole, ObjectState, SizeHint};
 use scene::{Paint, TimeOfDay, Weather};
 
-/// All that a text asks for, in order.
+/// All requests of a text, in order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Reading {
-    /// What is to be done with objects, road and light.
+    /// Changes of objects, road and light.
     pub acts: Vec<Act>,
-    /// What is said of buildings, trees and whatever else stands beside the road.
+    /// Requests about buildings, trees and other things beside the road.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub background: Vec<Said>,
 }
 
 impl Reading {
-    /// Of these acts, and nothing beside the road.
+    /// A reading of these acts, without requests about things beside the road.
     pub fn of(acts: Vec<Act>) -> Self {
         Self {
             acts,
@@ -42,7 +42,7 @@ impl Reading {
 /// One thing to do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Act {
-    /// What.
+    /// The kind of act.
     #[serde(flatten)]
     pub what: What,
     /// Bytes of the text that say it, if the reader knows them.
@@ -71,7 +71,7 @@ impl From<What> for Act {
     }
 }
 
-/// What is to be done.
+/// A kind of act.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "act", rename_all = "snake_case")]
 pub enum What {
@@ -82,7 +82,7 @@ pub enum What {
     },
     /// There shall be none of these.
     No {
-        /// Of which.
+        /// The things.
         who: Vec<Thing>,
     },
     /// These go.
@@ -125,13 +125,13 @@ pub enum What {
     Set {
         /// Which.
         who: Vec<Thing>,
-        /// What changes.
+        /// New traits.
         #[serde(rename = "look")]
         traits: Traits,
     },
     /// So many of these there shall be.
     Count {
-        /// Of which.
+        /// The things.
         who: Vec<Thing>,
         /// How many.
         amount: Amount,
@@ -143,9 +143,9 @@ pub enum What {
         /// The other.
         other: Box<Thing>,
     },
-    /// Somebody moves in the course of time.
+    /// Things that move in the course of time.
     Go {
-        /// Who; the ego vehicle if the list is empty.
+        /// The things that move; the ego vehicle if the list is empty.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         who: Vec<Thing>,
         /// How.
@@ -183,15 +183,15 @@ pub enum What {
     },
     /// The road has it.
     Has {
-        /// What.
+        /// The part of a road.
         what: Feature,
-        /// Where.
+        /// Its places.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         places: Vec<Place>,
     },
     /// The road has none.
     Lacks {
-        /// What.
+        /// The part of a road.
         what: Feature,
     },
     /// Lanes in both directions together.
@@ -213,7 +213,7 @@ pub enum What {
 }
 
 impl What {
-    /// Visits the things that it is about, those that it changes first; not what they are placed by.
+    /// Visits the things that the act is about, those that it changes first; the anchors of their places are left out.
     pub fn things(&self, visit: &mut dyn FnMut(&Thing)) {
         match self {
             Self::Add { things } => things.iter().for_each(visit),
@@ -277,9 +277,9 @@ pub enum Quantity {
     The,
     /// So many certain ones: "the two cars".
     TheN(u32),
-    /// All that fit.
+    /// Every thing that fits, without a number.
     All,
-    /// Of an anchor: each of those that fit has its own: "a worker behind each bus".
+    /// In an anchor: each of the things that fit has its own: "a worker behind each bus".
     Each,
     /// Half of those that fit.
     Half,
@@ -294,12 +294,12 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// True if it means certain things, not any of a kind.
+    /// True if it means specific things, not any of a kind.
     pub fn is_certain(self) -> bool {
         matches!(self, Self::The | Self::TheN(_))
     }
 
-    /// True if it means something that is there, or was spoken of.
+    /// True if it means something that is there, or was named before.
     pub fn is_definite(self) -> bool {
         matches!(
             self,
@@ -312,7 +312,7 @@ impl Quantity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PaintWish {
-    /// This one.
+    /// The given paint.
     Is(Paint),
     /// Any other.
     Not(Paint),
@@ -322,7 +322,7 @@ pub enum PaintWish {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Thing {
-    /// What they are.
+    /// Their kind.
     pub noun: Noun,
     /// How many.
     #[serde(default, skip_serializing_if = "is_unsaid")]
@@ -339,7 +339,7 @@ pub struct Thing {
     /// Smaller or larger than usual.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<SizeHint>,
-    /// What they do.
+    /// Their state: moving, parked or waiting.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state: Option<ObjectState>,
     /// Their paint.
@@ -348,10 +348,10 @@ pub struct Thing {
     /// The number of a box of the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<u32>,
-    /// Where they are.
+    /// Their places.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub places: Vec<Place>,
-    /// Those that are not meant.
+    /// Things that are excluded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub except: Vec<Thing>,
 }
@@ -361,7 +361,7 @@ fn is_unsaid(q: &Quantity) -> bool {
 }
 
 impl Thing {
-    /// A thing of which only the kind is said.
+    /// A thing of which only the kind is stated.
     pub fn new(noun: Noun) -> Self {
         Self {
             noun,
@@ -378,7 +378,7 @@ impl Thing {
         }
     }
 
-    /// The same in a number.
+    /// The thing in another quantity.
     pub fn with(mut self, quantity: Quantity) -> Self {
         self.quantity = quantity;
         self
@@ -402,7 +402,7 @@ pub struct Place {
     pub metres: Option<f64>,
 }
 
-/// What a place is described by.
+/// Reference of a place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Anchor {
@@ -458,14 +458,14 @@ pub enum Turn {
     To(Vec<Place>),
 }
 
-/// What something is like, and what it does, from now on.
+/// New traits of something: its look and its state from now on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Traits {
     /// Size.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<SizeHint>,
-    /// What it does.
+    /// State: moving, parked or waiting.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub state: Option<ObjectState>,
     /// Paint.

@@ -1,4 +1,4 @@
-//! What could not be done as it was said, and decisions worth knowing: values first, words for people last.
+//! Requests that could not be met as stated, and decisions worth knowing: first as values, then as words for people.
 
 use std::fmt;
 
@@ -10,60 +10,60 @@ use super::reading::Relation;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "remark", rename_all = "snake_case")]
 pub enum Remark {
-    /// Nothing of the scene fits.
+    /// No box of the scene fits.
     Nobody {
-        /// What was named.
+        /// The thing that was named.
         what: String,
     },
-    /// The only one of its kind was taken, though not all that was said of it holds.
+    /// The only one of its kind was taken, although not everything stated about it holds.
     OnlyOne {
-        /// What was named.
+        /// The thing that was named.
         what: String,
-        /// Where it stands.
+        /// Its place.
         place: String,
     },
-    /// Fewer fit than were named; those were taken.
+    /// Fewer things fit than were named; the fitting ones were taken.
     TooFew {
-        /// What was named.
+        /// The thing that was named.
         what: String,
-        /// That fit.
+        /// Number of things that fit.
         found: usize,
-        /// That were named.
+        /// Number of things that were named.
         wanted: usize,
     },
-    /// Of several those were taken.
+    /// These were taken of several.
     Chosen {
-        /// What was named.
+        /// The things that were named.
         what: String,
-        /// Which.
+        /// The ones taken: `nearest`, `farthest` or `first named`.
         which: &'static str,
     },
     /// Not all new things found room.
     LeftOut {
-        /// Placed.
+        /// Number of things that were placed.
         placed: usize,
-        /// Asked for.
+        /// Number of things that were asked for.
         wanted: usize,
-        /// Why.
+        /// The reason.
         why: String,
     },
-    /// Relations that do not hold where the things stand now.
+    /// Relations that do not hold at the places found.
     Unmet {
-        /// Which.
+        /// The relations.
         relations: Vec<&'static str>,
     },
-    /// It stands, and not as far away as was said.
+    /// The thing was placed, but not at the stated distance.
     Off {
-        /// What the distance is of.
+        /// Relation that the distance belongs to.
         relation: &'static str,
-        /// As it was said, m.
+        /// Distance that was asked for, m.
         asked_m: f64,
-        /// As it is, m.
+        /// Distance that was found, m.
         found_m: f64,
     },
-    /// The ego vehicle moves, though nobody else does.
+    /// The ego vehicle moves, although nothing else does.
     WeGoOn,
-    /// A box finds no place there and stays.
+    /// A box finds no place at its destination and stays.
     NoRoom {
         /// Its id.
         id: u32,
@@ -75,60 +75,60 @@ pub enum Remark {
     },
     /// Two boxes overlap now.
     Overlaps {
-        /// The one that came.
+        /// The box that was placed.
         id: u32,
         /// The other; `None` is the ego vehicle.
         other: Option<u32>,
     },
-    /// No distance was said.
+    /// No distance was stated.
     DefaultStep {
-        /// What was taken, m.
+        /// Distance that was taken, m.
         metres: f64,
     },
-    /// No lane is there.
+    /// There is no lane at the destination.
     NoLane {
         /// The box that stays.
         id: u32,
     },
-    /// It is so already.
+    /// The request holds already.
     Already,
     /// Only a new scene can change it.
     NotInEdits {
-        /// What.
+        /// The part that would change.
         what: &'static str,
     },
     /// The road has no room for it.
     NoCrossing,
-    /// What was taken away stands nowhere.
+    /// The place that "there" refers to is unknown, because nothing was removed.
     NoSpot,
-    /// What was said of the place has no meaning here.
+    /// A place that has no meaning here was ignored.
     PlaceIgnored {
-        /// Which relation.
+        /// Relation of the place.
         relation: Relation,
     },
-    /// A thing that an act changes was said to stay.
+    /// A thing that an act changes was to stay.
     Spared {
-        /// What.
+        /// The thing.
         what: String,
     },
-    /// Something can do one thing only in the course of a scene: the last that was said.
+    /// Each thing can have only one motion in a scene: the last one counts.
     OneMotion {
-        /// What.
+        /// The thing.
         what: String,
     },
-    /// A motion that cannot be.
+    /// A motion that is not possible.
     NoMotion {
-        /// Why.
+        /// The reason.
         why: String,
     },
-    /// The ego vehicle drives, though nobody said so: what was asked for needs it.
+    /// The ego vehicle drives, although the text does not ask for it: the request needs it.
     EgoDrives,
-    /// Somebody moves who was not there before.
+    /// A thing that moves was not there before and was added.
     IsNew {
-        /// Who.
+        /// The thing.
         what: String,
     },
-    /// More than is carried out.
+    /// More was asked for than is carried out at once.
     TooMuch,
 }
 

@@ -1,4 +1,5 @@
-//! Which boxes of a scene a thing of a reading means. One that fits several is asked back, never guessed.
+//! Finds the boxes of a scene that a thing of a reading means. If several fit one, a question is asked; nothing is
+//! guessed.
 
 use super::notation;
 use super::nouns::Noun;
@@ -9,16 +10,16 @@ use place::holds::{Target, ego, holds, in_role, role_of};
 use scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
 use scene::{BoxId, SceneBox};
 
-/// Which of too many are taken.
+/// Boxes to take if too many fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spare {
-    /// The nearest to the ego vehicle are meant.
+    /// The nearest to the ego vehicle.
     Nearest,
-    /// The farthest: of what is removed.
+    /// The farthest: for removals.
     Farthest,
 }
 
-/// How a relation is measured; `None` if boxes of a scene cannot be told by it.
+/// The relation kind that a relation is measured as; `None` if boxes of a scene cannot be distinguished by it.
 pub fn kind_of(relation: Relation, anchor: &Anchor, state: Option<ObjectState>) -> Option<RelationKind> {
     use RelationKind as K;
     let strip = matches!(
@@ -52,7 +53,7 @@ pub fn kind_of(relation: Relation, anchor: &Anchor, state: Option<ObjectState>) 
 }
 
 impl Stage<'_> {
-    /// The boxes that several things mean together; `None` after a question or where nothing fits.
+    /// The boxes that several things mean together; `None` after a question, and if nothing fits.
     pub(super) fn those(&mut self, who: &[Thing], spare: Spare) -> Option<Vec<BoxId>> {
         let mut all = Vec::new();
         let mut missing = false;
@@ -98,7 +99,7 @@ impl Stage<'_> {
                 .copied()
                 .filter(|id| !self.stays.contains(id))
                 .collect();
-            // (all of them were said to stay: then this act means them all the same)
+            // (if all of them were to stay, this act means them anyway)
             if !open.is_empty() {
                 fits = open;
             }
@@ -109,14 +110,14 @@ impl Stage<'_> {
                 self.remark(Remark::OnlyOne { what: words, place });
                 return Some(vec![one]);
             }
-            // (who "it" is waits for the answer to the question)
+            // (the meaning of "it" depends on the answer to the question)
             if t.noun != Noun::It || self.out.questions.is_empty() {
                 self.remark(Remark::Nobody { what: words });
             }
             return None;
         }
         if let Some(nth) = t.nth {
-            // (of those that were put in just now, if they are such)
+            // (among those that were added just now, if they are of this kind)
             if self.last.len() > 1
                 && self
                     .last
@@ -217,7 +218,7 @@ impl Stage<'_> {
         Some(self.so_many(fits, wanted, spare, words))
     }
 
-    /// So many of those that fit, by distance.
+    /// The `n` boxes that are taken of those that fit, by distance.
     fn so_many(&mut self, mut fits: Vec<BoxId>, n: usize, spare: Spare, words: &str) -> Vec<BoxId> {
         if fits.len() > n {
             fits.sort_by(|a, b| self.range_m(*a).total_cmp(&self.range_m(*b)));
@@ -243,7 +244,8 @@ impl Stage<'_> {
             .map_or(0.0, |b| b.center_m.truncate().length())
     }
 
-    /// Of several that fit, the `n` that a listener would take: spoken of last, in our lane, called by nothing else.
+    /// The `n` boxes of several that a listener would take: the ones named last, the ones in our lane, or the ones
+    /// without a name. All of them if that gives another number.
     fn likely(&self, fits: Vec<BoxId>, t: &Thing, n: usize) -> Vec<BoxId> {
         let just = |test: &dyn Fn(&BoxId) -> bool| -> Option<Vec<BoxId>> {
             let found: Vec<BoxId> = fits.iter().copied().filter(|id| test(id)).collect();
@@ -273,7 +275,7 @@ impl Stage<'_> {
         fits
     }
 
-    /// Places that tell no box from another.
+    /// Adds remarks on places that do not distinguish boxes.
     fn passed_over(&mut self, t: &Thing) {
         for p in &t.places {
             if matches!(
@@ -286,7 +288,8 @@ impl Stage<'_> {
         }
     }
 
-    /// The only box of the kind, where more was said of it than holds: never if a paint or a size speaks against it.
+    /// The only box of the kind, although more was stated about it than holds; never if a paint or a size does not
+    /// match.
     fn only_one(&self, t: &Thing) -> Option<BoxId> {
         if t.quantity != Quantity::The
             || t.other
@@ -313,7 +316,7 @@ impl Stage<'_> {
         if !(waits && walks && !t.places.is_empty()) && t.size.is_none() {
             return Vec::new();
         }
-        // (who stands by the bus may take a step; "the big truck" may be no larger than others)
+        // (a person by the bus may have moved; "the big truck" may be no larger than others)
         self.fitting(&Thing {
             state: if walks { None } else { t.state },
             size: None,
@@ -321,7 +324,7 @@ impl Stage<'_> {
         })
     }
 
-    /// All boxes that a thing fits, whatever its number.
+    /// All boxes that fit a thing, regardless of its number.
     pub(super) fn fitting(&self, t: &Thing) -> Vec<BoxId> {
         self.fitting_deep(t, 0)
     }
@@ -366,7 +369,7 @@ impl Stage<'_> {
         ids
     }
 
-    /// Those of `among` that are not meant: so many, a picked one, or all that fit.
+    /// The boxes of `among` that an exception means: a number of them, a picked one, or all that fit.
     fn excepted(&self, e: &Thing, among: &[BoxId]) -> Vec<BoxId> {
         let one = matches!(e.noun, Noun::One | Noun::Thing);
         let mut fit = if one && e.places.is_empty() && e.paint.is_none() && e.state.is_none() {
@@ -394,7 +397,7 @@ impl Stage<'_> {
         fit
     }
 
-    /// Boxes of the kind. A special noun means those that are so called; without any, those that are called nothing.
+    /// Boxes of the noun. A specific noun means boxes with that name; if there are none, boxes without a name.
     fn of_noun(&self, t: &Thing) -> Vec<&SceneBox> {
         let noun = match t.noun {
             Noun::It => {
@@ -421,7 +424,7 @@ impl Stage<'_> {
         if !own.is_empty() { own } else { called("") }
     }
 
-    /// The boxes that a place is described by.
+    /// The anchors of a place.
     fn anchors(&self, p: &Place, depth: u8) -> Anchors {
         let of = |a: &Option<Anchor>| -> Vec<SceneBox> {
             match a {
@@ -442,7 +445,7 @@ impl Stage<'_> {
         Anchors { first, second }
     }
 
-    /// True if a box stands as a place says.
+    /// True if a place holds for a box.
     fn stands(&self, b: &SceneBox, p: &Place, state: Option<ObjectState>, anchors: &Anchors) -> bool {
         use LaneRole as L;
         let Some(to) = &p.to else {
@@ -482,13 +485,13 @@ impl Stage<'_> {
     }
 }
 
-/// The boxes that a place is described by: those of its anchor, and of the second one of `between`.
+/// Boxes that a place refers to: those of its anchor, and of the second one of `between`.
 struct Anchors {
     first: Vec<SceneBox>,
     second: Vec<SceneBox>,
 }
 
-/// In words a car 30 m ahead in the left lane is on the left.
+/// Side as people name it: a car 30 m ahead in the left lane is on the left.
 fn side_of_ego(kind: RelationKind, b: &SceneBox) -> Option<bool> {
     let (x, y) = (b.center_m.x, b.center_m.y);
     match kind {
@@ -500,7 +503,7 @@ fn side_of_ego(kind: RelationKind, b: &SceneBox) -> Option<bool> {
     }
 }
 
-/// What people call so though it is only nearly so.
+/// True if people would use the relation loosely although it does not hold exactly.
 fn loosely(
     map: &place::lanes::LaneMap<'_>,
     kind: RelationKind,
@@ -539,7 +542,7 @@ fn by_size(fit: Vec<&SceneBox>, size: SizeHint) -> Vec<&SceneBox> {
         .collect()
 }
 
-/// What is picked has the lowest rank.
+/// Rank of a box for a pick: the picked one has the lowest.
 fn rank(b: &SceneBox, pick: Pick) -> f64 {
     let p = b.center_m.truncate();
     let volume = b.size_m.x * b.size_m.y * b.size_m.z;

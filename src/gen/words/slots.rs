@@ -1,35 +1,35 @@
-//! Numbers of a reading, each with what it measures; those that the text gives as something else are taken out, so that no
-//! number is carried out as what it is not.
+//! Numbers of a reading, each with its quantity. Numbers that the text states as another quantity are removed, so that
+//! none is carried out as something else.
 
 use super::measure::{Kind, Measure};
 use super::reading::{Amount, Anchor, Destination, Place, Quantity, Reading, Relation, Thing, Turn, What};
 use super::tokens::Token;
 
-/// What a number of a reading is.
+/// Quantity of a number in a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlotKind {
-    /// One that the text measures in this.
+    /// A quantity that the text measures.
     Of(Kind),
-    /// So many times.
+    /// A factor.
     Times,
 }
 
 /// A number of a reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slot {
-    /// What it is.
+    /// Its quantity.
     pub kind: SlotKind,
-    /// How much, in the unit of the kind.
+    /// Its value, in the unit of the kind.
     pub value: f64,
 }
 
 impl Slot {
-    /// True if a number of the text is this one.
+    /// True if it is the given number of the text.
     pub fn is(&self, m: &Measure) -> bool {
         self.fits(m.kind) && self.shares(m.kind, m.value).any(|v| near(v, self.value))
     }
 
-    /// A number without a unit may be of any.
+    /// True if the kinds fit; a number without a unit fits any kind.
     fn fits(&self, kind: Kind) -> bool {
         match self.kind {
             SlotKind::Of(own) => own == kind || kind == Kind::Count,
@@ -37,7 +37,7 @@ impl Slot {
         }
     }
 
-    /// What the number of a text may stand for here: "30 % more" are 1.3 times as many.
+    /// The values that a number of the text may stand for here: "30 % more" are 1.3 times as many.
     fn shares(&self, kind: Kind, value: f64) -> impl Iterator<Item = f64> {
         let times = [value / 100.0, 1.0 + value / 100.0, 1.0 - value / 100.0];
         let of_share = self.kind == SlotKind::Times && kind == Kind::Share;
@@ -62,7 +62,7 @@ pub fn slots(reading: &Reading) -> Vec<Slot> {
     out
 }
 
-/// What becomes of a number.
+/// Decision on a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Verdict {
     Keep,
@@ -70,7 +70,7 @@ enum Verdict {
     Clear,
 }
 
-/// Words by which a number of things, or so many times, comes about that no numeral of the text says.
+/// Words that give a number of things, or a factor, without a numeral in the text.
 const WORKED_OUT: [&str; 16] = [
     "another",
     "couple",
@@ -90,8 +90,8 @@ const WORKED_OUT: [&str; 16] = [
     "each",
 ];
 
-/// Takes out of a reading every number that its text gives as another quantity; a number that is right but for its unit
-/// ("2 minutes" as 2 s) is set right.
+/// Removes from a reading every number that its text states as another quantity. A number with the wrong unit ("2
+/// minutes" as 2 s) is corrected.
 pub fn set_right(reading: &mut Reading, tokens: &[Token], measures: &[Measure]) {
     let works_out = tokens.iter().any(|t| WORKED_OUT.contains(&t.text.as_str()));
     let judge = |slot: Slot| -> Verdict {
@@ -106,7 +106,7 @@ pub fn set_right(reading: &mut Reading, tokens: &[Token], measures: &[Measure]) 
         }
         let foreign = |m: &Measure| {
             let as_typed = near(m.raw, slot.value);
-            // ("7 %" are not seven times as many)
+            // ("7 %" is not seven times as many)
             let is_share = m.kind == Kind::Share;
             (!slot.fits(m.kind) && (as_typed || near(m.value, slot.value))) || is_share && as_typed
         };
@@ -118,7 +118,8 @@ pub fn set_right(reading: &mut Reading, tokens: &[Token], measures: &[Measure]) 
     each(reading, &mut |slot| judge(slot));
 }
 
-/// Visits every number of a reading, and does with it what is answered; an act that is nothing without it goes.
+/// Visits every number of a reading and applies the returned decision. An act that has no meaning without its number is
+/// removed.
 fn each(reading: &mut Reading, visit: &mut dyn FnMut(Slot) -> Verdict) {
     reading.acts.retain_mut(|act| act_stays(&mut act.what, visit));
 }
@@ -253,7 +254,7 @@ fn each_thing(things: &mut [Thing], visit: Visit<'_>) {
             },
             other => other,
         };
-        // (the last, the first and the fifth are words)
+        // (ordinals from "first" to "fifth", and "last", are words)
         if let Some(nth) = t.nth.filter(|n| *n > 5) {
             t.nth = count(nth, visit);
         }
@@ -274,7 +275,7 @@ fn each_place(places: &mut Vec<Place>, visit: Visit<'_>) {
                 each_thing(std::slice::from_mut(t), visit);
             }
         }
-        // ("at" is nowhere without its distance)
+        // ("at" has no meaning without its distance)
         !(p.relation == Relation::At && measured && p.metres.is_none())
     });
 }
@@ -293,7 +294,7 @@ mod tests {
         write(&reading)
     }
 
-    /// Every kind of number in every slot: it stays where it is of that kind, and goes where it is not.
+    /// Every kind of number in every slot: it stays where the kinds match, and is removed where they do not.
     #[test]
     fn a_number_stays_only_where_it_is_of_its_kind() {
         // The number is 7 throughout; the slot, the line with it and the line without it.

@@ -1,4 +1,4 @@
-//! The scene while a reading is carried out: boxes as they are by now, what was spoken of, and what came of it.
+//! The scene while a reading is carried out: the current boxes, the things named last, and the outcome so far.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use scene::{
     Shape,
 };
 
-/// An open scene, as far as words need it.
+/// The parts of an open scene that words need.
 #[derive(Clone, Copy, Debug)]
 pub struct OpenScene<'a> {
     /// Boxes by id, ego frame.
@@ -28,11 +28,11 @@ pub struct OpenScene<'a> {
     pub prompt: &'a str,
     /// Its light and air.
     pub conditions: Conditions,
-    /// What moves in the course of time; nothing does without it.
+    /// Moving objects; without it nothing moves.
     pub clip: Option<&'a Clip>,
-    /// The ego vehicle moves.
+    /// True if the ego vehicle moves.
     pub ego_moves: bool,
-    /// How long it lasts, s; 0 for one moment.
+    /// Length of the scene, s; 0 for one moment.
     pub length_s: f64,
 }
 
@@ -43,16 +43,16 @@ pub struct Candidate {
     pub id: BoxId,
     /// Its class.
     pub class: &'static str,
-    /// Where it stands, in words.
+    /// Its place, in words.
     pub place: String,
 }
 
-/// Things that fit where one was meant.
+/// A question: several things fit where one was meant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Question {
-    /// `3 parked cars: which?`
+    /// The question: `3 parked cars: which?`
     pub text: String,
-    /// Which act of the reading asks, and which thing in it (in the order of the line): an answer puts an id there.
+    /// The act of the reading that asks, and the thing in it (in the order of the line): an answer puts an id there.
     pub act: usize,
     /// The thing in notation.
     pub thing: String,
@@ -60,16 +60,16 @@ pub struct Question {
     pub candidates: Vec<Candidate>,
 }
 
-/// What an act did.
+/// Changes that an act made.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Done {
-    /// Boxes that it put in.
+    /// Boxes that it added.
     pub added: Vec<BoxId>,
-    /// Boxes that it took away, as they were.
+    /// Boxes that it removed, as they were.
     pub removed: Vec<SceneBox>,
     /// Boxes that it changed.
     pub changed: Vec<BoxId>,
-    /// Something of the scene other than boxes changed: conditions, a crossing.
+    /// True if it changed other parts of the scene: conditions, a crossing.
     pub scene: bool,
 }
 
@@ -80,16 +80,16 @@ impl Done {
     }
 }
 
-/// All that came of a reading.
+/// Result of a reading.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Outcome {
     /// Changes, in order.
     pub edits: Vec<Edit>,
-    /// What must be answered first; whoever applies the edits waits for that.
+    /// Questions that must be answered first; the edits are not applied before.
     pub questions: Vec<Question>,
-    /// What could not be done as it was said, by act.
+    /// Remarks on requests that could not be met as stated, by act.
     pub remarks: Vec<(usize, Remark)>,
-    /// What each act did.
+    /// Changes that each act made.
     pub done: Vec<Done>,
 }
 
@@ -105,22 +105,22 @@ pub struct Stage<'a> {
     pub(super) ego_moves: bool,
     pub(super) clip: Option<&'a Clip>,
     pub(super) length_s: f64,
-    /// What acts before let boxes do.
+    /// Manoeuvres that earlier acts gave to boxes.
     pub(super) does: BTreeMap<BoxId, Manoeuvre>,
     pub(super) seed: u64,
     pub(super) act: usize,
-    /// Boxes that some act of the text says to stay.
+    /// Boxes that some act of the text states to stay.
     pub(super) stays: std::collections::BTreeSet<BoxId>,
-    /// The act whose crossing was put in before the first one.
+    /// The act whose crossing was added before the first act.
     pub(super) crossing_of: Option<usize>,
-    /// The box that is moved: nothing else that its act names is it.
+    /// The box that is being moved: no other thing of its act can mean it.
     pub(super) skip: Option<BoxId>,
-    /// What was spoken of last, and the kind of it.
+    /// Boxes that were named last, and their noun.
     pub(super) last: Vec<BoxId>,
     pub(super) last_noun: Option<Noun>,
-    /// The group that those were told apart from: "the others" are the rest of it.
+    /// The group that those boxes were taken from: "the others" are the rest of it.
     pub(super) group: Vec<BoxId>,
-    /// Where something was taken away last.
+    /// Boxes that were removed last: their places are "there".
     pub(super) gone: Vec<SceneBox>,
     pub(super) out: Outcome,
 }
@@ -172,14 +172,14 @@ impl<'a> Stage<'a> {
         self.out.edits.push(Edit::RemoveBox { id });
     }
 
-    /// Puts a box in; its id is free.
+    /// Adds a box; its id is free.
     pub(super) fn add_box(&mut self, b: SceneBox) {
         self.boxes.insert(b.id, b);
         self.done().added.push(b.id);
         self.out.edits.push(b.into());
     }
 
-    /// Moves and turns a box; its speed stays and points where it heads.
+    /// Moves and turns a box; its speed stays and follows the new heading.
     pub(super) fn move_box(&mut self, id: BoxId, center_m: DVec3, yaw_rad: f64) {
         let Some(b) = self.boxes.get_mut(&id) else { return };
         let speed = b.velocity_mps.length();
@@ -195,7 +195,7 @@ impl<'a> Stage<'a> {
         });
     }
 
-    /// Puts a box in the place of that of the same id.
+    /// Replaces the box of the same id.
     pub(super) fn replace_box(&mut self, b: SceneBox) {
         self.boxes.insert(b.id, b);
         self.done().changed.push(b.id);
@@ -203,7 +203,7 @@ impl<'a> Stage<'a> {
         self.out.edits.push(b.into());
     }
 
-    /// Lets a box that moves in the course of time stand where it is; false if it does not move.
+    /// Stops a box that moves in the course of time; false if it does not move.
     pub(super) fn halt_box(&mut self, id: BoxId) -> bool {
         let track = self.clip.and_then(|clip| clip.tracks.get(&id));
         if track.is_none_or(|t| t.stands()) {
@@ -248,7 +248,7 @@ impl<'a> Stage<'a> {
         });
     }
 
-    /// Asks the road that the ego vehicle stands on for something; ego frame.
+    /// Adds a change of the road that the ego vehicle stands on; ego frame.
     pub(super) fn wish_of_road(&mut self, wish: RoadWish) {
         self.done().scene = true;
         let change = RoadChange::Wish {
@@ -279,7 +279,7 @@ impl<'a> Stage<'a> {
         BoxId(last.copied().max(gone).map_or(1, |id| id.0.saturating_add(1)))
     }
 
-    /// The box, or the same a few metres along its course, where it hits nothing.
+    /// The box, or the box moved a few metres along its course, where it hits nothing.
     pub(super) fn clear_of_others(&self, b: SceneBox) -> Option<SceneBox> {
         let ego = place::holds::ego();
         let hits = |n: &SceneBox| {
@@ -295,7 +295,7 @@ impl<'a> Stage<'a> {
             .find(|tried| !hits(tried) && tried.center_m.truncate().abs().max_element() < 38.0)
     }
 
-    /// Where a box stands, in words, for a question: `red taxi, 12 m ahead, 3 m left, parked`.
+    /// A box with its place in words, for a question: `red taxi, 12 m ahead, 3 m left, parked`.
     pub(super) fn candidate(&self, b: &SceneBox) -> Candidate {
         let (x, y) = (b.center_m.x, b.center_m.y);
         let along = if x >= 0.0 { "ahead" } else { "behind" };
@@ -320,7 +320,7 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// True if a box may be said to move, to wait or to be parked.
+    /// True if a box counts as moving, waiting or parked.
     pub(super) fn does(&self, b: &SceneBox, state: ObjectState) -> bool {
         let stands = b.velocity_mps.length() < 0.5;
         let p = b.center_m.truncate();
@@ -338,12 +338,12 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// The lane or strip that a box is said to be in.
+    /// The lane or strip that a box counts to.
     pub(super) fn role_of(&self, id: BoxId) -> Option<LaneRole> {
         role_of(&self.map, self.boxes.get(&id)?)
     }
 
-    /// How fast something of a class goes if it goes, m/s.
+    /// Speed at which objects of a class move, m/s.
     pub(super) fn pace(class: Class) -> f64 {
         match class {
             Class::Pedestrian => 1.4,

@@ -1,4 +1,4 @@
-//! What was heard, what is missing of it, and what is answered.
+//! Readings of texts, the words missing from them, and the answers.
 
 use super::account::{Why, missing};
 use super::answer::answer;
@@ -62,7 +62,7 @@ fn content_words_are_in_the_reading_or_named() {
     );
 }
 
-/// A pronoun stands for what was named, and not for what was not.
+/// A pronoun counts for the things that were named, and for no others.
 #[test]
 fn a_pronoun_silences_no_noun() {
     let not = |words: &[&str]| -> Vec<(String, Why)> {
@@ -87,7 +87,7 @@ fn a_pronoun_silences_no_noun() {
             "move the thing to ( next_to it )",
             &["taxi", "truck"],
         ),
-        // What is meant by them is there.
+        // The things that these stand for are in the reading.
         ("remove the cars, the bus, everything", "remove all thing", &[]),
         ("the taxi: paint it red", "set the taxi red", &[]),
         (
@@ -147,7 +147,8 @@ fn answers_are_sentences() {
     );
 }
 
-/// Random texts of words, numbers and signs: no panic, and what comes of them is sound. `SCENELOOM_TEXTS` says how many.
+/// Random texts of words, numbers and signs: there is no panic, and the results are sound. `SCENELOOM_TEXTS` sets their
+/// number.
 #[test]
 fn random_and_hostile_texts_end() {
     use super::carry_out::carry_out;
@@ -281,7 +282,7 @@ fn plain_sentences_are_heard_as_the_grammar_reads_them() {
     let heard = hear("Remmove the bus", Mode::Edit).expect("weights");
     assert_eq!(super::notation::write(&heard.reading), "remove the bus");
     assert_eq!(heard.mended[0].to, "remove");
-    // (English words are no slips)
+    // (English words are not corrected)
     let heard = hear("after 3 seconds a deer runs into the wall", Mode::Edit).expect("weights");
     assert!(heard.mended.is_empty(), "{:?}", heard.mended);
     let heard = hear("a glorpify, two parked cars", Mode::Prompt).expect("weights");
@@ -298,7 +299,7 @@ fn words_that_a_language_model_knows_are_not_named() {
     let two = parse("add 2 truck and 1 red bus").expect("a reading");
     let heard = against(text, two, None, Mode::Prompt).expect("the readers");
     assert!(heard.missing.is_empty(), "{:?}", heard.missing);
-    // (what the program itself knows is still looked for, and an empty answer excuses nothing)
+    // (words that the program knows must still be in the reading, even if the model leaves them out)
     let half = parse("add 2 truck").expect("a reading");
     let heard = against(text, half, None, Mode::Prompt).expect("the readers");
     assert!(!heard.missing.is_empty(), "{:?}", heard.missing);

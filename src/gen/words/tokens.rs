@@ -1,4 +1,4 @@
-//! A text to tokens: words in lower case, numbers and lengths read, typing errors mended, senses looked up. Twin of
+//! A text to tokens: words in lower case, numbers and lengths read, typing errors corrected, senses looked up. Twin of
 //! `training/words/lexicon.py`.
 
 use std::collections::HashMap;
@@ -7,33 +7,33 @@ pub use place::beside_road::Span;
 
 use super::lexicon::{LONGEST_PHRASE, Lexicon, Sense, is_english};
 
-/// Longest text that is read, bytes; what lies beyond is named as not understood.
+/// Longest text that is read, bytes; the text beyond is reported as not understood.
 pub const LONGEST: usize = 20_000;
 
 /// A word, a number, a length or a mark.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Token {
-    /// In lower case, mended; `<n>` for digits, `<m>` for a length.
+    /// The word in lower case, corrected; `<n>` for digits, `<m>` for a length.
     pub text: String,
     /// Bytes of the text.
     pub span: Span,
-    /// Of a number, or of a length in metres.
+    /// Value of a number, or of a length in metres.
     pub value: Option<f64>,
-    /// The number as it was typed, whatever its unit.
+    /// The number as it was typed, without regard to its unit.
     pub raw: Option<f64>,
-    /// A length.
+    /// True for a length.
     pub is_length: bool,
-    /// The value is a speed, km/h.
+    /// True if the value is a speed, km/h.
     pub is_speed: bool,
-    /// What the lexicon says of the phrase that it belongs to.
+    /// Senses of the phrase that it belongs to, from the lexicon.
     pub senses: Vec<Sense>,
-    /// The word as it was typed, where a slip was mended.
+    /// The word as it was typed, where a typing error was corrected.
     pub typed: Option<String>,
-    /// Kinds of things whose names one slip of the keys makes of the word.
+    /// Kinds of things whose names differ from the word by one typing error.
     pub slip_of: Vec<&'static str>,
 }
 
-/// Tokens of a text in which slips are mended: as many as are read.
+/// Number of tokens at the beginning of a text in which typing errors are corrected: about as many as are read.
 const MOST_MENDED: usize = 700;
 
 const ONES: [&str; 20] = [
@@ -128,7 +128,7 @@ fn pieces(text: &str) -> Vec<(String, Span)> {
     out
 }
 
-/// Words and marks: `'s` apart, hyphens between words gone.
+/// Words and marks: `'s` separated, hyphens between words removed.
 fn words(text: &str) -> Vec<(String, Span)> {
     let mut out: Vec<(String, Span)> = Vec::new();
     for (piece, span) in pieces(text) {
@@ -163,14 +163,14 @@ fn words(text: &str) -> Vec<(String, Span)> {
     out
 }
 
-/// Mends words that are in no list and no English words: the most frequent word that one slip makes of it.
+/// Corrects words that are in no list and are not English: to the most frequent word that differs by one typing error.
 pub struct Speller {
     rank: HashMap<String, usize>,
     by_length: HashMap<usize, Vec<String>>,
 }
 
 impl Speller {
-    /// From words by frequency, the most frequent first; those of the lexicon follow.
+    /// A speller from words by frequency, the most frequent first; those of the lexicon follow.
     pub fn new(common: &[String]) -> Self {
         let rank: HashMap<String, usize> = common.iter().cloned().zip(0..).collect();
         let mut by_length: HashMap<usize, Vec<String>> = HashMap::new();
@@ -183,7 +183,7 @@ impl Speller {
         Self { rank, by_length }
     }
 
-    /// True if a word is in a list, or too short to be mended.
+    /// True if a word is in a list, or too short to be corrected.
     pub fn knows(&self, w: &str) -> bool {
         let lexicon = Lexicon::bundled();
         self.rank.contains_key(w)
@@ -212,7 +212,7 @@ impl Speller {
         lists
             .filter_map(|n| self.by_length.get(&n))
             .flatten()
-            // (of three letters two may be swapped, no more)
+            // (in a word of three letters, only a swap of two counts)
             .filter(|c| is_one_slip(w, c) && (n > 3 || sorted(c) == sorted(w)))
             .min_by_key(|c| {
                 let rank = self.rank.get(c.as_str()).copied().unwrap_or(self.rank.len());
@@ -317,11 +317,12 @@ pub fn tokens(text: &str, speller: Option<&Speller>) -> Vec<Token> {
     out
 }
 
-/// Finds what words may be slips of, each word once: a text may hold the same one a thousand times.
+/// Finds the names that words may be typing errors of. Each word is looked up once: a text may hold the same one a
+/// thousand times.
 fn find_slips(tokens: &mut [Token], lexicon: &Lexicon) {
     let mut known: HashMap<String, Vec<&'static str>> = HashMap::new();
     for t in tokens.iter_mut().take(MOST_MENDED) {
-        // (a number is a slip of nothing, and an English word is meant)
+        // (a number is not a typing error, and an English word is meant as it is)
         let word = t.text.chars().count() > 2 && t.text.chars().all(char::is_alphabetic);
         if !word || is_english(&t.text) {
             continue;

@@ -1,4 +1,4 @@
-//! The ground of a world: its class per column, its height at every point, and where a ray meets it.
+//! The ground of a world: its class per column, its height at every point, and its intersection with rays.
 
 use glam::{DVec2, DVec3};
 
@@ -8,7 +8,7 @@ use scene::{BevLayer, BevLayout, Class, Relief, Window};
 
 /// Height of a kerb above the road, m.
 const KERB_M: f64 = 0.24;
-/// Nothing on the ground rises above the relief by more than this, m.
+/// Greatest height of the ground above the relief, m.
 const MOST_ABOVE_RELIEF_M: f64 = 0.35;
 /// A ray over uneven ground is tested at steps of this length on the ground, m.
 const STEP_M: f64 = 0.4;
@@ -70,7 +70,7 @@ impl Ground {
         self.relief.height_m(p) + f64::from(self.above_m[x * Window::NY + y])
     }
 
-    /// Where a ray meets ground without relief; `None` if there is relief.
+    /// The hit of a ray on ground without relief; `None` if there is relief.
     pub(super) fn cast_flat(&self, origin: DVec3, dir: DVec3) -> Option<Hit> {
         if dir.z >= -1e-6 || !self.relief.is_flat() {
             return None;
@@ -84,7 +84,7 @@ impl Ground {
         self.hit(origin + dir * t, t)
     }
 
-    /// Where a ray meets ground with relief between two distances inside one bin; `None` if there is no relief.
+    /// The hit of a ray on ground with relief, between two distances inside one bin; `None` if there is no relief.
     pub(super) fn cast_in_bin(
         &self,
         bin: usize,
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
     use scene::Extent;
 
-    /// On a slope the ray must end on the ground, and where a fine march says.
+    /// On a slope the ray must end on the ground, at the distance that a fine march finds.
     #[test]
     fn rays_meet_uneven_ground_where_it_is() {
         let mut layout = BevLayout::default();

@@ -23,20 +23,20 @@ use scene::{Background, BevLayout, BoxId, Class, SceneBox, ThingId};
 pub struct Hit {
     /// Distance along the ray, m.
     pub range_m: f64,
-    /// What was hit.
+    /// Class of the surface that was hit.
     pub class: Class,
-    /// Index of the solid that was hit; `None` is the ground.
+    /// Index of the solid that was hit; `None` for the ground.
     pub solid: Option<u32>,
 }
 
-/// What a point of a surface is made of, as far as the world knows.
+/// Properties of a point of a surface, as far as the world knows them.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
     /// Outward unit normal.
     pub normal: DVec3,
-    /// Names the thing it belongs to: solids of one object have the same, another thing has another. 0 is the ground.
+    /// Number of the thing it belongs to: the same for all solids of one object. 0 is the ground.
     pub instance: u32,
-    /// Which of the object's solids, in the order of `objects.rs`; 0 for all others.
+    /// Number of the solid within the object, in the order of `objects.rs`; 0 for all others.
     pub part: u8,
 }
 
@@ -71,7 +71,7 @@ impl Sphere {
 
 const BIN_M: f64 = 4.0;
 const BINS: usize = 20;
-/// Set in the instance numbers of background things, so that a bush never has the number of a car.
+/// Bit set in the instance numbers of background things, so that a bush never has the number of a car.
 const THING_BIT: u32 = 1 << 31;
 
 /// A driving world of 80 x 80 m in the ego frame. The ego vehicle stands at the origin, the ground there is at z = 0.
@@ -80,7 +80,7 @@ pub struct World {
     pub layout: BevLayout,
     /// Objects.
     pub boxes: BTreeMap<BoxId, SceneBox>,
-    /// What stands beside the road.
+    /// Scenery.
     pub background: Background,
     solids: Vec<Solid>,
     spheres: Vec<Sphere>,   // around each solid
@@ -154,7 +154,7 @@ impl World {
         Self::new(layout, boxes, seed)
     }
 
-    /// The same on level ground.
+    /// The world of `seed` on a varied template with ordinary traffic, on level ground.
     pub fn random_level(seed: u64) -> Self {
         let layout = template::any_layout(seed);
         let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);

@@ -6,8 +6,7 @@ use scene::draw::{Draw, hash};
 use scene::solid::Solid;
 use scene::{Class, SceneBox};
 
-/// Builds parts in box coordinates: fractions of length and width around the middle, of height
-/// from the ground.
+/// Builds parts in box coordinates: fractions of length and width from the middle, and of height from the ground.
 struct Parts<'a> {
     b: &'a SceneBox,
     out: &'a mut Vec<Solid>,

@@ -39,10 +39,10 @@ impl Street {
     }
 }
 
-/// How far streets reach from the ego, m.
+/// Reach of streets from the ego, m.
 const FAR_M: f64 = 75.0;
 
-/// What the streets of a layout have in common.
+/// Measures that the streets of a layout share.
 struct Usual {
     lanes: usize, // each way
     lane_m: f64,
@@ -64,7 +64,7 @@ impl Usual {
     }
 }
 
-/// Everything that is drawn before it becomes cells.
+/// Streets and areas of a layout before they become cells.
 #[derive(Default)]
 struct Plan {
     streets: Vec<Street>,
@@ -104,7 +104,7 @@ pub fn layout(name: &str, seed: u64) -> Option<BevLayout> {
     layout_with_room(name, seed, 0.0)
 }
 
-/// The same with at least `room_m` of the ego's street before a roundabout begins.
+/// The layout of [`layout`] with at least `room_m` of the ego's street before a roundabout begins.
 pub fn layout_with_room(name: &str, seed: u64, room_m: f64) -> Option<BevLayout> {
     let mut draw = Draw::new(seed, name);
     let mut plan = Plan::default();
@@ -360,7 +360,7 @@ fn crossing(plan: &mut Plan, s: &Street, at: f64, width: f64) {
     plan.crossings.push(vec![l, r, r + d * width, l + d * width]);
 }
 
-/// Rounds the corners, clears the lane lines and puts crossings on the arms of a junction.
+/// Adds a junction: rounds its corners, clears the lane lines and puts crossings on its arms.
 fn junction(plan: &mut Plan, draw: &mut Draw, center: DVec2, both: bool, side: f64, across: DVec2) {
     let widest = plan
         .streets
@@ -447,7 +447,7 @@ impl Plan {
         for lot in &self.lots {
             paint(BevLayer::CarparkArea, &|f| polygon_cells(Extent::WINDOW, lot, f));
         }
-        // One surface per cell: road over car park over sidewalk; islands are none of them.
+        // One surface per cell: road over car park over sidewalk; islands have no surface.
         for x in 0..Window::NX {
             for y in 0..Window::NY {
                 let p = Window::center(x, y, 0).truncate();

@@ -1,4 +1,4 @@
-//! The lie of the land around a road: grades, crests, dips, banks and cuttings, drawn from a seed.
+//! Terrain around a road: grades, crests, dips, banks and cuttings, drawn from a seed.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -47,7 +47,7 @@ impl Terrain {
         Self::Viaduct,
     ];
 
-    /// One at random: two fifths of the places are flat.
+    /// A random terrain: two fifths of the places are flat.
     pub fn drawn(seed: u64) -> Self {
         let mut draw = Draw::new(seed, "terrain");
         Self::ALL[draw.weighted(&[0.4, 0.2, 0.07, 0.07, 0.09, 0.05, 0.05, 0.04, 0.03])]
@@ -76,7 +76,7 @@ impl Terrain {
         } else {
             draw.range(0.0, 0.3)
         };
-        // Beside the road: how much higher, from where, over which width.
+        // Beside the road: rise, distance at which it starts, and width over which it happens.
         let (bank, from, width) = match self {
             Self::Embankment => (-draw.range(0.6, 1.6), draw.range(1.0, 2.5), draw.range(2.0, 5.0)),
             Self::Cutting => (draw.range(1.0, 3.2), draw.range(1.0, 2.5), draw.range(3.0, 7.0)),
@@ -126,7 +126,7 @@ impl Terrain {
 /// Length of a flight of stairs seen from above, m: steps of 0.3 m, lower than a voxel each.
 const STAIRS_M: f64 = 3.6;
 
-/// Where flights of stairs lead up a terrace: stripes across the road, so many metres apart.
+/// Places of the flights of stairs up a terrace: stripes across the road, so many metres apart.
 struct Stairs<'a> {
     first_m: f64,
     apart_m: f64,
@@ -148,7 +148,7 @@ impl<'a> Stairs<'a> {
             |x: usize, y: usize| self.to_paved[x.min(Window::NX - 1) * Window::NY + y.min(Window::NY - 1)];
         let along_x = (at(x + 1, y) - at(x.saturating_sub(1), y)).abs();
         let along_y = (at(x, y + 1) - at(x, y.saturating_sub(1))).abs();
-        // Across the way up.
+        // Across the direction of the climb.
         let along = if along_y > along_x { p.x } else { p.y };
         (along - self.first_m).rem_euclid(self.apart_m) < 2.2
     }

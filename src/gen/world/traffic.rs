@@ -9,10 +9,10 @@ use scene::draw::Draw;
 use scene::raster::box_cells;
 use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Extent, PolylineKind, SceneBox, Window};
 
-/// Nothing stands nearer than this to the rim of the map, m.
+/// Least distance of boxes to the rim of the map, m.
 const RIM_M: f64 = 0.5;
 
-/// How much of everything, 1 = as on an ordinary city street.
+/// Amount of each kind of traffic, 1 = as on an ordinary city street.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrafficSpec {
     /// Vehicles on lanes and in parking places.
@@ -30,7 +30,7 @@ impl TrafficSpec {
         people: 1.0,
         works: 1.0,
     };
-    /// Nothing at all.
+    /// No traffic.
     pub const EMPTY: Self = Self {
         vehicles: 0.0,
         people: 0.0,
@@ -107,7 +107,7 @@ impl Placer<'_> {
         };
         let extent = self.layout.extent();
         let inside = b.footprint().iter().all(|c| self.on_map(*c, RIM_M));
-        // Where the ground leaves the grid, what stands on it would not be seen.
+        // Boxes on ground that leaves the grid would not be visible in it.
         let (low, high) = (b.center_m.z - size_m.z / 2.0, b.center_m.z + size_m.z / 2.0);
         if !inside || low < Extent::BOTTOM_M || high > Extent::TOP_M {
             return false;
@@ -287,10 +287,10 @@ impl Placer<'_> {
         if cells.is_empty() {
             return;
         }
-        // As many on each 80 m of a long road.
+        // Equal numbers per 80 m of a long road.
         let windows = (self.layout.extent().columns() as f64 / Window::COLUMNS as f64).max(1.0);
         let busy = (self.draw.unit().powi(2) * 40.0 * amount * windows) as usize + 1;
-        // Now and then a crowd: an event, a stop, a school.
+        // Sometimes a crowd: an event, a stop, a school.
         let crowd = if self.draw.chance(0.12 * amount) {
             12 + self.draw.below(30)
         } else {
@@ -315,7 +315,7 @@ impl Placer<'_> {
         }
     }
 
-    /// True if a point lies on the map and farther than this from its rim.
+    /// True if a point lies on the map and is farther than `rim_m` from its rim.
     fn on_map(&self, p: DVec2, rim_m: f64) -> bool {
         let extent = self.layout.extent();
         let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());

@@ -1,4 +1,4 @@
-//! Buildings: an outline raised to a height, with a roof and what hangs on the facades.
+//! Buildings: an outline extruded to a height, with a roof and attachments on the facades.
 
 use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
@@ -13,7 +13,7 @@ use crate::solid::Solid;
 pub const STOREY_M: f64 = 3.0;
 /// Foundations reach this far below the lowest ground at the outline, m.
 const FOUNDATION_M: f64 = 0.4;
-/// What hangs on a facade stands out by at most this, m.
+/// Largest distance by which attachments of a facade stand out, m.
 const OVERHANG_M: f64 = 1.4;
 
 /// Shape of a roof.
@@ -29,7 +29,7 @@ pub enum Roof {
     Hipped,
 }
 
-/// What a facade looks like.
+/// Look of a facade.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Facade {
@@ -164,7 +164,7 @@ impl Building {
         ));
     }
 
-    /// What hangs on the wall from `a` to `b`, the outside on its right.
+    /// Appends the attachments of the wall from `a` to `b`; the outside is on its right.
     fn facade_solids(&self, a: DVec2, b: DVec2, floor: f64, draw: &mut Draw, out: &mut Vec<Solid>) {
         let (along, length) = ((b - a).normalize_or(DVec2::X), a.distance(b));
         let outward = -along.perp();

@@ -11,7 +11,8 @@ use crate::{BevLayout, Class, Extent};
 pub type Columns = BTreeMap<[usize; 2], [u8; Extent::NZ]>;
 
 impl Thing {
-    /// Its voxels in the Occ3D convention, from the bin of the ground upward, on the relief of a layout of the same frame.
+    /// Its voxels in the Occ3D convention, from the bin of the ground upward, on the relief of a layout of the same
+    /// frame.
     pub fn columns(&self, layout: &BevLayout) -> Columns {
         let mut solids = Vec::new();
         self.solids(&|p| layout.relief.height_m(p), &mut solids);

@@ -14,7 +14,7 @@ const PIECE_M: f64 = 2.0;
 /// Pieces of one line never exceed this number.
 const MAX_PIECES: usize = 20_000;
 
-/// What runs along a line.
+/// Kind of a thing that runs along a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LineKind {
@@ -40,7 +40,7 @@ impl LineKind {
         Self::RetainingWall,
     ];
 
-    /// In words.
+    /// Its name in words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Hedge => "hedge",
@@ -75,7 +75,7 @@ impl LineKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Line {
-    /// What it is.
+    /// Kind.
     pub kind: LineKind,
     /// Vertices on the ground, world frame, m; at least two.
     #[schemars(with = "Vec<[f64; 2]>")]

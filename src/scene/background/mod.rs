@@ -1,5 +1,5 @@
-//! What stands beside roads, as things: buildings, trees, shrubs, hedges, walls, fences, poles, signs, bridges.
-//! Plain data in metres of the clip's world frame; heights are above the ground where the thing stands.
+//! Things beside the road: buildings, trees, shrubs, hedges, walls, fences, poles, signs, bridges. Plain data in metres
+//! of the clip's world frame; heights are above the ground where the thing stands.
 
 mod bridge;
 mod building;
@@ -33,7 +33,7 @@ pub use tree::{Tree, TreeKind};
 #[serde(transparent)]
 pub struct ThingId(pub u32);
 
-/// What a thing is and where. As JSON: `{"tree": {"position_m": [8, -6], "height_m": 7, …}}`.
+/// Kind and place of a thing. As JSON: `{"tree": {"position_m": [8, -6], "height_m": 7, …}}`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Form {
@@ -55,14 +55,15 @@ pub enum Form {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Thing {
-    /// Its name.
+    /// Its id.
     pub id: ThingId,
-    /// What and where.
+    /// Kind and place.
     pub form: Form,
-    /// Which of many looks its details take (boughs, balconies); moving a thing keeps them.
+    /// Number that selects one of many variants of its details (boughs, balconies); moving a thing keeps it.
     #[serde(default)]
     pub look: u32,
-    /// Put or changed by hand, by words or by a file, not drawn by a seed: when scenery is drawn anew, it stays.
+    /// True if it was added or changed by hand, by words or by a file, rather than drawn by a seed: it stays when
+    /// scenery is drawn anew.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub placed: bool,
 }
@@ -71,7 +72,7 @@ pub struct Thing {
 pub type GroundM<'a> = &'a dyn Fn(DVec2) -> f64;
 
 impl Form {
-    /// What it is, in words.
+    /// Its name in words.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Building(_) => "building",
@@ -93,7 +94,7 @@ impl Form {
         }
     }
 
-    /// True if it says what kind of place it stands in; see [`Background::describes_place`].
+    /// True if it shows what kind of place it stands in; see [`Background::describes_place`].
     pub fn describes_place(&self) -> bool {
         match self {
             Self::Building(_) | Self::Tree(_) | Self::Shrubs(_) => true,
@@ -102,7 +103,7 @@ impl Form {
         }
     }
 
-    /// What is wrong with it, in one line; `None` if it is sound.
+    /// The first problem with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         problem::problem(self)
     }
@@ -208,7 +209,7 @@ pub struct Background {
 }
 
 impl Background {
-    /// More things than this are refused.
+    /// Most things of a scene; more are refused.
     pub const MAX_THINGS: usize = 20_000;
 
     /// Things in the order of their ids.
@@ -226,12 +227,12 @@ impl Background {
         self.things.len()
     }
 
-    /// True without any thing.
+    /// True if there are no things.
     pub fn is_empty(&self) -> bool {
         self.things.is_empty()
     }
 
-    /// The lowest id above all in use, or a gap if there is none above.
+    /// The id above all in use; a gap if the largest id is in use.
     pub fn next_id(&self) -> ThingId {
         let next = self
             .things
@@ -242,17 +243,17 @@ impl Background {
         ThingId(next.or_else(gap).unwrap_or(u32::MAX))
     }
 
-    /// Puts a thing in, in place of one of the same id, which it returns.
+    /// Inserts a thing. Returns the one of the same id that it replaces.
     pub fn insert(&mut self, thing: Thing) -> Option<Thing> {
         self.things.insert(thing.id, thing)
     }
 
-    /// Adds a form that a seed drew under the next id, which is its look too.
+    /// Adds a form that a seed drew, under the next id, which also becomes its look.
     pub fn add(&mut self, form: Form) -> ThingId {
         self.add_as(form, false)
     }
 
-    /// Adds a form under the next id, which is its look too; see [`Thing::placed`].
+    /// Adds a form under the next id, which also becomes its look; see [`Thing::placed`].
     pub fn add_as(&mut self, form: Form, placed: bool) -> ThingId {
         let id = self.next_id();
         self.insert(Thing {
@@ -264,13 +265,13 @@ impl Background {
         id
     }
 
-    /// True if it says what kind of place it is: buildings, plants or walls stand there. Signs, lamps, benches and bridges
-    /// alone leave that open.
+    /// True if it shows what kind of place it is: there are buildings, plants or walls. Signs, lamps, benches and
+    /// bridges alone do not show it.
     pub fn describes_place(&self) -> bool {
         self.things.values().any(|t| t.form.describes_place())
     }
 
-    /// Takes a thing out.
+    /// Removes a thing.
     pub fn remove(&mut self, id: ThingId) -> Option<Thing> {
         self.things.remove(&id)
     }
@@ -289,7 +290,7 @@ impl Background {
         in_extent(extent, self.iter())
     }
 
-    /// What is wrong with it, in one line; `None` if it is sound.
+    /// The first problem with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         if self.len() > Self::MAX_THINGS {
             return Some(format!(
@@ -304,7 +305,7 @@ impl Background {
     }
 }
 
-/// Those of some things that reach into a map.
+/// The things that reach into a map.
 pub fn in_extent<'a>(extent: Extent, things: impl IntoIterator<Item = &'a Thing>) -> Vec<Thing> {
     let (from, to) = (extent.min_m().truncate(), extent.max_m().truncate());
     let reaches_in = |t: &&Thing| {

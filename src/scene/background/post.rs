@@ -9,7 +9,7 @@ use crate::Class;
 use crate::draw::{Draw, hash};
 use crate::solid::Solid;
 
-/// What stands there.
+/// Kind of a small upright thing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PostKind {
@@ -47,7 +47,7 @@ impl PostKind {
         Self::Stairs,
     ];
 
-    /// In words.
+    /// Its name in words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pole => "pole",
@@ -102,7 +102,7 @@ impl PostKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Post {
-    /// What it is.
+    /// Kind.
     pub kind: PostKind,
     /// Its place on the ground, world frame, m.
     #[schemars(with = "[f64; 2]")]
@@ -115,7 +115,7 @@ pub struct Post {
 }
 
 impl Post {
-    /// One of the usual height of its kind.
+    /// A thing of the usual height of its kind.
     pub fn typical(kind: PostKind, position_m: DVec2, yaw_rad: f64) -> Self {
         Self {
             kind,

@@ -1,4 +1,4 @@
-//! What is wrong with a thing of the background, in one line.
+//! Problems of a thing of the background, in one line.
 
 use glam::DVec2;
 
@@ -124,7 +124,7 @@ fn outline(outline_m: &[DVec2]) -> Option<String> {
 }
 
 impl Thing {
-    /// What is wrong with it, in one line; `None` if it is sound.
+    /// The first problem with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         self.form.problem()
     }

@@ -1,4 +1,4 @@
-//! Tests of the things: each kind fills what it says, moves as a whole, and bad ones are refused in one line.
+//! Tests of the things: each kind fills its voxels, moves as a whole, and bad ones are refused in one line.
 
 use std::collections::BTreeSet;
 

@@ -1,14 +1,14 @@
-//! A motion as the few keyframes that tell it.
+//! Fits few keyframes to a motion.
 
 use super::motion::{Key, at_keys};
 
-/// A fitted motion lies within this of what it was fitted to, m.
+/// Largest distance between a fitted motion and the poses that it was fitted to, m.
 const OFF_M: f64 = 0.12;
-/// And within this heading, rad.
+/// Largest difference in heading between them, rad.
 const OFF_RAD: f64 = 0.02;
 
-/// Those of `poses` (in order of time) as keyframes from which the others follow, the first and the last among them: keys
-/// are added where it is farthest off, until it is nowhere.
+/// The keyframes among `poses` (in order of time) that reproduce the others within the limits. The first and the last
+/// pose are among them; keys are added where the error is largest, until no pose is out of bounds.
 pub(super) fn fitted(poses: &[Key]) -> Vec<Key> {
     let Some(last) = poses.len().checked_sub(1) else {
         return Vec::new();
@@ -26,7 +26,8 @@ pub(super) fn fitted(poses: &[Key]) -> Vec<Key> {
         if worst.is_empty() {
             return keys;
         }
-        // A key changes the slopes at its neighbours: gaps that are nearly right may become so by themselves.
+        // A key changes the slopes at its neighbours, so gaps with a small error may come within bounds without a key
+        // of their own.
         chosen.extend(
             worst
                 .iter()
@@ -37,7 +38,7 @@ pub(super) fn fitted(poses: &[Key]) -> Vec<Key> {
     }
 }
 
-/// How far a pose is from what the keys say, 1 where it is as far as it may be.
+/// Distance of a pose from the motion of the keys; 1 is the largest that is allowed.
 fn off(keys: &[Key], pose: &Key) -> f64 {
     let Some(found) = at_keys(keys, pose.time_s) else {
         return f64::INFINITY;

@@ -1,5 +1,5 @@
-//! The way back from a frame to the scene: what was changed in the view of a moment is a change of the canvas, or of the
-//! object that moves there. `fold(view) = scene` for a view that nobody changed.
+//! The way back from a frame to the scene: a change in the view of a moment becomes a change of the canvas, or of the
+//! object that moves there. `fold(view) = scene` for a view that was not changed.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
@@ -12,10 +12,10 @@ use crate::grid::NOT_PAINTED;
 use crate::raster::box_cells;
 use crate::{BoxId, Frame, SceneBox, SourceFrame, VoxelGrid, VoxelPaint};
 
-/// How far from a box a painted voxel is still a part of the object, m: one on its roof.
+/// Largest distance from a box at which a painted voxel still belongs to the object, m: one on its roof.
 const ONTO_M: f64 = 0.6;
 
-/// What a change of a moving object's place at one moment means for the others.
+/// Effect that moving an object at one moment has on its other moments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Scope {
@@ -33,7 +33,7 @@ impl Scope {
     pub const ALL: [Scope; 3] = [Scope::Moment, Scope::FromHereOn, Scope::WholeTrack];
 }
 
-/// A frame as it was made of the canvas, and where the tracks were in it.
+/// A frame as it was made from the canvas, with the places of the tracks in it.
 pub struct Seen<'a> {
     /// The frame.
     pub frame: &'a Frame,
@@ -43,7 +43,7 @@ pub struct Seen<'a> {
     pub time_s: f64,
 }
 
-/// The canvas and the clip of which `after` is the view, where `seen` was their view before.
+/// The canvas and the clip whose view is `after`, if their view was `seen` before.
 pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: Scope) -> (Frame, Clip) {
     let before = seen.frame;
     let moving: BTreeMap<BoxId, SceneBox> = seen.boxes.iter().map(|b| (b.id, *b)).collect();
@@ -71,7 +71,7 @@ pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: 
     owners.put_back(&mut next.occupancy, &changes, after, &mut touched);
     for [x, y] in differing(&before.painted, &after.painted) {
         for (z, label) in after.painted.column(x, y).iter().enumerate() {
-            // What is painted on an object is a part of it.
+            // Voxels painted on an object are a part of it.
             if *label == NOT_PAINTED || owners.owner(after, [x, y, z]).is_none() {
                 next.painted.set(x, y, z, *label);
             }
@@ -101,7 +101,7 @@ pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: 
             continue;
         };
         let Some(now) = after.boxes.get(id) else {
-            // A thing that is taken out for a moment alone would come back out of nowhere: it leaves for good.
+            // An object removed at one moment alone would reappear out of nowhere: it leaves for good.
             let was_there = track.there_s[0].is_none_or(|from| from < seen.time_s) && seen.time_s > 0.0;
             match scope != Scope::WholeTrack && was_there {
                 true => track.there_s[1] = Some(seen.time_s),
@@ -124,7 +124,8 @@ pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: 
                 lift_own_shape(track, lift_m);
             }
         }
-        // What was only moved keeps its voxels, whatever rough ones the move put there; its own it keeps at any height.
+        // An object that was only moved keeps its voxels and ignores the rough ones that the move put there; a shape of
+        // its own it keeps at any height.
         let keeps = track.own_shape || same_shape(was, now);
         if !keeps || touched.contains(id) && !moved {
             track.voxels = ObjectVoxels::cut(&after.occupancy, now, |cell, label| {
@@ -141,7 +142,8 @@ pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: 
     (next, clip_after)
 }
 
-/// Makes a shape of its own again, so much higher above the ground, m; what no longer fits into a grid is cut off.
+/// Makes a shape of its own again, `lift_m` metres higher above the ground; voxels that no longer fit into a grid are
+/// cut off.
 fn lift_own_shape(track: &mut Track, lift_m: f64) {
     let cells = track.voxels.cells(&track.made);
     let mut made = track.made;
@@ -151,7 +153,7 @@ fn lift_own_shape(track: &mut Track, lift_m: f64) {
     }
 }
 
-/// Takes over what was changed of a track's box.
+/// Applies the changes of a track's box to the track.
 fn follow(track: &mut Track, clip: &Clip, (was, now): (&SceneBox, &SceneBox), time_s: f64, scope: Scope) {
     track.made.class = now.class;
     track.made.label = now.label;

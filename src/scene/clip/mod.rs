@@ -1,5 +1,5 @@
-//! What moves in a scene, and when: tracks of objects and of the ego vehicle. What stands still is the scene's canvas; a
-//! frame is the canvas with the moving objects where they are at a moment.
+//! Motion in a scene: tracks of objects and of the ego vehicle over time. The parts that stand still are the scene's
+//! canvas; a frame is the canvas with the moving objects at their places of a moment.
 
 mod fit;
 mod fold;
@@ -27,7 +27,8 @@ pub struct Track {
     pub made: SceneBox,
     /// How it moves.
     pub motion: Motion,
-    /// When it is there, s: from the first up to, not at, the second. None means from the beginning, to the end.
+    /// Time span in which it is there, s: from the first up to, but not at, the second. None means from the beginning,
+    /// or to the end.
     pub there_s: [Option<f64>; 2],
     /// Its voxels at the pose of `made`.
     pub voxels: Arc<ObjectVoxels>,
@@ -43,12 +44,12 @@ impl Track {
         self.there_s[0].is_none_or(|from| time_s >= from) && self.there_s[1].is_none_or(|to| time_s < to)
     }
 
-    /// True if it is where it is, all the time.
+    /// True if it stands at one place all the time.
     pub fn stands(&self) -> bool {
         matches!(&self.motion, Motion::Keys(keys) if keys.len() <= 1) && self.there_s == [None; 2]
     }
 
-    /// What is wrong with it, in one line.
+    /// The first problem with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         let named = |problem: String| format!("track {}: {problem}", self.made.id.0);
         if let Some(problem) = self.made.problem() {
@@ -68,7 +69,7 @@ impl Track {
     }
 }
 
-/// What moves, and how long the scene lasts. A scene that stands still lasts 0 s and has no tracks.
+/// Moving objects, and the length of the scene. A scene that stands still lasts 0 s and has no tracks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     /// How long the scene lasts, s.
@@ -77,7 +78,7 @@ pub struct Clip {
     pub rate_hz: f64,
     /// How the ego vehicle moves; none if it stands where the canvas says.
     pub ego: Option<Motion>,
-    /// Objects that move.
+    /// Moving objects.
     pub tracks: BTreeMap<BoxId, Track>,
 }
 
@@ -102,12 +103,13 @@ impl Clip {
     /// How many things may be attached to each other in a row.
     const MAX_ATTACHED: usize = 8;
 
-    /// True if there is nothing but the canvas.
+    /// True if there is only the canvas.
     pub fn is_still(&self) -> bool {
         self.ego.is_none() && self.tracks.is_empty()
     }
 
-    /// True if nothing is ever elsewhere: whatever is a track stands where it is, all the time.
+    /// True if nothing ever changes its place: the ego vehicle has no motion, and every track stands where it is all
+    /// the time.
     pub fn stands(&self) -> bool {
         self.ego.is_none() && self.tracks.values().all(Track::stands)
     }
@@ -180,7 +182,7 @@ impl Clip {
         }
     }
 
-    /// What is wrong with it, in one line.
+    /// The first problem with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         // Written so that NaN fails too.
         if !(0.0..=Self::MAX_LENGTH_S).contains(&self.length_s) {
@@ -243,7 +245,7 @@ impl Clip {
     }
 }
 
-/// Says of times that they must increase.
+/// The problem with times that do not increase, in one line.
 fn order_problem(what: &str, times_s: impl Iterator<Item = f64>) -> Option<String> {
     let mut last: Option<f64> = None;
     for (i, time_s) in times_s.enumerate() {

@@ -1,5 +1,5 @@
-//! How a thing moves: keyframes, a path with a profile of speeds, or attached to another thing. A motion is what the user
-//! made; poses are computed from it.
+//! Motion of a thing: keyframes, a path with a profile of speeds, or attachment to another thing. The motion is what
+//! the user made; poses are computed from it.
 
 use glam::DVec2;
 use schemars::JsonSchema;
@@ -9,10 +9,10 @@ use super::fit::fitted;
 use super::path::Path;
 use crate::{BoxId, SceneBox};
 
-/// Within this time a path that became keyframes leaves its old line for the new one, s.
+/// Time within which a path that became keyframes moves from its old line to the new one, s.
 const COME_OVER_S: f64 = 1.0;
 
-/// Where something is on the ground at a moment, and how fast. World frame.
+/// Place on the ground at a moment, and velocity. World frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moving {
     /// Its centre, m.
@@ -63,7 +63,7 @@ pub enum Motion {
     Path(Path),
     /// Fixed to another track, such as a trailer to its truck or a rider to a bicycle.
     Attached {
-        /// What it is fixed to.
+        /// Track that it is fixed to.
         to: BoxId,
         /// Its centre in the other's frame (along its heading, to its left), m.
         #[schemars(with = "[f64; 2]")]
@@ -80,7 +80,7 @@ impl Motion {
     /// Latest time of a keyframe, s.
     pub const MAX_TIME_S: f64 = 3600.0;
 
-    /// What is wrong with it, in one line.
+    /// The first problem with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         match self {
             Self::Keys(keys) => keys_problem(keys),
@@ -97,7 +97,7 @@ impl Motion {
         }
     }
 
-    /// Where it is at a time; `parent` finds what it is attached to. `None` if that is not there.
+    /// Place and velocity at a time; `parent` finds the track that it is attached to. `None` if that one is not there.
     pub fn at(&self, time_s: f64, parent: impl FnOnce(BoxId) -> Option<Moving>) -> Option<Moving> {
         match self {
             Self::Keys(keys) => at_keys(keys, time_s),
@@ -122,7 +122,7 @@ impl Motion {
         }
     }
 
-    /// The same motion with every place and heading changed by the move that takes `from` to `to`.
+    /// The motion with every place and heading changed by the move that takes `from` to `to`.
     pub fn carried(&self, from: &Moving, to: &Moving) -> Self {
         let turn_rad = to.yaw_rad - from.yaw_rad;
         let carry = |p: DVec2| match turn_rad == 0.0 {
@@ -141,7 +141,7 @@ impl Motion {
                 at_m,
                 yaw_deg,
             } => {
-                // In the frame of what it is attached to, whose heading is its own less the offset.
+                // In the frame of the track that it is attached to, whose heading is this one's less the offset.
                 let parent = from.yaw_rad - yaw_deg.to_radians();
                 let by = DVec2::from_angle(-parent).rotate(to.at_m - from.at_m);
                 Self::Attached {
@@ -153,7 +153,7 @@ impl Motion {
         }
     }
 
-    /// The same motion from `time_s` on changed by the move that takes `from` (where it is then) to `to`; it comes over within
+    /// The motion changed from `time_s` on by the move that takes `from` (its place then) to `to`; the transition takes
     /// the second before. A path becomes keyframes.
     pub fn carried_from(&self, time_s: f64, from: &Moving, to: &Moving, sampling: &Sampling) -> Self {
         let mut keys = self.as_keys(sampling);
@@ -170,7 +170,7 @@ impl Motion {
         Self::Keys(keys)
     }
 
-    /// The same motion through `to` at a time, and as before at its other keyframes. A path becomes keyframes.
+    /// The motion changed so that it passes through `to` at a time; its other keyframes stay. A path becomes keyframes.
     pub fn through(&self, time_s: f64, to: &Moving, sampling: &Sampling) -> Self {
         let mut keys = self.as_keys(sampling);
         self.hold(&mut keys, time_s - COME_OVER_S, sampling);
@@ -179,7 +179,7 @@ impl Motion {
         Self::Keys(keys)
     }
 
-    /// A key where a motion without keys of its own is at a time, if that is between those it has become.
+    /// Adds a key at the place of a motion without keys of its own, if the time lies between the keys made of it.
     fn hold(&self, keys: &mut Vec<Key>, time_s: f64, sampling: &Sampling) {
         let inside =
             keys.first().is_some_and(|k| k.time_s < time_s) && keys.last().is_some_and(|k| time_s < k.time_s);
@@ -191,7 +191,7 @@ impl Motion {
         }
     }
 
-    /// The motion as keyframes; of a path, as few as tell it.
+    /// The motion as keyframes; for a path, as few as reproduce it.
     fn as_keys(&self, sampling: &Sampling) -> Vec<Key> {
         match self {
             Self::Keys(keys) => keys.clone(),
@@ -207,7 +207,7 @@ impl Motion {
         }
     }
 
-    /// The same motion at other times: `time` maps old ones to new ones and must keep their order.
+    /// The motion at other times: `time` maps old ones to new ones and must keep their order.
     pub fn retimed(&self, time: impl Fn(f64) -> f64) -> Self {
         let mut out = self.clone();
         match &mut out {
@@ -218,7 +218,7 @@ impl Motion {
         out
     }
 
-    /// The same motion mirrored in a line through `at_m` along `yaw_rad`.
+    /// The motion mirrored in a line through `at_m` along `yaw_rad`.
     pub fn mirrored(&self, at_m: DVec2, yaw_rad: f64) -> Self {
         let along = DVec2::from_angle(yaw_rad);
         let flip = |p: DVec2| {
@@ -250,7 +250,7 @@ impl Motion {
     }
 }
 
-/// How keyframes are taken of a motion that has none.
+/// Parameters for sampling keyframes from a motion that has none.
 pub struct Sampling<'a> {
     /// Length of the clip, s.
     pub length_s: f64,
@@ -259,7 +259,7 @@ pub struct Sampling<'a> {
 }
 
 impl Sampling<'_> {
-    /// Time between two poses that the keyframes must tell, s.
+    /// Time between the sampled poses that the keyframes must reproduce, s.
     const EVERY_S: f64 = 0.1;
 }
 
@@ -281,7 +281,7 @@ fn key(time_s: f64, pose: &Moving) -> Key {
     }
 }
 
-/// Puts a key in at its time, in place of one that is there.
+/// Inserts a key at its time and replaces one that is there.
 fn set_key(keys: &mut Vec<Key>, new: Key) {
     // Times that a person cannot tell apart are the same time.
     const SAME_S: f64 = 1e-6;

@@ -155,12 +155,12 @@ fn carried_motions_keep_their_shape() {
             let turned = DVec2::from_angle(to.yaw_rad - from.yaw_rad).rotate(a.at_m - from.at_m);
             assert!((b.at_m - to.at_m - turned).length() < 1e-9);
         }
-        // From here on: what was before stays.
+        // From here on: keys before the moment stay.
         let later = motion.carried_from(2.0, &from, &to, &sampling);
         assert!((at(&later, 0.0).at_m - at(&motion, 0.0).at_m).length() < 1e-9);
         assert!((at(&later, 2.0).at_m - to.at_m).length() < 1e-9);
         assert!((at(&later, 5.0).at_m - at(&carried, 5.0).at_m).length() < 0.3);
-        // A path comes over within a second.
+        // A path moves to its new line within a second.
         if matches!(motion, Motion::Path(_)) {
             assert!((at(&later, 0.9).at_m - at(&motion, 0.9).at_m).length() < 0.15);
         }

@@ -1,5 +1,5 @@
-//! The voxels of something that moves: made once, at one pose, and stamped wherever it is. Nearest voxel, so nothing is
-//! blurred; at the pose where it was made, it is that very shape.
+//! Voxels of a moving object: made once, at one pose, and stamped at any other. The nearest voxel is taken, so nothing
+//! is blurred; at the pose where they were made, the result is the same shape exactly.
 
 use std::sync::Arc;
 
@@ -36,7 +36,8 @@ impl OwnShape {
         self.voxels.cells(&self.made)
     }
 
-    /// Where the underside of the cells at height 0 is stamped with the box at `now`, counted from the box's underside, m.
+    /// Height above the box's underside at which the underside of the cells of height 0 is stamped with the box at
+    /// `now`, m.
     pub fn bottom_m(&self, now: &SceneBox) -> f64 {
         let bin = i64::from(bottom_bin(&self.made)) + up(&self.made, now);
         bin as f64 * Extent::VOXEL_M + Extent::BOTTOM_M - (now.center_m.z - now.size_m.z / 2.0)
@@ -47,7 +48,7 @@ impl ObjectVoxels {
     /// Columns of a shape at most: a square of 102 m.
     pub const MAX_COLUMNS: usize = 1 << 16;
 
-    /// Nothing.
+    /// A shape without voxels.
     pub fn empty() -> Arc<Self> {
         Arc::new(Self {
             from: [0; 2],
@@ -137,7 +138,7 @@ impl ObjectVoxels {
         self.columns.iter().map(set).sum()
     }
 
-    /// What of a grid belongs to a box: labels within its footprint and margin for which `own` says so.
+    /// The voxels of a grid that belong to a box: labels within its footprint and margin for which `own` is true.
     pub fn cut(grid: &VoxelGrid, b: &SceneBox, own: impl Fn([usize; 3], u8) -> bool) -> Arc<Self> {
         let extent = grid.extent();
         let mut found = Vec::new();
@@ -188,7 +189,7 @@ impl ObjectVoxels {
                 true => from_center,
                 false => turn.rotate(from_center),
             };
-            // A hair to one side: half a voxel between both poses must round the same way in every column.
+            // Shifted slightly to one side: a half voxel between both poses must round the same way in every column.
             let p_made = (made.center_m.truncate() + turned) * 2.5 + 1e-6;
             let (i, j) = (
                 p_made.x.floor() - f64::from(self.from[0]),
@@ -217,7 +218,7 @@ impl ObjectVoxels {
         });
     }
 
-    /// What is wrong with it, in one line.
+    /// The first problem with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         let [nx, ny] = self.size;
         if nx.checked_mul(ny).is_none_or(|n| n > Self::MAX_COLUMNS) || self.columns.len() != nx * ny {
@@ -233,7 +234,7 @@ impl ObjectVoxels {
     }
 }
 
-/// How many bins a shape is lifted from where it was made.
+/// Number of bins by which a shape is lifted from where it was made.
 fn up(made: &SceneBox, now: &SceneBox) -> i64 {
     ((now.center_m.z - made.center_m.z) * 2.5).round() as i64
 }
@@ -248,7 +249,7 @@ pub fn upright(b: &SceneBox) -> SceneBox {
     }
 }
 
-/// How many columns a box and its margin reach ahead of its middle, and to its left.
+/// Number of columns that a box and its margin reach ahead of its middle, and to its left.
 fn reach(b: &SceneBox) -> glam::IVec2 {
     ((b.size_m.truncate() / 2.0 + MARGIN_M) * 2.5).ceil().as_ivec2()
 }
@@ -256,7 +257,7 @@ fn reach(b: &SceneBox) -> glam::IVec2 {
 /// The bin that a box's underside is in.
 fn bottom_bin(b: &SceneBox) -> i32 {
     let bottom_m = b.center_m.z - b.size_m.z / 2.0;
-    // A hair up: an underside on the border of two bins is in the upper one.
+    // Shifted slightly up: an underside on the border of two bins is in the upper one.
     ((bottom_m - Extent::BOTTOM_M) * 2.5 + 1e-6).floor() as i32
 }
 

@@ -22,7 +22,7 @@ pub struct Speed {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Path {
-    /// Where it leads, world frame, m; at least two points that differ.
+    /// Line of the path, world frame, m; at least two points that differ.
     #[schemars(with = "Vec<[f64; 2]>")]
     pub points_m: Vec<DVec2>,
     /// Where on it the motion starts, m from the first point.
@@ -45,7 +45,7 @@ impl Path {
     /// Half of the chord along which a heading is taken, m: about half a wheelbase.
     const CHORD_M: f64 = 1.3;
 
-    /// What is wrong with it, in one line.
+    /// The first problem with it, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         let (points, speeds) = (self.points_m.len(), self.speeds.len());
         let most = Motion::MAX_POINTS;
@@ -97,7 +97,7 @@ impl Path {
             .sum()
     }
 
-    /// How far along the path it is at a time, m, and its speed then, m/s.
+    /// Distance along the path at a time, m, and speed then, m/s.
     pub fn along(&self, time_s: f64) -> (f64, f64) {
         let length_m = self.length_m();
         let start_m = self.start_m.clamp(0.0, length_m);
@@ -121,7 +121,7 @@ impl Path {
         }
     }
 
-    /// Where it is at a time.
+    /// Place and velocity at a time.
     pub fn at(&self, time_s: f64) -> Moving {
         let (along_m, mps) = self.along(time_s);
         let way = self.way(along_m);
@@ -134,7 +134,7 @@ impl Path {
         }
     }
 
-    /// The point of the path so far along it, m.
+    /// The point at a distance along the path, m.
     pub fn point(&self, along_m: f64) -> DVec2 {
         let mut left_m = along_m;
         for pair in self.points_m.windows(2) {
@@ -147,8 +147,8 @@ impl Path {
         self.points_m.last().copied().unwrap_or_default()
     }
 
-    /// The way the path leads so far along it, a unit vector: along the chord of something as long as a wheelbase, so that
-    /// a corner turns it gradually.
+    /// Direction of the path at a distance along it, a unit vector: along a chord as long as a wheelbase, so that a
+    /// corner turns it gradually.
     fn way(&self, along_m: f64) -> DVec2 {
         let length_m = self.length_m();
         let from = (along_m - Self::CHORD_M).max(0.0);

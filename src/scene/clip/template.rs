@@ -1,4 +1,4 @@
-//! Ways to move that have a name. What motion comes of one is for the editor to work out: it knows the lanes.
+//! Manoeuvres that have a name. The editor computes the motion of one, because it knows the lanes.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -73,7 +73,7 @@ impl Template {
         }
     }
 
-    /// True if what it is about begins at a moment of its own.
+    /// True if its main action begins at a moment of its own.
     pub fn has_a_moment(self) -> bool {
         !matches!(
             self,
@@ -81,7 +81,7 @@ impl Template {
         )
     }
 
-    /// What it does, in a sentence.
+    /// Its description in a sentence.
     pub fn hint(self) -> &'static str {
         match self {
             Self::Drive => "Along its lane at a steady speed",
@@ -151,7 +151,8 @@ pub struct Manoeuvre {
 }
 
 impl Manoeuvre {
-    /// This one after another: as fast as that, where nothing is said. False beside it if more than its speed is lost.
+    /// This manoeuvre as a continuation of another: it takes over the other's speed where it has none of its own. The
+    /// flag is false if more of the other than its speed is lost.
     pub fn after(mut self, before: &Self) -> (Self, bool) {
         if self.kmh.is_none() && self.pace.is_none() {
             (self.kmh, self.pace) = (before.kmh, before.pace);
@@ -160,7 +161,7 @@ impl Manoeuvre {
         (self, is_a_speed && before.gap_m.is_none())
     }
 
-    /// One of which nothing else was said.
+    /// A manoeuvre without time, distance or speed.
     pub fn of(what: Template) -> Self {
         Self {
             what,

@@ -113,7 +113,7 @@ fn where_it_was_made_an_object_is_bit_for_bit_what_it_was() {
     }
 }
 
-/// `fold` of an unchanged view is the scene, and the view of what was folded is what was made of it.
+/// `fold` of an unchanged view gives the scene, and the view of a folded change equals the changed view.
 #[test]
 fn changes_of_a_view_go_to_the_canvas_or_to_the_object() {
     let start = scene();
@@ -122,7 +122,7 @@ fn changes_of_a_view_go_to_the_canvas_or_to_the_object() {
         same.change(Scope::WholeTrack, |_| ());
         assert_eq!((same.canvas(), same.clip()), (start.canvas(), start.clip()));
 
-        // A voxel far from the car: of the canvas, at all times.
+        // A voxel far from the car belongs to the canvas, at all times.
         let mut wall = start.at(time_s);
         wall.change(Scope::WholeTrack, |f| {
             f.occupancy.set(10, 10, 3, Class::Manmade.id())
@@ -130,7 +130,7 @@ fn changes_of_a_view_go_to_the_canvas_or_to_the_object() {
         assert_eq!(wall.clip(), start.clip());
         assert_eq!(wall.at(2.2).frame().occupancy.get(10, 10, 3), Class::Manmade.id());
 
-        // A voxel painted on its roof goes along.
+        // A voxel painted on its roof moves with it.
         let mut rack = start.at(time_s);
         let b = rack.frame().boxes[&BoxId(7)];
         let [x, y, _] = rack
@@ -176,7 +176,7 @@ fn a_moved_object_moves_at_one_moment_from_there_on_or_always() {
     assert_eq!(moved(Scope::WholeTrack), [3; 5]);
     assert_eq!(moved(Scope::FromHereOn), [0, 2, 3, 3, 3]);
     assert_eq!(moved(Scope::Moment), [0, 2, 3, 2, 0]);
-    // The voxels go along, and are not drawn again.
+    // The voxels move with it, and are not drawn again.
     let mut scene = start.clone();
     scene.change(Scope::WholeTrack, |f| {
         f.boxes.get_mut(&BoxId(7)).expect("there").center_m.y += 3.0;

@@ -1,4 +1,4 @@
-//! The canvas as it is seen at a moment.
+//! View of the canvas at a moment.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -7,7 +7,8 @@ use super::{Clip, OwnShape};
 use crate::{BoxId, Frame, Pose, SceneBox};
 
 impl Clip {
-    /// The canvas at a time, with every moving object that is there then. Costs pointers, and the voxels of the objects.
+    /// The canvas at a time, with every moving object that is there then. Copies pointers, and the voxels of the
+    /// objects.
     pub fn view(&self, canvas: &Arc<Frame>, time_s: f64) -> Arc<Frame> {
         let relief = &canvas.layout.relief;
         let world_from_ego = self.ego_at(time_s, &canvas.world_from_ego, relief);
@@ -29,8 +30,8 @@ impl Clip {
         ids.filter_map(|id| self.box_at(*id, time_s, relief)).collect()
     }
 
-    /// What the networks are asked about: the canvas with those moving objects whose voxels are still drafts, each where it
-    /// was made. The same at every time.
+    /// The frame to generate: the canvas with those moving objects whose voxels are still drafts, each where it was
+    /// made. It is the same at every time.
     pub fn unsettled(&self, canvas: &Arc<Frame>) -> Arc<Frame> {
         if self.tracks.is_empty() {
             return canvas.clone();

@@ -1,4 +1,4 @@
-//! The extent of a map: which part of the ground it covers, known when the program runs.
+//! The extent of a map: the part of the ground that it covers, known at run time.
 
 use std::fmt;
 
@@ -205,7 +205,7 @@ impl Extent {
         Some(Overlap { here, there, size })
     }
 
-    /// Values `[x][y]` over `self` taken from values over `of`; `fill` where that has none.
+    /// Values `[x][y]` over `self` taken from values over `of`; `fill` where `of` has none.
     pub fn crop<T: Copy>(&self, of: &Self, values: &[T], fill: T) -> Vec<T> {
         let mut out = vec![fill; self.columns()];
         self.paste(&mut out, of, values);
@@ -225,12 +225,12 @@ impl Extent {
     }
 }
 
-/// What two extents share; see [`Extent::overlap`].
+/// The columns that two extents share; see [`Extent::overlap`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Overlap {
-    /// Its first column in the one.
+    /// Its first column in the first extent.
     pub here: [usize; 2],
-    /// Its first column in the other.
+    /// Its first column in the second extent.
     pub there: [usize; 2],
     /// Columns along x and y.
     pub size: [usize; 2],

@@ -1,5 +1,5 @@
-//! Voxel grids, stored in copy-on-write bricks: a snapshot costs a pointer per brick (169 for a window), an edit
-//! copies only the bricks it touches, and "what changed" is a comparison of pointers. Bricks that hold nothing are one.
+//! Voxel grids, stored in copy-on-write bricks: a snapshot costs a pointer per brick (169 for a window), an edit copies
+//! only the bricks it touches, and changes are found by comparing pointers. All empty bricks share one memory.
 
 mod extent;
 mod window;
@@ -86,7 +86,7 @@ impl<const FILL: u8> BrickGrid<FILL> {
         Self::from_dense_over(Extent::WINDOW, labels)
     }
 
-    /// From labels `[x][y][z]` of a map, C order. Errors with the length found if it is another one.
+    /// A grid from labels `[x][y][z]` of a map, C order. Errors with the length found if it is another one.
     pub fn from_dense_over(extent: Extent, labels: &[u8]) -> Result<Self, usize> {
         if labels.len() != extent.voxels() {
             return Err(labels.len());
@@ -115,7 +115,7 @@ impl<const FILL: u8> BrickGrid<FILL> {
         self.extent
     }
 
-    /// The same bricks over another extent of the same size.
+    /// These bricks over another extent of the same size.
     pub(crate) fn relabelled(&self, extent: Extent) -> Self {
         assert_eq!(bricks_along(extent), bricks_along(self.extent), "another size");
         Self {
@@ -135,7 +135,7 @@ impl<const FILL: u8> BrickGrid<FILL> {
         out
     }
 
-    /// Takes over what another grid holds, wherever both have columns. Columns that are equal copy no brick.
+    /// Takes over the voxels of another grid wherever both have columns. Columns that are equal copy no brick.
     pub fn paste(&mut self, other: &Self) {
         if other.extent == self.extent {
             self.clone_from(other);
@@ -164,7 +164,8 @@ impl<const FILL: u8> BrickGrid<FILL> {
             .expect("a column is 16 long")
     }
 
-    /// The same for writing; copies the brick if a snapshot shares it.
+    /// Mutable access to the 16 labels above a BEV cell; copies the brick if a snapshot shares it. Panics outside the
+    /// grid.
     #[inline]
     pub fn column_mut(&mut self, x: usize, y: usize) -> &mut [u8; Extent::NZ] {
         let (brick, at) = self.locate(x, y);
@@ -179,7 +180,7 @@ impl<const FILL: u8> BrickGrid<FILL> {
         self.column(x, y)[z]
     }
 
-    /// Sets one label; a value that is there already copies nothing.
+    /// Sets one label; copies nothing if the value is there already.
     #[inline]
     pub fn set(&mut self, x: usize, y: usize, z: usize, value: u8) {
         if self.get(x, y, z) != value {

@@ -282,7 +282,7 @@ mod tests {
         labels
     }
 
-    /// Difference of two headings that do not know front from back, in degrees.
+    /// Difference of two headings without regard to front and back, in degrees.
     fn heading_gap(a: f64, b: f64) -> f64 {
         let gap = (a - b).to_degrees().rem_euclid(180.0);
         gap.min(180.0 - gap)

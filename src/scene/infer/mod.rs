@@ -1,5 +1,5 @@
-//! What a labelled frame does not carry, inferred from its voxels: a layout from the ground, boxes from
-//! the objects, things from what stands beside the road. Guesses that a user can correct, good enough to edit from.
+//! Parts that a labelled frame does not carry, inferred from its voxels: a layout from the ground, boxes from the
+//! objects, things from the scenery. Guesses that a user can correct, good enough to edit from.
 
 mod background;
 mod boxes;

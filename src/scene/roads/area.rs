@@ -1,4 +1,4 @@
-//! Which columns lie alongside a line, and where.
+//! The columns alongside a line, and their places along it.
 
 use glam::DVec2;
 
@@ -9,17 +9,17 @@ use crate::Extent;
 pub struct Alongside {
     /// The column.
     pub cell: [usize; 2],
-    /// How far along the line its nearest point is, m.
+    /// Distance along the line to its nearest point, m.
     pub along_m: f64,
-    /// How far to the left of it, m.
+    /// Distance to the left of the line, m.
     pub left_m: f64,
 }
 
-/// Beyond the ends of a line nothing lies alongside but for this much, m.
+/// Tolerance beyond the ends of a line within which columns still count, m.
 const BEYOND_M: f64 = 0.01;
 
-/// The columns of a map whose middle lies within `reach_m` of a line and not beyond its ends, each once, with the nearest place
-/// on the line.
+/// The columns of a map whose middle lies within `reach_m` of a line and not beyond its ends, each once, with the
+/// nearest place on the line.
 pub(super) fn alongside(extent: Extent, line_m: &[DVec2], reach_m: f64) -> Vec<Alongside> {
     let Some((lo, hi)) = bounds(line_m) else {
         return Vec::new();
@@ -35,7 +35,7 @@ pub(super) fn alongside(extent: Extent, line_m: &[DVec2], reach_m: f64) -> Vec<A
     };
     let (from, to) = (column(lo - reach_m, false), column(hi + reach_m, true));
     let (w, h) = (to[0] - from[0] + 1, to[1] - from[1] + 1);
-    // Distance, along, left; as long as nothing is near the distance is infinite.
+    // Distance, along, left; the distance is infinite until a segment comes near.
     let mut best = vec![(f64::INFINITY, 0.0, 0.0); w * h];
     let (mut along, pieces) = (0.0, line_m.len() - 1);
     for (i, [a, b]) in line_m.array_windows::<2>().enumerate() {

@@ -1,4 +1,4 @@
-//! Junctions: rounded corners between neighbouring arms, and how far along each arm its markings begin.
+//! Junctions: rounded corners between neighbouring arms, and the distance along each arm at which its markings begin.
 
 use std::collections::BTreeMap;
 
@@ -6,30 +6,30 @@ use glam::DVec2;
 
 use super::{Arm, LaneKind, NodeId, NodeKind, Road, RoadId, RoadNetwork, RoadNode, curve, ring};
 
-/// So far from the node an arm's heading is read, m.
+/// Distance from the node at which an arm's heading is read, m.
 const HEADING_M: f64 = 8.0;
-/// Corners are looked for so far along an arm, m.
+/// Distance along an arm within which corners are looked for, m.
 const REACH_M: f64 = 70.0;
-/// A corner takes at most so much of an arm, m, and this share of it.
+/// Largest part of an arm that a corner takes, m; the next constant is its largest share.
 const CORNER_M: f64 = 25.0;
 const CORNER_SHARE: f64 = 0.45;
-/// Markings end so far before the corner does, m.
+/// Distance before the corner at which markings end, m.
 const CLEAR_M: f64 = 0.6;
 
-/// What the nodes of a network draw, and how much of each road is theirs.
+/// Geometry that the nodes of a network draw, and the part of each road that belongs to them.
 #[derive(Debug, Default)]
 pub(super) struct Corners {
-    /// How far markings stay away from an end of a road, m.
+    /// Distance that markings keep from an end of a road, m.
     pub setback_m: BTreeMap<(RoadId, usize), f64>,
-    /// The same of one side alone: true is the right of the road's line.
+    /// Distance that they keep on one side of the road, m: true is the right of its line.
     pub side_m: BTreeMap<(RoadId, usize, bool), f64>,
-    /// Outlines that are carriageway.
+    /// Outlines of carriageway.
     pub paved: Vec<Vec<DVec2>>,
-    /// Lines with so much walkway on either side, m.
+    /// Lines with the width of the walkway on either side of them, m.
     pub walks: Vec<(Vec<DVec2>, f64)>,
     /// Islands: middle and radius, m. Nothing is drawn there.
     pub islands: Vec<(DVec2, f64)>,
-    /// Middles of lanes that the nodes have of their own, in driving direction.
+    /// Middles of the nodes' own lanes, in driving direction.
     pub lanes: Vec<(NodeId, Vec<DVec2>)>,
 }
 
@@ -43,7 +43,7 @@ pub(super) struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// Side of the road that lies left when one looks outward: true for its right side.
+    /// Side of the road that is on the given side of an arm, looking outward: true for the road's right side.
     pub fn side(&self, left: bool) -> bool {
         (self.arm.end == 1) == left
     }
@@ -68,7 +68,7 @@ impl Seen<'_> {
     }
 }
 
-/// What all nodes draw.
+/// Geometry that all nodes draw.
 pub(super) fn corners(net: &RoadNetwork, lines: &BTreeMap<RoadId, Vec<DVec2>>) -> Corners {
     let mut out = Corners::default();
     let mut at: BTreeMap<NodeId, Vec<(Arm, &Road)>> = BTreeMap::new();
@@ -116,7 +116,7 @@ fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners
         let b = &arms[(i + 1) % arms.len()];
         let (kerb_a, kerb_b) = (a.kerb(true), b.kerb(false));
         let Some((at_a, at_b)) = curve::crossing(&kerb_a, &kerb_b) else {
-            // Side by side: nothing to round, but each reaches as far as the other is wide.
+            // Arms side by side: there is no corner, but each reaches as far as the other is wide.
             continue;
         };
         let (meet, way_a) = curve::at(&kerb_a, at_a);
@@ -142,7 +142,7 @@ fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners
             set_back(out, seen, left, end);
         }
     }
-    // Where corners of sharp angles lie wide apart the middle belongs to nobody.
+    // The middle between corners of sharp angles that lie wide apart belongs to none of them.
     let middle: Vec<DVec2> = arms
         .iter()
         .flat_map(|a| [true, false].map(|left| a.kerb(left).first().copied()))
@@ -152,7 +152,7 @@ fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners
     out.paved.push(curve::hull(&middle));
 }
 
-/// Markings of an arm begin beyond a point beside it, on its left or right as one looks outward.
+/// Makes the markings of an arm begin beyond a point beside it, on its left or right, looking outward.
 pub(super) fn set_back(out: &mut Corners, seen: &Seen<'_>, left: bool, beside_m: DVec2) {
     let along = curve::project(&seen.out_m, beside_m).map_or(0.0, |p| p.0);
     let reach = (along + CLEAR_M).min(seen.length_m * 0.5);

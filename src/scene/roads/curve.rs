@@ -4,12 +4,12 @@ use glam::DVec2;
 
 /// Longest step of a curve, m.
 const STEP_M: f64 = 1.0;
-/// A piece bends less than this: it stays one straight segment.
+/// Largest bend of a piece that stays one straight segment, rad.
 const STRAIGHT_RAD: f64 = 0.004;
 
-/// A smooth line through points: straight pieces stay straight, and a bend reaches no farther into a long piece than its
-/// short neighbour is long. `before` and `after` are points beyond the ends towards which it would go on. Points that are not
-/// distinct are dropped. Cubic Hermite pieces; the tangent at a point halves the angle.
+/// A smooth line through points: straight pieces stay straight, and a bend reaches no farther into a long piece than
+/// its short neighbour is long. `before` and `after` are points beyond the ends, towards which the line would continue.
+/// Points that are not distinct are dropped. Cubic Hermite pieces; the tangent at a point halves the angle.
 pub fn through(before: Option<DVec2>, points_m: &[DVec2], after: Option<DVec2>) -> Vec<DVec2> {
     let points = distinct(points_m);
     if points.len() < 2 {
@@ -61,10 +61,10 @@ pub fn through(before: Option<DVec2>, points_m: &[DVec2], after: Option<DVec2>) 
     distinct(&out)
 }
 
-/// Points nearer to each other are one, m.
+/// Distance within which two points count as one, m.
 const APART_M: f64 = 1e-3;
 
-/// The points that are finite and not where the one before is.
+/// The points that are finite and differ from the one before.
 pub fn distinct(points_m: &[DVec2]) -> Vec<DVec2> {
     let mut out: Vec<DVec2> = Vec::new();
     for p in points_m.iter().filter(|p| p.is_finite()) {
@@ -97,8 +97,8 @@ pub fn length_m(points_m: &[DVec2]) -> f64 {
     points_m.array_windows::<2>().map(|[a, b]| a.distance(*b)).sum()
 }
 
-/// The point so far along a line, m, and the direction there; ends go on straight. A line of fewer than two points has its
-/// point and no direction.
+/// The point at a distance along a line, m, and the direction there; the line continues straight beyond its ends. A
+/// line of fewer than two points has its point and no direction.
 pub fn at(points_m: &[DVec2], along_m: f64) -> (DVec2, DVec2) {
     let mut left_m = along_m;
     let pieces = points_m.array_windows::<2>();
@@ -132,7 +132,8 @@ pub fn part(points_m: &[DVec2], from_m: f64, to_m: f64) -> Vec<DVec2> {
     distinct(&out)
 }
 
-/// The nearest point of a line: how far along, m, and how far to the left of it, m. `None` for fewer than two points.
+/// The nearest point of a line: distance along the line, m, and distance to its left, m. `None` for fewer than two
+/// points.
 pub fn project(points_m: &[DVec2], p_m: DVec2) -> Option<(f64, f64)> {
     let mut best: Option<(f64, f64, f64)> = None;
     let mut along = 0.0;
@@ -151,12 +152,12 @@ pub fn project(points_m: &[DVec2], p_m: DVec2) -> Option<(f64, f64)> {
     best.map(|(_, along, left)| (along, left))
 }
 
-/// Where two lines first cross: how far along the first and along the second, m.
+/// The first crossing of two lines: distances along the first and along the second, m.
 pub fn crossing(a_m: &[DVec2], b_m: &[DVec2]) -> Option<(f64, f64)> {
     crossings(a_m, b_m).next()
 }
 
-/// Where two lines cross, in the order of the first.
+/// The crossings of two lines, in the order of the first.
 pub fn crossings<'a>(a_m: &'a [DVec2], b_m: &'a [DVec2]) -> impl Iterator<Item = (f64, f64)> + 'a {
     let mut along_a = 0.0;
     a_m.array_windows::<2>().flat_map(move |[a, b]| {
@@ -179,8 +180,8 @@ pub fn crossings<'a>(a_m: &'a [DVec2], b_m: &'a [DVec2]) -> impl Iterator<Item =
     })
 }
 
-/// The fewest of a line's points that leave none farther off than a tolerance, m; its ends stay (Ramer 1972, Douglas and
-/// Peucker 1973).
+/// The fewest of a line's points for which no dropped point is farther off than a tolerance, m; the ends stay (Ramer
+/// 1972, Douglas and Peucker 1973).
 pub fn simplified(points_m: &[DVec2], tolerance_m: f64) -> Vec<DVec2> {
     let mut keep = vec![false; points_m.len()];
     let Some(last) = points_m.len().checked_sub(1) else {
@@ -191,7 +192,7 @@ pub fn simplified(points_m: &[DVec2], tolerance_m: f64) -> Vec<DVec2> {
     while let Some((from, to)) = open.pop() {
         let (a, d) = (points_m[from], points_m[to] - points_m[from]);
         let length_squared = d.length_squared();
-        // A closed line is parted where it is farthest from its beginning.
+        // A closed line is split at the point farthest from its beginning.
         let off = |i: usize| {
             let t = match length_squared > 0.0 {
                 true => ((points_m[i] - a).dot(d) / length_squared).clamp(0.0, 1.0),

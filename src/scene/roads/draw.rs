@@ -1,4 +1,4 @@
-//! What a network draws into a layout.
+//! Drawing of a road network into a layout.
 
 use std::collections::BTreeMap;
 
@@ -20,36 +20,36 @@ pub const LAYERS: [BevLayer; 7] = [
     BevLayer::LaneDivider,
 ];
 
-/// What a network draws, and nothing else.
+/// The drawing of a network, without anything else.
 #[derive(Clone, Debug)]
 pub struct Drawn {
     /// Layers over the map, on flat ground; no lines.
     pub layout: BevLayout,
-    /// Lines, and whose they are.
+    /// Lines by their owner.
     pub owners: BTreeMap<Owner, Vec<Polyline>>,
 }
 
-/// A node at which roads meet, with all that its corners depend on.
+/// A node at which roads meet, with everything that its corners depend on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Junction {
     /// The node.
     pub node: RoadNode,
-    /// How far it draws, m.
+    /// Distance from the node that it draws on, m.
     pub reach_m: f64,
-    /// Its arms: where each leaves, m, and its lanes on the left and on the right.
+    /// Its arms: place where each leaves, m, and its lanes on the left and on the right.
     pub arms: Vec<(Arm, DVec2, Vec<RoadLane>, Vec<RoadLane>)>,
 }
 
-/// Whose a line is.
+/// Owner of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Owner {
-    /// A road's.
+    /// A road.
     Road(RoadId),
-    /// A roundabout's.
+    /// A roundabout.
     Node(NodeId),
 }
 
-/// What lies on top where several are.
+/// Surface of a cell, in the order in which one covers another.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Surface {
     Nothing,
@@ -59,8 +59,8 @@ enum Surface {
 }
 
 impl RoadNetwork {
-    /// What it draws over a map. Cells: road over parking over walkway. Lines: lane middles, dividers up to the junctions,
-    /// stop lines and crossings.
+    /// The drawing of the network over a map. Cells: road over parking over walkway. Lines: lane middles, dividers up
+    /// to the junctions, stop lines and crossings.
     pub fn draw(&self, extent: Extent) -> Drawn {
         let lines = self.lines();
         let corners = corners(self, &lines);
@@ -119,7 +119,7 @@ impl RoadNetwork {
         roads.chain(rings.map(|n| Owner::Node(n.id))).collect()
     }
 
-    /// The columns that roads and roundabouts cover, walkways left out, and so much around them, m.
+    /// The columns that roads and roundabouts cover, without walkways, and a rim of `rim_m` around them.
     pub fn surface_of(&self, extent: Extent, owners: &[Owner], rim_m: f64) -> Vec<bool> {
         let mut out = vec![false; extent.columns()];
         let lines = self.lines();
@@ -262,7 +262,7 @@ impl RoadNetwork {
         out
     }
 
-    /// Along which part of a road its lanes run: up to its nodes, but not into roundabouts.
+    /// The part of a road along which its lanes run: up to its nodes, but not into roundabouts.
     fn lane_part(&self, road: &Road, corners: &Corners, length_m: f64) -> [f64; 2] {
         let ring = |end: usize| {
             let node = self.node(road.ends[end]);
@@ -276,13 +276,14 @@ impl RoadNetwork {
     }
 }
 
-/// From where to where along a road it is its own, and not its junctions', m.
+/// The part of a road outside of its junctions, from and to, m.
 fn free_part(road: &Road, corners: &Corners, length_m: f64) -> [f64; 2] {
     let back = |end: usize| corners.setback_m.get(&(road.id, end)).copied().unwrap_or(0.0);
     [back(0), length_m - back(1)]
 }
 
-/// A place along a road for what reaches so far on both sides of it: outside of junctions where there is room.
+/// The place along a road nearest to `at_m` that keeps `reach_m` on both sides clear of junctions; the middle of the
+/// free part where there is no room.
 fn beyond_corners(at_m: f64, reach_m: f64, free_m: [f64; 2]) -> f64 {
     let (low, high) = (free_m[0] + reach_m, free_m[1] - reach_m);
     if low < high {
@@ -292,13 +293,13 @@ fn beyond_corners(at_m: f64, reach_m: f64, free_m: [f64; 2]) -> f64 {
     }
 }
 
-/// The same of one side.
+/// The part of a road outside of its junctions on one side, from and to, m.
 fn free_side(road: &Road, right: bool, corners: &Corners, length_m: f64) -> [f64; 2] {
     let back = |end: usize| corners.side_m.get(&(road.id, end, right)).copied().unwrap_or(0.0);
     [back(0), length_m - back(1)]
 }
 
-/// What lies so far to the left of a road's line; `None` where it has nothing.
+/// The surface at `left_m` to the left of a road's line; `None` where the road has none.
 fn surface_at(road: &Road, left_m: f64, at_junction: bool) -> Option<Surface> {
     let right = left_m < 0.0;
     let mut edge = 0.0;
@@ -314,7 +315,7 @@ fn surface_at(road: &Road, left_m: f64, at_junction: bool) -> Option<Surface> {
     }
 }
 
-/// The part of a line beside another that lies between two places along that one.
+/// The part of a line beside another that lies between two places along that other line.
 fn cut(line: &[DVec2], beside: Vec<DVec2>, part_m: [f64; 2]) -> Vec<DVec2> {
     let length_m = curve::length_m(line);
     if part_m[0] <= 0.0 && part_m[1] >= length_m {

@@ -1,8 +1,8 @@
-//! Roads as a network that stays editable: lines with lanes between nodes, and what they draw into a layout.
+//! Roads as an editable network: lines with lanes between nodes, and their drawing into a layout.
 //!
-//! The layout (cells and lines) is what all else reads. The network stands behind it: a change of the network redraws what it
-//! draws differently from before, and nothing else. Terms are those of OpenDRIVE: lanes are counted from a reference line
-//! outward, right ones are driven along it, left ones against it.
+//! All other code reads the layout (cells and lines). The network stands behind it: a change of the network redraws
+//! only the parts that it draws differently from before. Terms are those of OpenDRIVE: lanes are counted from a
+//! reference line outward, right ones are driven along it, left ones against it.
 
 mod area;
 mod corner;
@@ -31,7 +31,7 @@ pub struct RoadId(pub u32);
 #[serde(transparent)]
 pub struct NodeId(pub u32);
 
-/// What a lane is for.
+/// Purpose of a lane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LaneKind {
@@ -80,7 +80,7 @@ impl LaneKind {
         matches!(self, Self::Drive | Self::Bus)
     }
 
-    /// Width of a new one, m.
+    /// Usual width of a new lane of this kind, m.
     pub fn usual_m(self) -> f64 {
         match self {
             Self::Drive | Self::Bus => 3.5,
@@ -97,14 +97,14 @@ impl LaneKind {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RoadLane {
-    /// What it is for.
+    /// Purpose.
     pub kind: LaneKind,
     /// How wide it is, m.
     pub width_m: f64,
 }
 
 impl RoadLane {
-    /// One of that kind, as wide as usual.
+    /// A lane of that kind, as wide as usual.
     pub fn usual(kind: LaneKind) -> Self {
         Self {
             kind,
@@ -117,7 +117,7 @@ impl RoadLane {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RoadCrossing {
-    /// Where its middle is, m along the reference line from its beginning.
+    /// Place of its middle, m along the reference line from its beginning.
     pub at_m: f64,
     /// How wide it is along the road, m.
     pub width_m: f64,
@@ -127,7 +127,7 @@ pub struct RoadCrossing {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RoadStop {
-    /// Where, m along the reference line from its beginning.
+    /// Place, m along the reference line from its beginning.
     pub at_m: f64,
     /// True: the lanes on the right, which are driven along the line.
     pub right: bool,
@@ -139,7 +139,7 @@ pub struct RoadStop {
 pub struct Road {
     /// Its number.
     pub id: RoadId,
-    /// Where its reference line begins and ends.
+    /// Nodes at which its reference line begins and ends.
     pub ends: [NodeId; 2],
     /// Points between, through which the line runs in a smooth curve, m.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -175,8 +175,8 @@ impl Road {
         if right { &mut self.right } else { &mut self.left }
     }
 
-    /// Width from the line to the kerb of one side, m: up to the last lane of the carriageway, with `parking` up to where
-    /// cars park.
+    /// Width from the line to the kerb of one side, m: up to the last lane of the carriageway; with `parking`, up to
+    /// the last parking lane.
     pub fn kerb_m(&self, right: bool, parking: bool) -> f64 {
         let lanes = self.side(right);
         let counts = |l: &RoadLane| l.kind.is_carriageway() || parking && l.kind == LaneKind::Parking;
@@ -189,12 +189,12 @@ impl Road {
         self.side(right).iter().map(|l| l.width_m).sum()
     }
 
-    /// Lanes driven by cars and buses on one side.
+    /// Number of lanes driven by cars and buses on one side.
     pub fn driven(&self, right: bool) -> usize {
         self.side(right).iter().filter(|l| l.kind.is_driven()).count()
     }
 
-    /// The same road seen from its other end.
+    /// This road as seen from its other end.
     pub fn reversed(&self, length_m: f64) -> Self {
         let [from, to] = self.ends;
         let turned = |s: &RoadStop| RoadStop {
@@ -217,7 +217,7 @@ impl Road {
         }
     }
 
-    /// The same carriageway driven the other way.
+    /// This carriageway driven in the opposite direction.
     pub fn turned(&self) -> Self {
         let turned = |s: &RoadStop| RoadStop {
             right: !s.right,
@@ -233,7 +233,7 @@ impl Road {
     }
 }
 
-/// What is where roads meet.
+/// Kind of a place where roads meet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum NodeKind {
@@ -263,15 +263,15 @@ impl Default for NodeKind {
 pub struct RoadNode {
     /// Its number.
     pub id: NodeId,
-    /// Where it is, m.
+    /// Its place, m.
     #[schemars(with = "[f64; 2]")]
     pub at_m: DVec2,
-    /// What it is.
+    /// Its kind.
     #[serde(default)]
     pub kind: NodeKind,
 }
 
-/// What can be asked of a street as a whole: of all roads that go on in each other.
+/// A change of a street as a whole, that is of all roads that continue each other.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum RoadWish {
@@ -368,15 +368,15 @@ pub enum RoadChange {
         /// The road.
         id: RoadId,
     },
-    /// What a person asks of the street at a place, whatever the numbers of its roads are.
+    /// A change of the street at a place, independent of the numbers of its roads.
     Wish {
-        /// Where, m: the nearest road is meant.
+        /// Place, m: the nearest road is meant.
         #[schemars(with = "[f64; 2]")]
         at_m: DVec2,
         /// Which way one looks there, degrees counter-clockwise from x: right and ahead are meant so.
         #[serde(default)]
         heading_deg: f64,
-        /// What.
+        /// The change.
         wish: RoadWish,
     },
     /// Draws a road anew: what was painted on it goes.
@@ -400,7 +400,7 @@ impl Road {
     /// Farthest that lanes may lie off the line, m.
     pub const OFFSET_M: std::ops::RangeInclusive<f64> = -100.0..=100.0;
 
-    /// Why it cannot be used, in one line; `None` if it is sound.
+    /// The reason why it cannot be used, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         let name = format!("road {}", self.id.0);
         if self.ends[0] == self.ends[1] && self.via_m.len() < 2 {
@@ -472,7 +472,7 @@ impl RoadNode {
     /// Limits of the width of a ring, m.
     pub const RING_M: std::ops::RangeInclusive<f64> = 3.0..=30.0;
 
-    /// Why it cannot be used, in one line; `None` if it is sound.
+    /// The reason why it cannot be used, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         let name = format!("node {}", self.id.0);
         if !is_within(self.at_m) {

@@ -1,4 +1,5 @@
-//! The network as a whole: what is where, which roads go on in which, and the course of each.
+//! The network as a whole: looking up its parts, finding the roads that continue each other, and the course of each
+//! road.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::{NodeId, NodeKind, Road, RoadChange, RoadId, RoadNode, curve};
 use crate::Pose;
 
-/// Two roads at a junction go on in each other if they bend less than this, rad.
+/// Largest bend at which two roads at a junction continue each other, rad.
 const GOES_ON_RAD: f64 = 0.7;
 
 /// Roads and the nodes at which they end, world frame.
@@ -37,7 +38,7 @@ impl RoadNetwork {
     /// Most roads, and most nodes.
     pub const MOST: usize = 20_000;
 
-    /// True without any road.
+    /// True if there is no road.
     pub fn is_empty(&self) -> bool {
         self.roads.is_empty()
     }
@@ -62,7 +63,7 @@ impl RoadNetwork {
         self.nodes.iter_mut().find(|n| n.id == id)
     }
 
-    /// A new plain node; its number.
+    /// Adds a plain node and returns its number.
     pub fn add_node(&mut self, at_m: DVec2) -> NodeId {
         let id = NodeId(self.nodes.iter().map(|n| n.id.0 + 1).max().unwrap_or(1));
         self.nodes.push(RoadNode {
@@ -73,7 +74,7 @@ impl RoadNetwork {
         id
     }
 
-    /// Puts a road in under the next free number, which it returns.
+    /// Adds a road under the next free number, which it returns.
     pub fn add_road(&mut self, road: Road) -> RoadId {
         let id = RoadId(self.roads.iter().map(|r| r.id.0 + 1).max().unwrap_or(1));
         self.roads.push(Road { id, ..road });
@@ -87,7 +88,7 @@ impl RoadNetwork {
         here.map(|(r, end)| Arm { road: r.id, end }).collect()
     }
 
-    /// All points of a road's line that were set, with its ends, m.
+    /// All points that define a road's line, with its ends, m.
     pub fn points_m(&self, road: &Road) -> Vec<DVec2> {
         let end = |i: usize| self.node(road.ends[i]).map(|n| n.at_m);
         end(0)
@@ -97,7 +98,7 @@ impl RoadNetwork {
             .collect()
     }
 
-    /// Pairs of arms that go on in each other at a node: the two of a joint, and at a junction those that bend least.
+    /// Pairs of arms that continue each other at a node: the two of a joint, and at a junction those that bend least.
     fn pairs(&self, index: &Index<'_>, node: &RoadNode, arms: &[Arm]) -> Vec<[Arm; 2]> {
         if let NodeKind::Roundabout { .. } = node.kind {
             return Vec::new();
@@ -124,12 +125,13 @@ impl RoadNetwork {
         out
     }
 
-    /// The roads that go on in each other through a road, along its line; true for those that run the other way.
+    /// The roads that continue each other through a road, along its line; true for those that run in the opposite
+    /// direction.
     pub fn street(&self, id: RoadId) -> Vec<(RoadId, bool)> {
         let (mut out, index) = (vec![(id, false)], Index::of(self));
         for forward in [false, true] {
             out.reverse();
-            // From the outermost known road on through its far node.
+            // From the outermost known road through its far node.
             while let Some((last, turned)) = out.last().copied() {
                 let end = usize::from(forward != turned);
                 let here = Arm { road: last, end };
@@ -145,15 +147,15 @@ impl RoadNetwork {
                 let Some(next) = next.filter(|n| out.iter().all(|o| o.0 != n.road)) else {
                     break;
                 };
-                // It goes on along its line if it begins at its beginning.
+                // It continues along its line if this node is its beginning.
                 out.push((next.road, (next.end == 1) == forward));
             }
         }
         out
     }
 
-    /// Where every road's lanes begin on both sides, from its beginning to its end, m: its line, shifted by its offset. Where
-    /// roads go on in each other there is no kink.
+    /// The line from which each road's lanes are counted on both sides, from its beginning to its end, m: its line,
+    /// shifted by its offset. There is no kink where roads continue each other.
     pub fn lines(&self) -> BTreeMap<RoadId, Vec<DVec2>> {
         let mut out = self.axes();
         for road in self.roads.iter().filter(|r| r.offset_m != 0.0) {
@@ -191,12 +193,12 @@ impl RoadNetwork {
         self.roads.iter().map(line).collect()
     }
 
-    /// The road whose surface a point lies on or within `slack_m` of; the one whose line is nearest.
+    /// The road whose surface a point lies on or within `slack_m` of; of several, the one whose middle is nearest.
     pub fn road_at(&self, p_m: DVec2, slack_m: f64) -> Option<RoadId> {
         self.road_among(&self.lines(), p_m, slack_m)
     }
 
-    /// The same with the lines at hand.
+    /// The road that [`road_at`](Self::road_at) finds, with the lines given.
     pub fn road_among(
         &self,
         lines: &BTreeMap<RoadId, Vec<DVec2>>,
@@ -212,13 +214,13 @@ impl RoadNetwork {
         on.min_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1)
     }
 
-    /// Nodes at which no road ends go.
+    /// Removes nodes at which no road ends.
     pub fn tidy(&mut self) {
         let used: BTreeSet<NodeId> = self.roads.iter().flat_map(|r| r.ends).collect();
         self.nodes.retain(|n| used.contains(&n.id));
     }
 
-    /// The same seen from another frame: `pose` is that of this frame in the other one.
+    /// This network in another frame: `pose` is that of this frame in the other one.
     pub fn in_frame(&self, pose: &Pose) -> Self {
         let mut out = self.clone();
         let there = |p: DVec2| pose.apply(p.extend(0.0)).truncate();
@@ -230,7 +232,7 @@ impl RoadNetwork {
         out
     }
 
-    /// Why it cannot be used, in one line; `None` if it is sound.
+    /// The reason why it cannot be used, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
         if self.roads.len().max(self.nodes.len()) > Self::MOST {
             let (roads, nodes) = (self.roads.len(), self.nodes.len());
@@ -267,7 +269,7 @@ impl RoadNetwork {
     }
 }
 
-/// What is where, to look up fast.
+/// Roads, nodes and arms by number, for fast look-ups.
 struct Index<'a> {
     roads: BTreeMap<RoadId, &'a Road>,
     nodes: BTreeMap<NodeId, &'a RoadNode>,
@@ -291,7 +293,7 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// The set point next to a node along an arm.
+    /// The next point that defines the line, from a node along an arm.
     fn next_m(&self, arm: Arm) -> Option<DVec2> {
         let road = self.roads.get(&arm.road)?;
         let other = || self.nodes.get(&road.ends[1 - arm.end]).map(|n| n.at_m);
@@ -336,7 +338,7 @@ impl RoadNetwork {
 }
 
 impl RoadChange {
-    /// The same change seen from another frame: `pose` is that of this frame in the other one, `turn_deg` its heading.
+    /// This change in another frame: `pose` is that of this frame in the other one, `turn_deg` its heading.
     pub fn in_frame(self, pose: &Pose, turn_deg: f64) -> Self {
         let there = |p: DVec2| pose.apply(p.extend(0.0)).truncate();
         match self {

@@ -7,9 +7,9 @@ use glam::DVec2;
 use super::corner::{Corners, Seen, set_back};
 use super::{RoadNode, curve};
 
-/// So far an arm widens before it meets the ring, m.
+/// Distance before the ring at which an arm begins to widen, m.
 const FLARE_M: f64 = 5.0;
-/// Lanes join and leave the ring so far from the middle of the arm, as an angle about the island.
+/// Angle about the island between the middle of an arm and the places where its lanes join and leave the ring.
 const JOIN_RAD: f64 = 0.5;
 /// Length of a piece of the ring, rad.
 const STEP_RAD: f64 = 0.05;
@@ -34,7 +34,7 @@ pub(super) fn draw(node: &RoadNode, arms: &[Seen<'_>], size_m: [f64; 2], out: &m
     if walk_m > 0.0 {
         out.walks.push((circle(0.0, TAU, outer_m), walk_m));
     }
-    // Places on the ring at which it is joined or left.
+    // Places on the ring at which lanes join or leave it.
     let mut joints: Vec<f64> = Vec::new();
     let gap = neighbours(arms, center, outer_m);
     for seen in arms {
@@ -102,7 +102,7 @@ fn neighbours(arms: &[Seen<'_>], center: DVec2, outer_m: f64) -> f64 {
     all.iter().zip(next).map(|(a, b)| b - a).fold(TAU, f64::min)
 }
 
-/// The kerb of an arm opens into that of the ring.
+/// Widens the kerb of an arm into that of the ring.
 fn flare(seen: &Seen<'_>, left: bool, center: DVec2, outer_m: f64, out: &mut Corners) {
     let kerb = seen.kerb(left);
     let Some(last) = kerb
@@ -112,7 +112,7 @@ fn flare(seen: &Seen<'_>, left: bool, center: DVec2, outer_m: f64, out: &mut Cor
         return;
     };
     let (a, b) = (kerb[last], kerb[last + 1]);
-    // By halves: where the piece leaves the circle.
+    // Bisection for the place where the piece leaves the circle.
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..40 {
         let t = (low + high) / 2.0;

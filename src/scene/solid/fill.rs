@@ -1,14 +1,14 @@
-//! Solids to voxels: which voxels of a map a solid fills, and how much of each.
+//! Solids to voxels: the voxels of a map that a solid fills, and how much of each.
 
 use glam::DVec3;
 
 use super::Solid;
 use crate::{Class, Extent};
 
-/// Labels are extended downward by so many bins in the Occ3D convention.
+/// Number of bins by which labels are extended downward in the Occ3D convention.
 pub const SMEAR: usize = 2;
 
-/// Extends what stands in a column of any height downward by [`SMEAR`] bins, as far as there is free space: the Occ3D
+/// Extends the labels in a column of any height downward by [`SMEAR`] bins, as far as there is free space: the Occ3D
 /// convention.
 pub fn smear_down<const BINS: usize>(column: &mut [u8; BINS]) {
     let solid = *column;
@@ -29,11 +29,11 @@ const CORNERS: [usize; 8] = [0, 2, 6, 8, 18, 20, 24, 26];
 const MIDDLE: usize = 13;
 /// Half width below which a pole or plate could pass between the samples, m.
 const THINNEST_M: f64 = 0.095;
-/// Samples in a voxel that make it the solid's, of 27: a third.
+/// Samples of a voxel, of 27, that must be inside for the voxel to be the solid's: a third.
 const NEEDED: u8 = 9;
 
-/// Visits every voxel that the solid fills, with the number of the voxel's 27 samples inside it: those a third full, or
-/// touched at all if the solid is thinner than a voxel. `column` says which columns count.
+/// Visits every voxel that the solid fills, with the number of the voxel's 27 samples inside it: voxels a third full,
+/// or touched at all if the solid is thinner than a voxel. `column` is true for columns that count.
 pub fn fill(
     extent: Extent,
     solid: &Solid,
@@ -88,11 +88,11 @@ pub fn fill(
     }
 }
 
-/// How many of a voxel's 27 samples are inside.
+/// Number of a voxel's 27 samples that are inside.
 fn votes(solid: &Solid, thin: bool, inside: impl Fn(usize) -> bool) -> u8 {
     let sample = |i: usize| u8::from(inside(i));
     let corners: u8 = CORNERS.map(sample).iter().sum();
-    // Without pores a voxel whose corners are all inside is full; a third of one needs a corner or the middle.
+    // In a solid without pores a voxel whose corners are all inside is full; a third full takes a corner or the middle.
     match corners {
         8 if solid.porosity <= 0.0 => 27,
         0 if !thin && solid.porosity <= 0.0 && sample(MIDDLE) == 0 => 0,
@@ -109,7 +109,7 @@ mod tests {
 
     use super::*;
 
-    /// Columns are sampled once and levels once; here every sample of every voxel is asked.
+    /// Tests every sample of every voxel; the code itself samples columns and levels once each.
     #[test]
     fn a_prism_fills_what_each_of_its_samples_says() {
         let corners = |turn: f64, n: usize, far: f64, near: f64| -> Vec<DVec2> {

@@ -1,5 +1,5 @@
-//! Analytic solids that a world is made of: tapered boxes, upright frustums, ellipsoids, prisms.
-//! Each answers two questions: is this point inside, and where does a ray enter.
+//! Analytic solids that a world is made of: tapered boxes, upright frustums, ellipsoids, prisms. Each can test whether
+//! a point is inside, and find where a ray enters.
 
 pub mod fill;
 mod prism;
@@ -132,7 +132,7 @@ impl Solid {
         }
     }
 
-    /// The same with a radius or half width of at least `half_m` on the ground.
+    /// The solid with a radius or half width of at least `half_m` on the ground.
     fn at_least(&self, half_m: f64) -> Self {
         let mut out = self.clone();
         match &mut out.shape {
@@ -200,12 +200,12 @@ impl Solid {
         ((h >> 11) as f64) < self.porosity * (1u64 << 53) as f64
     }
 
-    /// True if every level of it looks the same, so that a point is inside where its level and its place on the ground are.
+    /// True if all its levels look the same, so that a point is inside if its height and its place on the ground are.
     fn is_upright(&self) -> bool {
         matches!(self.shape, Shape::Prism { .. }) && self.porosity <= 0.0
     }
 
-    /// True if it reaches over that height, m.
+    /// True if the height `z_m` is between its bottom and its top.
     fn spans(&self, z_m: f64) -> bool {
         (z_m - self.center.z).abs() <= self.reach().z
     }
@@ -238,8 +238,8 @@ impl Solid {
         inside && !self.is_pore(p)
     }
 
-    /// Outward unit normal at a point of the surface, for what an echo is like. Leaves of a porous solid look anywhere:
-    /// their normal is a hash of the lump.
+    /// Outward unit normal at a point of the surface, as it affects an echo. Leaves of a porous solid face any
+    /// direction: their normal is a hash of the lump.
     pub fn normal(&self, p: DVec3) -> DVec3 {
         if self.porosity > 0.0 {
             let h = hash(self.lump(p) ^ 0x1eaf);

@@ -8,7 +8,7 @@ fn edges(outline: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
     (0..outline.len()).map(|i| (outline[i], outline[(i + 1) % outline.len()]))
 }
 
-/// Where the ray first enters the prism ahead of its origin, and where it leaves after that.
+/// Distances at which the ray first enters the prism ahead of its origin and at which it leaves it after that.
 pub(super) fn clip(outline: &[DVec2], half: DVec3, o: DVec3, d: DVec3) -> Option<(f64, f64)> {
     const AHEAD: f64 = 1e-6;
     // The slab between bottom and top.

@@ -1,4 +1,4 @@
-//! Boxes by diffusion and projection; then rules place what was left out or does not stand as it was said to.
+//! Boxes by diffusion and projection; rules then place the objects that were left out or break a statement.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,12 +12,12 @@ use place::to_graph::Graphed;
 use scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectState, SceneGraph};
 use scene::{BevLayout, SceneBox};
 
-/// So far beside the middle of the lane that it was said to be in, m, a vehicle drives between two lanes.
+/// Distance from the middle of its stated lane from which on a vehicle drives between two lanes, m.
 const ASTRAY_M: f64 = 1.0;
 
-/// Boxes of the network; those that the projection could not mend are placed by rules around all the others. While a
-/// statement does not hold even so, the things that it speaks of are placed again, too, and at last everything: what was said
-/// comes before what the network would like. The first of these placements that breaks the least is taken.
+/// Boxes of the network; those that the projection could not repair are placed by rules around the others. While a
+/// statement still does not hold, the things that it names are placed again too, and finally everything: statements
+/// take precedence over the network. Of these placements, the first that breaks the fewest is taken.
 pub(super) fn diffuse_and_mend(
     net: &LayoutNet,
     graphed: &Graphed,
@@ -85,14 +85,14 @@ pub(super) fn diffuse_and_mend(
     Ok((placement, diffused))
 }
 
-/// What is said of things that found no place.
+/// Statements about things that found no place.
 fn left_out(graph: &SceneGraph, placement: &Placement) -> Vec<Edge> {
     let out: BTreeSet<u32> = placement.left_out.iter().map(|l| l.0).collect();
     let of = |e: &&Edge| out.contains(&e.from);
     graph.edges.iter().filter(of).copied().collect()
 }
 
-/// True for a vehicle that is said to be in a lane, does not stand at its edge, and is not in the middle of it.
+/// True for a vehicle whose lane was stated, that does not stand at the lane's edge and is not in its middle.
 fn is_between_lanes(graph: &SceneGraph, map: &LaneMap<'_>, id: u32, b: &SceneBox) -> bool {
     use LaneRole as L;
     let lane = |e: &&Edge| {

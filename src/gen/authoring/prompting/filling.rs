@@ -1,4 +1,4 @@
-//! What memory fills in where a prompt leaves something open, and what it says of that.
+//! Parts of a scene that memory fills in where a prompt leaves them open, with its notes on them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,16 +16,16 @@ use scene::{BoxLabel, Class, TimeOfDay, Weather};
 /// Most objects that memory adds.
 const MOST_REMEMBERED: usize = 14;
 
-/// What came from memory.
+/// Contributions of memory.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Remembered {
-    /// The nearest scenes: what a person would say of each, and how near (cosine).
+    /// The nearest scenes: a description of each, and its similarity (cosine).
     pub scenes: Vec<(String, f64)>,
-    /// What was filled in, in words.
+    /// Parts that were filled in, in words.
     pub filled: Vec<String>,
     /// True if the road is a remembered one.
     pub road: bool,
-    /// The nearest of them, whole.
+    /// The nearest of the scenes as a whole.
     #[serde(skip)]
     pub nearest: Option<Entry>,
 }
@@ -39,7 +39,7 @@ pub(super) fn memory(how: &How) -> anyhow::Result<(Arc<Memory>, Vec<String>)> {
     Ok((Arc::new(bundled.with(own)?), problems))
 }
 
-/// Fills what a description leaves open from the nearest scenes; the road that they propose.
+/// Fills open parts of a description from the nearest scenes. Returns the road that they propose.
 pub(super) fn fill_in(
     memory: &Memory,
     prompt: &str,
@@ -82,7 +82,7 @@ pub(super) fn fill_in(
         .copied();
         filled.extend(d.weather.map(|w| format!("weather: {}", w.name())));
     }
-    // A prompt that says how busy it is, or that this is all, leaves nothing of that open.
+    // A prompt that states how busy it is, or that this is all, leaves no room for more objects.
     let mut room = if d.density.is_some() { 0 } else { MOST_REMEMBERED };
     for (class, by_state) in &proposal.counts {
         for (n, state) in
@@ -125,7 +125,7 @@ pub(super) fn fill_in(
     )))
 }
 
-/// What memory would put into a description; none without its weights.
+/// The contributions that memory would make to a description; `None` without its weights.
 pub fn recall(prompt: &str, description: &Description, seed: u64) -> Option<Remembered> {
     let (memory, _) = memory(&How::default()).ok()?;
     let (found, _) = fill_in(&memory, prompt, &mut description.clone(), seed).ok()??;

@@ -1,4 +1,4 @@
-//! Edits of the background by words: which things they mean, what comes, and what is asked back.
+//! Edits of the background by words: the things that are meant, the changes, and the questions.
 
 use std::collections::BTreeMap;
 
@@ -15,10 +15,11 @@ use scene::background::STOREY_M;
 use scene::{Background, BevLayout, BoxId, Class, Edit, SceneBox, ThingId};
 use world::scenery::Setting;
 
-/// Change of a height if none is said: a building by storeys, other things by this share of theirs.
+/// Change of a height if none is said: number of storeys for a building; the next constant is the share for other
+/// things.
 const USUAL_STOREYS: f64 = 2.0;
 const USUAL_SHARE: f64 = 0.4;
-/// Buildings and other things are not made lower than this, m.
+/// Least heights of buildings and of other things after an edit, m.
 const LEAST_M: [f64; 2] = [2.5, 0.4];
 
 /// A thing that a question names.
@@ -26,11 +27,11 @@ const LEAST_M: [f64; 2] = [2.5, 0.4];
 pub struct ThingCandidate {
     /// Its kind.
     pub class: &'static str,
-    /// Where it stands, in words.
+    /// Its place, in words.
     pub place: String,
-    /// It, or the first one of a row.
+    /// Its id, or that of the first one of a row.
     pub id: ThingId,
-    /// The clause that means it alone; it stands for the one that was asked about.
+    /// The clause that means it alone; it replaces the one that raised the question.
     pub said: Said,
 }
 
@@ -41,10 +42,10 @@ impl ThingCandidate {
     }
 }
 
-/// Things that fit where one was meant.
+/// A question: several things fit where one was meant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ThingQuestion {
-    /// `the tree: 3 fit, which one?`
+    /// The question: `the tree: 3 fit, which one?`
     pub text: String,
     /// Index of the clause that named it.
     pub clause: usize,
@@ -52,20 +53,20 @@ pub struct ThingQuestion {
     pub candidates: Vec<ThingCandidate>,
 }
 
-/// What came of the clauses about the background.
+/// Result of the clauses about the background.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ThingOutcome {
     /// Changes, in order; world frame.
     pub edits: Vec<Edit>,
-    /// What must be answered first.
+    /// Questions that must be answered first.
     pub questions: Vec<ThingQuestion>,
-    /// What was done, one line each.
+    /// Changes that were made, one line each.
     pub done: Vec<String>,
-    /// What could not be done, one line each.
+    /// Changes that could not be made, one line each.
     pub cannot: Vec<String>,
 }
 
-/// An open scene, as far as edits of its background need it.
+/// The parts of an open scene that edits of its background need.
 #[derive(Clone, Copy, Debug)]
 pub struct OpenBackground<'a> {
     /// Its things, ego frame.
@@ -81,7 +82,7 @@ pub fn means_barriers(said: &[Said], boxes: &BTreeMap<BoxId, SceneBox>) -> bool 
     boxes.values().any(|b| b.class == Class::Barrier) && said.iter().any(super::may_be_barrier)
 }
 
-/// Carries out what was said, clause by clause, each on what the one before left.
+/// Carries out the clauses one by one, each on the result of the one before.
 pub fn carry_out(said: &[Said], open: &OpenBackground<'_>, seed: u64) -> ThingOutcome {
     let mut out = ThingOutcome::default();
     if said.is_empty() {
@@ -94,7 +95,7 @@ pub fn carry_out(said: &[Said], open: &OpenBackground<'_>, seed: u64) -> ThingOu
             Ok((edit, n)) => {
                 let off = off(s, &edit, &Ground::new(open.layout, open.boxes, &now));
                 apply(&mut now, &edit, open.things);
-                // (a number that was not said)
+                // (a number that was not in the text)
                 let counted = n > 1 && s.count.is_none_or(|c| c as usize != n);
                 let n = if counted { format!(" ({n})") } else { String::new() };
                 let off = off.map(|o| format!(" ({o})")).unwrap_or_default();
@@ -117,7 +118,7 @@ pub fn carry_out(said: &[Said], open: &OpenBackground<'_>, seed: u64) -> ThingOu
     out
 }
 
-/// How far ahead the first of new things stands, where that is not as it was said: "9.2 m in place of 12 m".
+/// Distance ahead of the first new thing, if it is not the one that was asked for: "9.2 m in place of 12 m".
 fn off(s: &Said, edits: &[Edit], ground: &Ground) -> Option<String> {
     let asked_m = s.place.distance_m.filter(|_| s.place.near.is_none() && !s.row)?;
     let first = edits.iter().find_map(|e| match e {
@@ -129,7 +130,7 @@ fn off(s: &Said, edits: &[Edit], ground: &Ground) -> Option<String> {
     is_off.then(|| format!("{found_m:.1} m in place of {asked_m} m"))
 }
 
-/// What a description says is there comes, in a scene that is there.
+/// The clause as a command: in an open scene, a thing that a description mentions is added.
 fn as_command(s: &Said) -> Said {
     Said {
         verb: if s.verb == Verb::Have { Verb::Add } else { s.verb },
@@ -147,7 +148,8 @@ enum Stopped {
     Cannot(String),
 }
 
-/// Edits of one clause in the ego frame, in the order that they are applied, and how many things they are of.
+/// Edits of one clause in the ego frame, in the order in which they are applied, and the number of things that they
+/// change.
 fn one(s: &Said, now: &Background, ground: Ground, seed: u64) -> Result<(Vec<Edit>, usize), Stopped> {
     let called = format!("{}{}", s.things(), s.place());
     if matches!(s.verb, Verb::Add | Verb::Have) {
@@ -237,7 +239,7 @@ fn metres(amount: Amount) -> f64 {
     }
 }
 
-/// What later clauses find.
+/// Applies edits to the things that later clauses look at.
 fn apply(now: &mut Background, edits: &[Edit], all: &Background) {
     for edit in edits {
         match edit {

@@ -1,10 +1,10 @@
-//! The words that sentences about the background are made of, and what each says.
+//! The words of sentences about the background, with their meanings.
 
 use place::beside_road::{Verb, What};
 use scene::background::{LineKind, PostKind, TreeKind};
 use world::scenery::Setting;
 
-/// What a run of words says.
+/// Meaning of a run of words.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Word {
     Verb(Verb),
@@ -50,7 +50,7 @@ use Setting::*;
 use What::*;
 use Word as W;
 
-/// Words by what they say, parted by `|`.
+/// Words by their meaning, separated by `|`.
 const TABLE: &[(&str, Word)] = table! {
     "remove|delete|erase|cut down|chop down|fell|demolish|tear down|take away|take out|get rid of|clear|drop|knock down" => W::Verb(Verb::Remove),
     "add|plant|build|put|place|insert|draw|erect|set up|create" => W::Verb(Verb::Add),
@@ -168,7 +168,7 @@ const TABLE: &[(&str, Word)] = table! {
 /// Longest run of words in the table.
 const LONGEST: usize = 5;
 
-/// What the longest run at the head of `words` says, and its length; `None` if no word of the table is there.
+/// Meaning and length of the longest run of the table at the head of `words`; `None` if no word of the table is there.
 pub(super) fn lookup(words: &[&str]) -> Option<(Word, usize)> {
     (1..=LONGEST.min(words.len())).rev().find_map(|n| {
         let run = words[..n].join(" ");

@@ -1,5 +1,5 @@
-//! Sentences about what stands beside the road, as typed values. A clause is taken only if every word of it is known
-//! here and it names a thing of the background; everything else is left to the two readers.
+//! Sentences about scenery, as typed values. A clause is taken only if every word of it is known here and it names a
+//! thing of the background; all other clauses are left to the two readers.
 
 pub mod edits;
 mod lexicon;

@@ -1,4 +1,4 @@
-//! Ground for new things that words ask for: beside the road, clear of what is there.
+//! Ground for new things that words ask for: beside the road, clear of other things.
 
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ use scene::road_map::RoadMap;
 use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, SceneBox};
 use world::scenery::distance_cells;
 
-/// Things end at the border of the grid, m.
+/// Distance from the border of the grid at which things end, m.
 const BORDER_M: f64 = 0.6;
 
 /// A scene's ground with room for new things; all in the ego frame.
@@ -73,7 +73,7 @@ impl Ground {
         })
     }
 
-    /// True inside the map, that far from its sides and a little more.
+    /// True inside the map, at least that far from its sides and a little more.
     fn is_within(&self, p: DVec2, margin_m: f64) -> bool {
         let (min, max) = (self.extent.min_m().truncate(), self.extent.max_m().truncate());
         let margin_m = margin_m + BORDER_M;
@@ -104,7 +104,7 @@ impl Ground {
         free
     }
 
-    /// True if a point fits what was said of a side, ahead and behind, and near what.
+    /// True if a point fits the clause: its side, ahead or behind, and the place that it is near to.
     pub fn fits(&self, place: &Where, p: DVec2) -> bool {
         let own = self.roads.along_ego_lane(p);
         let side = match place.side {
@@ -120,7 +120,8 @@ impl Ground {
         side && ahead && super::targets::is_near(&self.roads, place, &[p])
     }
 
-    /// The free place that fits best: at the way along the road that was said, as near to the road as `from_paved_m`.
+    /// The free place that fits best: at the stated distance along the road, and as near to `from_paved_m` from the
+    /// paved ground as possible.
     pub fn place(
         &self,
         place: &Where,
@@ -134,7 +135,7 @@ impl Ground {
             .filter_map(|c| {
                 let paved = f64::from(self.to_paved[c]) * Extent::VOXEL_M;
                 let own = all[c];
-                // Beside the own road rather than beside one that leads away from it.
+                // Prefers places beside the ego's road to places beside one that leads away from it.
                 let cost = (own.x - along_m).abs() * 2.0 + own.y.abs() * 0.25 + (paved - from_paved_m).abs();
                 (paved > 0.3 && cost < 60.0).then_some((cost, c))
             })

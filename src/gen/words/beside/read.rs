@@ -1,4 +1,4 @@
-//! Words to typed clauses: parts a text, and reads each part that is about the background.
+//! Words to typed clauses: splits a text, and reads each part that is about the background.
 
 use super::lexicon::{Word, lookup};
 use super::tokens::{Token, TokenKind, tokens};
@@ -7,14 +7,14 @@ use place::beside_road::Span;
 use scene::background::PostKind;
 use world::scenery::Setting;
 
-/// What of a text is about the background, and the rest with the same bytes in the same places.
+/// The clauses of a text about the background, and the rest with the same bytes in the same places.
 #[derive(Clone, Debug, Default)]
 pub struct Taken {
-    /// Clause by clause.
+    /// The clauses in order.
     pub said: Vec<Said>,
-    /// The text with spaces for what was taken.
+    /// The text with spaces in place of the parts that were taken.
     pub rest: String,
-    /// Numbers of what was taken that nothing is made of.
+    /// Numbers in the parts that were taken that have no effect.
     pub idle: Vec<Span>,
 }
 
@@ -36,7 +36,7 @@ pub fn take(text: &str, edits: bool) -> Taken {
             continue;
         };
         let said = read(clause, span, edits, verb).filter(|s| {
-            // "a car behind a truck and a tree": part of where the car is.
+            // "a car behind a truck and a tree": part of the car's place.
             before || joint.is_some_and(|t| t.kind == TokenKind::Comma) || s.place != Where::default()
         });
         verb = said
@@ -61,7 +61,7 @@ pub fn take(text: &str, edits: bool) -> Taken {
     out
 }
 
-/// Puts spaces in place of a part of a text: all else keeps its bytes.
+/// Puts spaces in place of a part of a text: the rest keeps its bytes.
 pub fn blank(text: &mut String, span: Span) {
     let spaces = " ".repeat(span.end - span.start);
     text.replace_range(span.start..span.end, &spaces);
@@ -109,7 +109,7 @@ fn clauses(tokens: &[Token]) -> Vec<(Option<&Token>, &[Token])> {
     out
 }
 
-/// Reads one clause; `None` if it is not about the background, or not wholly understood.
+/// Reads one clause; `None` if it is not about the background, or not understood completely.
 fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Option<Said> {
     let words = senses(clause)?;
     let mut s = Said {
@@ -149,7 +149,7 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
             Word::Right => s.place.side = Some(SideOf::Right),
             Word::Both => {}
             Word::Ahead => s.place.ahead = Some(true),
-            // "behind the trees" is no place of a thing
+            // "behind the trees" is not the place of a thing
             Word::Behind if i + 1 < words.len() && what.is_some() && verb.is_none() => return None,
             Word::Behind => s.place.ahead = Some(false),
             Word::Near => s.place.near = s.place.near.or(Some(NearTo::Ego)),
@@ -157,7 +157,7 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
             Word::Junction => s.place.near = Some(NearTo::Junction),
             Word::Me => s.place.near = s.place.near.or(Some(NearTo::Ego)),
             Word::Road => {
-                // "near the road" is where all of it stands
+                // "near the road" holds for all scenery
                 if s.place.near == Some(NearTo::Ego) {
                     s.place.near = None;
                 }
@@ -187,7 +187,7 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
     s.plural |= no || all;
     s.verb = match (verb.or(carried.filter(|_| edits)), comparative) {
         _ if no && verb.is_none_or(|v| v == Verb::Make || v == Verb::Have) => Verb::Remove,
-        // "no" beside another command says nothing that could be carried out
+        // "no" beside another command cannot be carried out
         _ if no => return None,
         (Some(Verb::Make) | None, Some(change)) => change,
         (Some(Verb::Add), Some(_)) | (Some(Verb::Remove), _) if s.by.is_some() => return None,
@@ -202,13 +202,13 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
         return None;
     }
     match s.verb {
-        // A description says what is there, not which: "the building" alone belongs to another sentence.
+        // A description states that things are there, not which: "the building" alone belongs to another sentence.
         Verb::Have if edits && s.height.is_some() && s.definite => s.verb = Verb::Raise,
         Verb::Have if s.definite => return None,
         Verb::Have if edits => s.verb = Verb::Add,
         _ => {}
     }
-    // "Clear the car park" is about what stands on it, "bus stops ahead" about a bus.
+    // "Clear the car park" is about the objects on it, "bus stops ahead" about a bus.
     let cleared = matches!(s.what, What::Place(p) if p != Setting::Forest) && s.verb == Verb::Remove && !no;
     let stops = s.what == What::Post(PostKind::BusStop) && verb.is_none();
     if cleared || stops {
@@ -220,7 +220,7 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
     (!other && (edits || !may_be_barrier(&s))).then_some(s)
 }
 
-/// Reads a number and what it counts or measures: how many words after it belong to it. `None` if it fits nothing.
+/// Reads a number and its unit or thing: the number of words after it that belong to it. `None` if it fits nothing.
 fn number(
     s: &mut Said,
     n: f64,
@@ -270,13 +270,13 @@ fn number(
     Some(taken)
 }
 
-/// True if the word names barriers too, which are boxes, and nothing tells that it runs along the road.
+/// True if the word may also name barriers, which are boxes, and nothing indicates that it runs along the road.
 pub fn may_be_barrier(s: &Said) -> bool {
     use scene::background::LineKind::{Fence, GuardRail};
     matches!(s.what, What::Line(Fence | GuardRail)) && !s.place.along
 }
 
-/// What the words of a clause say, one after another; `None` if one is not known.
+/// Meanings of the words of a clause, one after another; `None` if one is not known.
 fn senses(clause: &[Token]) -> Option<Vec<Word>> {
     let is_word = |t: &&Token| t.text != "#" && t.kind != TokenKind::Idle;
     let clause: Vec<&Token> = clause.iter().filter(is_word).collect();

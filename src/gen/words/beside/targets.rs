@@ -1,4 +1,4 @@
-//! Which things of a scene the words mean.
+//! The things of a scene that words mean.
 
 use glam::DVec2;
 
@@ -8,25 +8,25 @@ use scene::background::{LineKind, PostKind};
 use scene::road_map::{RoadMap, outline_distance_m};
 use scene::{Background, Form, Thing, ThingId};
 
-/// "Near" a crossing, a junction, and the ego vehicle, m.
+/// Distances that count as "near" a crossing, a junction, and the ego vehicle, m.
 const NEAR_M: [f64; 3] = [12.0, 20.0, 15.0];
-/// A thing "12 m ahead" is at most this far from there, m.
+/// Largest distance of a thing "12 m ahead" from that place, m.
 const OFF_M: f64 = 6.0;
 /// Most candidates that a question names.
 const MOST: usize = 8;
-/// Trees of a row stand at most this far from each other and from the paved ground, m.
+/// Largest distance of the trees of a row from each other and from the paved ground, m.
 const ROW_GAP_M: f64 = 14.0;
 const ROW_FROM_PAVED_M: f64 = 2.6;
 
-/// What a clause means in a scene.
+/// Result of looking up the things of a clause in a scene.
 pub(super) enum Meant {
-    /// These; none if nothing fits.
+    /// These things; none if nothing fits.
     These(Vec<ThingId>),
-    /// One is meant and several fit: each with its place in words and the clause that means it alone.
+    /// One thing is meant and several fit: each with its place in words and the clause that means it alone.
     Ask(Vec<(ThingId, String, Said)>),
 }
 
-/// True if any of the points is near what was said.
+/// True if any of the points is near the place that was stated.
 pub(super) fn is_near(roads: &RoadMap, place: &Where, points_m: &[DVec2]) -> bool {
     let Some(near) = place.near else { return true };
     let reach = place.distance_m.unwrap_or(
@@ -45,7 +45,7 @@ pub(super) fn is_near(roads: &RoadMap, place: &Where, points_m: &[DVec2]) -> boo
     })
 }
 
-/// True if a form is what the word names.
+/// True if the word names the form.
 pub(super) fn is(what: What, form: &Form) -> bool {
     match (what, form) {
         (What::Thing, _) | (What::Building(_), Form::Building(_)) | (What::Shrubs, Form::Shrubs(_)) => true,
@@ -70,7 +70,7 @@ pub(super) fn is(what: What, form: &Form) -> bool {
     }
 }
 
-/// The things that a clause means; `things` in the ego frame, those in the grid.
+/// The things in the grid that a clause means; `things` are in the ego frame.
 pub(super) fn targets(said: &Said, things: &Background, ground: &Ground) -> Meant {
     if let Some(id) = said.id {
         let found = things.get(ThingId(id)).filter(|t| is(said.what, &t.form));
@@ -148,7 +148,7 @@ fn is_there(said: &Said, thing: &Thing, ground: &Ground) -> bool {
     side && ahead && is_near(&ground.roads, place, &points)
 }
 
-/// The row that is meant: trees that stand along the road, one after another.
+/// The row that is meant: trees one after another along the road.
 fn row(fits: &[&Thing], said: &Said, ground: &Ground) -> Meant {
     let mut list: Vec<(&Thing, DVec2)> = fits
         .iter()

@@ -1,4 +1,4 @@
-//! Sentences that are taken and what they say, and sentences that must be left alone.
+//! Sentences that are taken, with their clauses, and sentences that must be left alone.
 
 use std::collections::BTreeMap;
 
@@ -181,7 +181,7 @@ fn descriptions_are_taken() {
     );
 }
 
-/// What is about something else, or not wholly understood, goes to the other reader as it was.
+/// A clause about something else, or not understood completely, is left to the other reader unchanged.
 #[test]
 fn other_sentences_are_left_alone() {
     for text in [
@@ -335,7 +335,8 @@ fn targets_are_what_the_words_name() {
     assert_eq!(raised("lower the building on the left by one storey"), by(-3.0));
 }
 
-/// Several fit: asked back, with words that name each alone. None fits, or it cannot be: said.
+/// If several fit, a question offers words that name each of them alone. If none fits, or the change is not possible,
+/// the outcome says so.
 #[test]
 fn what_is_unclear_is_asked_and_what_cannot_be_is_said() {
     for (text, which, id, by_m) in [
@@ -371,7 +372,7 @@ fn what_is_unclear_is_asked_and_what_cannot_be_is_said() {
     }
 }
 
-/// New things stand on the side and at the distance that was said, off the road.
+/// New things stand on the stated side and at the stated distance, off the road.
 #[test]
 fn new_things_stand_where_they_were_wanted() {
     {
@@ -451,7 +452,7 @@ fn the_sentences_of_the_other_reader_are_left_alone() {
     assert!(taken.is_empty(), "{taken:#?}");
 }
 
-/// A description's sides look as they were described, and nothing that must not be there is.
+/// The sides of a description look as described, without excluded things.
 #[test]
 fn descriptions_become_scenery() {
     use super::wishes::scenery;
@@ -511,7 +512,7 @@ fn descriptions_become_scenery() {
         );
     }
     assert!(worlds > 2 && houses > worlds, "{worlds} {houses}");
-    // What cannot be had is said.
+    // Wishes that cannot be met are reported.
     let empty = BevLayout::default();
     for words in ["no trees near the crossing", "a tree 300 m ahead on the left"] {
         let (_, short) = scenery(&said(&[words]), &empty, &none, 1);
@@ -519,7 +520,7 @@ fn descriptions_become_scenery() {
     }
 }
 
-/// What was said can be read again: as words, and as the JSON of its schema.
+/// Clauses can be read again: as words, and as the JSON of their schema.
 #[test]
 fn clauses_are_values_with_words() {
     for (text, edits, words) in [

@@ -1,20 +1,20 @@
-//! A text to words, numbers and marks: the tokens of [`words`](crate), with lengths as number and unit.
+//! Splits a text into words, numbers and marks: the tokens of [`words`](crate), with lengths as number and unit.
 
 use super::super::measure::{Kind, measures};
 use place::beside_road::Span;
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TokenKind {
     /// A word in lower case.
     Word,
     /// A number.
     Number(f64),
-    /// A comma, or what stands for one.
+    /// A comma, or a word that stands for one.
     Comma,
     /// The end of a sentence: . ; ! ? and line breaks.
     Stop,
-    /// A number that measures what no thing beside the road has: "30 km/h".
+    /// A number of a unit that no thing beside the road has: "30 km/h".
     Idle,
     /// Any other mark.
     Mark,
@@ -23,11 +23,11 @@ pub enum TokenKind {
 /// A word, a number or a mark.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Token {
-    /// What it is.
+    /// Kind.
     pub kind: TokenKind,
-    /// In lower case.
+    /// Its text in lower case.
     pub text: String,
-    /// Where it stood.
+    /// Its place in the text.
     pub span: Span,
 }
 

@@ -1,5 +1,5 @@
-//! A description's background to scenery: a style for each side of the road, new things where the style brings none, and
-//! what must not be there taken out.
+//! The background of a description as scenery: a style for each side of the road, new things where the style brings
+//! none, and excluded things removed.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use scene::{Background, BevLayout, BoxId, Form, SceneBox};
 use world::draw::Draw;
 use world::scenery::{Setting, Side, Style, background_of};
 
-/// The scenery that a description asks for on a layout, and what of it could not be had, one line each.
+/// The scenery that a description asks for on a layout, and the wishes that could not be met, one line each.
 pub fn scenery(
     description: &Description,
     layout: &BevLayout,
@@ -50,7 +50,7 @@ pub fn scenery(
             let mut here = s.clone();
             here.place.side = Some(side);
             if s.place.side.is_none() && !s.place.along && !s.plural && side == SideOf::Right {
-                continue; // one was asked for, somewhere
+                continue; // only one was asked for, on any side
             }
             if s.place.side.is_none() && !s.place.along && !s.plural {
                 here.place.side = None;
@@ -60,7 +60,7 @@ pub fn scenery(
                 continue;
             }
             match forms(&here, ground, seed ^ i as u64) {
-                // What was asked for is placed: scenery drawn anew leaves it.
+                // Things that were asked for are placed: they stay when scenery is drawn anew.
                 Ok(forms) => forms.into_iter().for_each(|f| {
                     things.add_as(f, true);
                 }),
@@ -71,7 +71,7 @@ pub fn scenery(
     (things, short)
 }
 
-/// True if what was described is there already.
+/// True if the thing that was described is there already.
 fn is_there(s: &Said, things: &Background, ground: &Ground) -> bool {
     if s.row || s.place.distance_m.is_some() || s.count.is_some() || s.place.near.is_some() {
         return false;
@@ -111,10 +111,10 @@ fn style(description: &Description, layout: &BevLayout, seed: u64) -> Style {
             .background
             .iter()
             .filter(|s| s.place.side.is_none_or(|of| of == which));
-        // Kinds of place first: "trees" among them say how many.
+        // Kinds of place first: "trees" among them give a number.
         let (places, rest): (Vec<&Said>, Vec<&Said>) = here.partition(|s| matches!(s.what, What::Place(_)));
         for s in places.into_iter().chain(rest) {
-            // What is near a crossing, or counted, is put in or taken out afterwards.
+            // Things near a crossing, or counted, are added or removed afterwards.
             if s.place.near.is_none() && s.count.is_none() && !(s.row || s.place.distance_m.is_some()) {
                 wish(side, s);
             }
@@ -199,7 +199,7 @@ fn storeys(s: &Said, setting: Setting) -> Option<u32> {
     Some(said.map_or(usual, |n| n.round().clamp(1.0, 60.0) as u32))
 }
 
-/// New things of a clause, ego frame; an error in words where there is no room or it cannot be made.
+/// New things of a clause, ego frame; an error in words if there is no room or it cannot be made.
 pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>, String> {
     let mut draw = Draw::new(seed, "by words");
     let sides: Vec<SideOf> = s
@@ -295,7 +295,7 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
         let Some(p) = ground.place(&s.place, along, from_paved, &fits) else {
             break;
         };
-        // A place that was named exactly is not another one.
+        // A place that was named exactly cannot be replaced by another.
         if s.place.distance_m.is_some() && s.place.near.is_none() && i == 0 {
             let off = (ground.roads.along_ego_lane(p).x - along).abs();
             if off > 5.0 {

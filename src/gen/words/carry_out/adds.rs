@@ -1,4 +1,4 @@
-//! New things: their places are found around what stands there already.
+//! New things: their places are found around the objects that are there already.
 
 use glam::DVec3;
 
@@ -16,12 +16,12 @@ use place::to_graph::to_graph;
 use scene::graph::{LaneRole, Locked, ObjectState, RelationKind, SizeHint};
 use scene::{BoxId, BoxLabel, Class, SceneBox};
 
-/// Where a plan puts things.
+/// Places that were found for a plan.
 pub(super) struct Arranged {
     pub(super) new: Vec<SceneBox>,
     pub(super) left_out: Vec<String>,
     pub(super) unmet: Vec<RelationKind>,
-    /// Distances that are not as they were asked for: which, as asked and as found, m.
+    /// Distances that differ from the ones asked for: relation, and distance asked for and found, m.
     pub(super) off: Vec<(RelationKind, [f64; 2])>,
 }
 
@@ -31,7 +31,7 @@ impl Site for Stage<'_> {
         match self.that(t, Spare::Nearest) {
             Some(ids) => Ok(ids.iter().map(|id| self.boxes[id]).collect()),
             None if self.out.questions.len() > asked => Err(()),
-            // (what is not there is added, and that is said)
+            // (a thing that is not there is added, and a remark says so)
             None => Ok(Vec::new()),
         }
     }
@@ -69,7 +69,7 @@ impl Stage<'_> {
         }
     }
 
-    /// Boxes of the same kind that small things and people join where nothing else is said.
+    /// Boxes of the same kind that small things and people join if no place was stated.
     fn joined_by(&self, t: &Thing) -> Vec<BoxId> {
         let class = t.noun.classes()[0];
         let joins = matches!(class, Class::TrafficCone | Class::Barrier | Class::Pedestrian)
@@ -91,7 +91,7 @@ impl Stage<'_> {
         plan
     }
 
-    /// Places what a plan holds.
+    /// Places the objects of a plan.
     fn put(&mut self, plan: Plan) {
         if plan.asked {
             return;
@@ -149,7 +149,7 @@ impl Stage<'_> {
         }
     }
 
-    /// Says which distances are not as they were asked for.
+    /// Adds a remark for each distance that differs from the one asked for.
     pub(super) fn tell_off(&mut self, off: &[(RelationKind, [f64; 2])]) {
         for (relation, [asked_m, found_m]) in off {
             let tenth = |m: f64| (m * 10.0).round() / 10.0;
@@ -161,7 +161,8 @@ impl Stage<'_> {
         }
     }
 
-    /// What comes next to boxes that are there stands in their strip, if nothing else was said.
+    /// The specs of a plan in which objects next to existing boxes stand in those boxes' strip, if no other place was
+    /// stated; `None` if nothing changes.
     fn in_strips_of_neighbours(&self, plan: &Plan) -> Option<Vec<ObjectSpec>> {
         let mut specs = plan.specs.clone();
         let mut any = false;
@@ -190,7 +191,7 @@ impl Stage<'_> {
         any.then_some(specs)
     }
 
-    /// Finds places; `from` is the box that is moved there, which does not stand in its own way.
+    /// Finds places; `from` is the box that is moved there, which does not count as an obstacle.
     pub(super) fn arrange(
         &mut self,
         specs: &[ObjectSpec],
@@ -233,7 +234,7 @@ impl Stage<'_> {
             .iter()
             .flat_map(|s| s.relations.iter().filter_map(|r| r.distance_m))
             .collect();
-        // (of several in a line the first stands where it was said)
+        // (of several in a line the first stands at the stated place)
         let is_stated = |m: f64| stated.iter().any(|s| (s - m).abs() < 1e-9);
         let off = off(&graphed.graph, &self.map, &p.boxes)
             .into_iter()
@@ -273,7 +274,7 @@ impl Stage<'_> {
         }
     }
 
-    /// More of a kind stand where all of that kind stand.
+    /// Adds more of a kind where all of that kind stand.
     pub(super) fn add_like(&mut self, t: &Thing, others: &[BoxId]) {
         let mut plan = self.plan(std::slice::from_ref(t));
         let on = |relation, anchor| Stated {
@@ -307,7 +308,7 @@ impl Stage<'_> {
         self.put(plan);
     }
 
-    /// Where something was taken away; without any, where what was spoken of last stands.
+    /// Adds things where others were removed; if none were, where the last named thing stands.
     fn add_there(&mut self, t: &Thing) {
         let rest: Vec<_> = t
             .places
@@ -344,7 +345,7 @@ impl Stage<'_> {
         }
     }
 
-    /// New things in the places of old boxes; answers how many.
+    /// Puts new things in the places of old boxes. Returns how many.
     pub(super) fn put_at(&mut self, t: &Thing, spots: &[SceneBox], wanted: usize) -> usize {
         let mut last = Vec::new();
         for old in spots.iter().take(wanted) {
@@ -375,7 +376,7 @@ impl Stage<'_> {
     }
 }
 
-/// A box of another kind where one stands or stood.
+/// A box of another kind in the place of an old one.
 pub(super) fn in_place_of(old: &SceneBox, t: &Thing, id: BoxId) -> Option<SceneBox> {
     let class = t.noun.classes()[0];
     let factor = match t.size {

@@ -1,4 +1,4 @@
-//! Boxes that stay where they are and become something else: another kind, paint, state, heading, or each other.
+//! Changes of boxes that stay where they are: another kind, paint, state or heading, or boxes swapped with each other.
 
 use glam::DVec2;
 
@@ -13,12 +13,13 @@ use scene::graph::{LaneRole, ObjectState, SizeHint};
 use scene::{BoxId, BoxLabel, SceneBox};
 
 impl Stage<'_> {
-    /// One for one; where a number is said, those too many go and those too few stand by the others.
+    /// Replaces one for one. If a number is stated, surplus boxes are removed and missing ones are put beside the
+    /// others.
     pub(super) fn replace(&mut self, who: &[Thing], things: &[Thing]) {
         let ids = match self.those(who, Spare::Farthest) {
             Some(ids) => ids,
             None => {
-                // (what is replaced may have gone by an act before)
+                // (the boxes to replace may have been removed by an act before)
                 let gone = std::mem::take(&mut self.gone);
                 let class = |b: &SceneBox| who.iter().any(|w| w.noun.classes().contains(&b.class));
                 let spots: Vec<SceneBox> = gone.into_iter().filter(class).collect();
@@ -120,7 +121,7 @@ impl Stage<'_> {
         }
     }
 
-    /// The paint of a thing that is there, or was before the first act.
+    /// The paint of a thing that is there now, or was there before the first act.
     fn paint_of(&mut self, of: &Thing) -> Option<scene::Paint> {
         let last = self.last.clone();
         let now = self.fitting(of);
@@ -159,13 +160,13 @@ impl Stage<'_> {
             });
         }
         let Some(state) = traits.state else { return };
-        // (what has a motion keeps it, and its voxels, until it is taken away)
+        // (a box with a motion keeps it, and its voxels, until the motion is removed)
         if state == ObjectState::Waiting && self.halt_box(id) {
             return;
         }
         let b = self.boxes[&id];
         if state == ObjectState::Parked && b.class.is_vehicle() && !self.does(&b, ObjectState::Parked) {
-            // (what parks stands at the edge of the road, on its side)
+            // (a parked box stands at the edge of the road, on its own side)
             let role = if b.center_m.y > 1.0 {
                 LaneRole::LeftRoadside
             } else {
@@ -247,7 +248,7 @@ impl Stage<'_> {
             let p = b.center_m.truncate();
             let yaw_rad = match turn {
                 Turn::Around => {
-                    // A driver changes to the lane that leads there.
+                    // A driver changes to the lane with that direction.
                     let drives = b.velocity_mps.length() > 0.5 && b.class != scene::Class::Pedestrian;
                     if drives && self.change_direction(id) {
                         continue;

@@ -1,4 +1,4 @@
-//! Crossings that a reading asks for, or that something of it stands on: one is put in where the map has none.
+//! Crossings that a reading asks for, or needs as a place for something: one is added where the map has none.
 
 use glam::DVec2;
 
@@ -14,16 +14,16 @@ use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Polyline, PolylineKind,
 const DEPTH_M: f64 = 3.0;
 /// Width of the road that one may span, m.
 const SPAN_M: std::ops::RangeInclusive<f64> = 4.0..=26.0;
-/// How far ahead along our course it is tried where no metres were said, m.
+/// Distances ahead along our course at which a crossing is tried if no metres were stated, m.
 const TRIED_M: [f64; 12] = [
     12.0, 10.0, 14.0, 8.0, 16.0, 18.0, 20.0, 7.0, 22.0, 25.0, 28.0, 31.0,
 ];
-/// So near to the middle of a junction there is none, m.
+/// Distance from the middle of a junction within which there is no crossing, m.
 const JUNCTION_M: f64 = 9.0;
-/// A crossing so near to where one is asked for is that one, m.
+/// Distance from the requested place within which an existing crossing is taken for it, m.
 const SAME_M: f64 = 5.0;
 
-/// A map with one crossing more.
+/// A map with one more crossing.
 pub(super) struct WithCrossing {
     pub(super) layout: BevLayout,
     pub(super) outline_m: Vec<DVec2>,
@@ -77,7 +77,7 @@ pub(super) fn with_crossing(
     })
 }
 
-/// Metres ahead (negative: behind) of places that say so.
+/// Distance ahead in metres (negative: behind) of places that state one.
 fn metres_of(places: &[Place]) -> Option<f64> {
     let p = places.iter().find(|p| p.metres.is_some())?;
     let m = p.metres.filter(|m| (3.0..=36.0).contains(m))?;
@@ -111,7 +111,7 @@ fn stands_on_one(what: &What) -> bool {
 }
 
 impl Stage<'_> {
-    /// Said where the map has one, or has no room for one.
+    /// Adds a remark if the map has a crossing already, or has no room for one.
     pub(super) fn add_crossing(&mut self, places: &[Place]) {
         let there = !self.map.crossings.is_empty() && !is_elsewhere(&self.map, metres_of(places));
         if !there && self.crossing_of != Some(self.act) {
@@ -132,8 +132,8 @@ impl Stage<'_> {
     }
 }
 
-/// The outline of a crossing over all that is of the layers `road`, at a distance ahead along our course, m; `None` where it
-/// is not of a fitting width, or a junction.
+/// The outline of a crossing over the layers `road`, at a distance ahead along our course, m; `None` where their width
+/// does not fit, and at a junction.
 fn outline(map: &LaneMap<'_>, ahead_m: f64, road: u32) -> Option<Vec<DVec2>> {
     let near = |p: DVec2| map.course(p).is_some_and(|c| (c.0 - ahead_m).abs() < 0.75);
     let (p, d) = map.ego_path.iter().copied().find(|(p, _)| near(*p))?;
@@ -156,7 +156,7 @@ fn outline(map: &LaneMap<'_>, ahead_m: f64, road: u32) -> Option<Vec<DVec2>> {
     Some(vec![l - half, r - half, r + half, l + half])
 }
 
-/// True if nothing but people is where a crossing would be.
+/// True if only people stand where a crossing would be.
 fn is_free(outline_m: &[DVec2], boxes: &[SceneBox]) -> bool {
     let middle = outline_m.iter().sum::<DVec2>() / outline_m.len().max(1) as f64;
     let across = outline_m[0] - outline_m[1];

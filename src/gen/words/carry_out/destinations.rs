@@ -1,4 +1,5 @@
-//! Where a box that moves shall be, as relations, and what of it is kept that was not spoken of.
+//! Destination of a box that moves, as relations, and the parts of its old place that are kept because they were not
+//! mentioned.
 
 use super::super::plan::Plan;
 use super::super::reading::{Anchor as Said, Place, Relation};
@@ -13,25 +14,25 @@ use scene::{BevLayer, Class, SceneBox};
 /// The gap between two things that stand close behind each other, m.
 pub(super) const CLOSE_M: f64 = 4.5;
 
-/// Where a box goes.
+/// Destination of a box.
 pub(super) struct Found {
     pub(super) new: SceneBox,
-    /// What was said and does not hold there.
+    /// Stated relations that do not hold there.
     pub(super) unmet: Vec<RelationKind>,
     pub(super) parked: bool,
-    /// Distances that are not as they were asked for.
+    /// Distances that differ from the ones asked for: relation, and distance asked for and found, m.
     pub(super) off: Vec<(RelationKind, [f64; 2])>,
 }
 
 impl Found {
-    /// How far it is from where the box was, m.
+    /// Distance from the old place of the box, m.
     pub(super) fn moved_m(&self, b: &SceneBox) -> f64 {
         (self.new.center_m - b.center_m).truncate().length()
     }
 }
 
 impl Stage<'_> {
-    /// The place for a box as `spec` says that is nearest to where it is, with most of what was not said kept.
+    /// The place that fits `spec` and is nearest to the box's old place, with most of the unmentioned relations kept.
     pub(super) fn destination(&mut self, b: &SceneBox, spec: &ObjectSpec, plan: &Plan) -> Option<Found> {
         let gone = self.boxes.remove(&b.id);
         let mut found: Option<Found> = None;
@@ -59,7 +60,8 @@ impl Stage<'_> {
         found
     }
 
-    /// Places as relations of a box; anchors that are boxes go to the plan, after the box itself. `None` after a question.
+    /// Places as relations of a box. Anchors that are boxes are added to the plan, after the box itself. `None` after a
+    /// question.
     pub(super) fn relations(
         &mut self,
         b: &SceneBox,
@@ -159,7 +161,8 @@ impl Stage<'_> {
         }
     }
 
-    /// What was said with what was not said kept: most of it first, the bare words last.
+    /// Specs to try in turn: the stated relations with unmentioned ones (such as the lane) kept, the most complete
+    /// first, then the stated ones alone.
     pub(super) fn with_inertia(&self, b: &SceneBox, spec: &ObjectSpec, moves: bool) -> Vec<ObjectSpec> {
         use RelationKind as R;
         let mut out = Vec::new();
@@ -174,7 +177,7 @@ impl Stage<'_> {
             and: None,
             distance_m: None,
         };
-        // Turned against the traffic it belongs to another lane; else the lane stays.
+        // If it is turned against the traffic it belongs to another lane; else the lane stays.
         let sideways = spec.relations.iter().any(|r| match r.relation {
             R::InFrontOf | R::Behind => {
                 !matches!(r.anchor, Anchor::Ego | Anchor::Crossing | Anchor::Junction)
@@ -183,7 +186,7 @@ impl Stage<'_> {
             R::Facing | R::FacingAway => false,
             _ => true,
         });
-        // (past the ego vehicle it does not keep to the lane that comes towards it)
+        // (a box moved past the ego vehicle does not stay in the oncoming lane)
         let flips = spec.relations.iter().any(|r| match (r.relation, r.anchor) {
             (R::Behind, Anchor::Ego) => b.center_m.x > 0.0,
             (R::InFrontOf, Anchor::Ego) => b.center_m.x < 0.0,
@@ -195,7 +198,7 @@ impl Stage<'_> {
         {
             keep(lane(role));
         }
-        // Behind the truck is in its lane, and goes its way.
+        // "Behind the truck" means in its lane and in its direction.
         let after = spec.relations.iter().position(|r| {
             r.relation == R::Behind
                 && matches!(r.anchor, Anchor::Object(_))
@@ -206,7 +209,7 @@ impl Stage<'_> {
             follows.relations[i].relation = R::Following;
             out.push(follows);
         }
-        // (told only a lane or a side it stays level)
+        // (with only a lane or a side stated, the distance ahead stays)
         let level = spec.relations.iter().all(|r| {
             matches!(r.anchor, Anchor::Lane(_))
                 || matches!(r.relation, R::OppositeDirection | R::SameDirection)
@@ -227,7 +230,7 @@ impl Stage<'_> {
             out.push(kept);
         }
         out.push(spec.clone());
-        // (who stands may drive there, where only driving fits; in a car park a space is where no lane is)
+        // (a standing box may drive there, where only driving fits; in a car park, spaces are off the lanes)
         out.push(ObjectSpec {
             state: None,
             ..spec.clone()
@@ -251,7 +254,7 @@ fn ego_side(b: &SceneBox) -> RelationKind {
     }
 }
 
-/// At the edge of the road, where nothing drives.
+/// True for a place at the edge of the road, off the driving lanes.
 pub(super) fn is_aside(r: &Stated) -> bool {
     use LaneRole as L;
     let strip = matches!(

@@ -1,4 +1,4 @@
-//! Carries out a reading on a scene: act by act, each on what the one before left.
+//! Carries out a reading on a scene: act by act, each on the result of the one before.
 
 mod adds;
 mod changes;
@@ -21,7 +21,7 @@ use scene::{BoxId, SceneBox, TimeOfDay, Weather};
 /// Most acts that are carried out.
 pub const MOST_ACTS: usize = 100;
 
-/// What becomes of a scene; the same for the same reading, scene and seed.
+/// The outcome of a reading in a scene; it is the same for the same reading, scene and seed.
 pub fn carry_out(reading: &Reading, scene: &OpenScene<'_>, seed: u64) -> Outcome {
     let boxes: Vec<SceneBox> = scene.boxes.values().copied().collect();
     let with = crossing::with_crossing(reading, scene.layout, &boxes);
@@ -141,7 +141,7 @@ impl Stage<'_> {
         }
     }
 
-    /// Boxes that acts of the text say to stay, as far as that is known before any of them.
+    /// Boxes that acts of the text state to stay, as far as they are known before the first act.
     fn said_to_stay(&self, reading: &Reading) -> std::collections::BTreeSet<BoxId> {
         let leaves = reading.acts.iter().filter_map(|a| match &a.what {
             What::Leave { who } => Some(who),
@@ -155,7 +155,7 @@ impl Stage<'_> {
             .collect()
     }
 
-    /// Boxes that other acts of the text speak of.
+    /// Boxes that other acts of the text mention.
     fn spoken_of(&self, reading: &Reading) -> Vec<BoxId> {
         let mut ids = self.last.clone();
         for a in &reading.acts {
@@ -175,7 +175,7 @@ impl Stage<'_> {
     }
 
     fn keep(&mut self, who: &[Thing]) {
-        // (a number of a kind: so many of it stay)
+        // (with a number of a kind, that many of it stay)
         let Some(ids) = self.those(who, Spare::Nearest) else {
             return;
         };
@@ -230,8 +230,8 @@ impl Stage<'_> {
         }
     }
 
-    /// Another time of day or weather. The words of the style follow, so that they never say something else; its other words
-    /// stay.
+    /// Sets another time of day or weather. The words of the style are changed accordingly, so that they never
+    /// contradict it; its other words stay.
     fn conditions(&mut self, time: Option<TimeOfDay>, weather: Option<Weather>) {
         let mut conditions = self.conditions;
         conditions = time.map_or(conditions, |t| conditions.at(t));

@@ -1,4 +1,4 @@
-//! What moves in the course of time.
+//! Motion in the course of time.
 
 use std::collections::BTreeSet;
 
@@ -9,15 +9,15 @@ use super::super::stage::Stage;
 use scene::clip::{Manoeuvre, Template};
 use scene::{BoxId, Clip, Edit};
 
-/// Something that begins later than this makes the scene longer, s.
+/// Time up to which a manoeuvre may be seen without making the scene longer, s.
 const USUAL_LENGTH_S: f64 = 8.0;
-/// Where somebody new appears if no place is named, m ahead of us.
+/// Place of a new road user if none is stated, m ahead of us.
 const AHEAD_M: f64 = 15.0;
-/// What begins is seen for so long, s.
+/// Time for which a manoeuvre is seen after it begins, s.
 const SEEN_S: f64 = 5.0;
 
 impl Stage<'_> {
-    /// Somebody, or (nobody named) the ego vehicle, moves.
+    /// Makes boxes carry out a manoeuvre, or the ego vehicle if `who` is empty.
     pub(super) fn go(&mut self, who: &[Thing], how: &Manoeuvre) {
         let least_s = how.from_s.map_or(0.0, |from_s| from_s + SEEN_S);
         if least_s > self.length_s.max(USUAL_LENGTH_S) {
@@ -25,7 +25,7 @@ impl Stage<'_> {
         }
         if who.is_empty() {
             self.ego_moves = true;
-            // (who follows keeps it to the one ahead)
+            // (a follower keeps the gap to the one ahead)
             let keeps = how.what == Template::Follow;
             if how.gap_m.is_some() && !keeps {
                 let why = "we are never a distance from ourselves: it begins soon".to_owned();
@@ -40,7 +40,7 @@ impl Stage<'_> {
         let Some(ids) = self.movers(who) else {
             return;
         };
-        // Nobody cuts in before a vehicle that stands, or comes nearer to one.
+        // A vehicle that stands cannot be cut in on or approached.
         let comes_near = how.gap_m.is_some() && how.what != Template::Follow;
         let needs_us = how.what == Template::CutIn || comes_near;
         if needs_us && !self.ego_moves && !ids.is_empty() {
@@ -66,7 +66,8 @@ impl Stage<'_> {
         }
     }
 
-    /// Who moves. Any one of a kind of which none is there is added first: ahead of us, if no place is named.
+    /// The boxes that are to move. If one of a kind is named and none is there, it is added first: ahead of us, if no
+    /// place is stated.
     fn movers(&mut self, who: &[Thing]) -> Option<Vec<BoxId>> {
         let [thing] = who else {
             return self.those(who, Spare::Nearest);
@@ -104,7 +105,7 @@ impl Stage<'_> {
         Some(ids)
     }
 
-    /// The scene lasts so long.
+    /// Sets the length of the scene.
     pub(super) fn last_for(&mut self, seconds: f64) {
         self.done().scene = true;
         self.length_s = seconds.clamp(0.0, Clip::MAX_LENGTH_S);

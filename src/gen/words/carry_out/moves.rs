@@ -1,5 +1,5 @@
-//! Boxes that move. What is not said of a box stays as it was: told only how far ahead it shall be it keeps its lane, told
-//! only a lane it keeps level.
+//! Boxes that move. Parts of a place that are not mentioned stay as they were: with only the distance ahead stated the
+//! box keeps its lane, with only a lane stated it keeps its distance ahead.
 
 use glam::DVec2;
 
@@ -16,7 +16,7 @@ use place::rules::stands;
 use scene::graph::{LaneRole, ObjectState, RelationKind};
 use scene::{BoxId, Class, SceneBox};
 
-/// Width of a lane where the map does not say, m.
+/// Width of a lane where the map has none, m.
 const LANE_M: f64 = 3.5;
 
 impl Stage<'_> {
@@ -49,7 +49,8 @@ impl Stage<'_> {
         self.last = ids;
     }
 
-    /// Things in a row, side by side, or facing each other: each by the one before; true if that was said.
+    /// Places things in a row, side by side, or facing each other: each by the one before. True if the words asked for
+    /// it.
     pub(super) fn grouped(&mut self, ids: &[BoxId], places: &[Place]) -> bool {
         let each = |p: &Place| p.to == Some(Said::EachOther);
         let of_group = |p: &&Place| matches!(p.relation, Relation::InLine | Relation::SideBySide) || each(p);
@@ -61,7 +62,7 @@ impl Stage<'_> {
             self.remark(Remark::PlaceIgnored { relation });
             return true;
         }
-        // (the other places are those of the first)
+        // (the other places apply to the first thing)
         let rest: Vec<Place> = places.iter().filter(|p| **p != group).cloned().collect();
         if !rest.is_empty() {
             self.moved_to(ids[0], &rest);
@@ -88,7 +89,7 @@ impl Stage<'_> {
         true
     }
 
-    /// The boxes that a thing means, other than the one that is moved.
+    /// The boxes that a thing means, other than the moved one.
     pub(super) fn others_of(&mut self, t: &Thing, moved: BoxId) -> Option<Vec<BoxId>> {
         let (spoken, noun) = (self.last.clone(), self.last_noun);
         self.skip = Some(moved);
@@ -106,7 +107,7 @@ impl Stage<'_> {
             Way::Forward => DVec2::X,
             Way::Back => -DVec2::X,
             Way::Nearer | Way::Away => {
-                // Along its lane, if that leads to the ego vehicle.
+                // Along its lane, if the lane leads to the ego vehicle.
                 let out = p.normalize_or(DVec2::X);
                 let lane = self.map.nearest(p).filter(|l| l.p.distance(p) < 4.5);
                 let out = lane
@@ -128,7 +129,7 @@ impl Stage<'_> {
         self.step(b, direction * metres.min(most));
     }
 
-    /// How far to go where no distance was said: the first step that ends clear of others.
+    /// Distance to go if none was stated: the first step that ends clear of others.
     fn free_step(&mut self, b: &SceneBox, direction: DVec2) -> f64 {
         let free = [3.5, 5.0, 7.0, 2.0, 10.5].into_iter().find(|m| {
             let new = SceneBox {
@@ -196,7 +197,7 @@ impl Stage<'_> {
         self.move_box(b.id, new.center_m, yaw_rad);
     }
 
-    /// To the edge of the road.
+    /// Moves a box to the edge of the road.
     pub(super) fn park(&mut self, id: BoxId, role: LaneRole) {
         let place = Place {
             relation: Relation::On,
@@ -207,7 +208,7 @@ impl Stage<'_> {
         self.moved_to(id, &[place]);
     }
 
-    /// To the lane that leads the other way; false if there is none.
+    /// Moves a box to the lane of the opposite direction; false if there is none.
     pub(super) fn change_direction(&mut self, id: BoxId) -> bool {
         let Some(b) = self.boxes.get(&id).copied() else {
             return false;
@@ -235,7 +236,7 @@ impl Stage<'_> {
         self.moved_to(id, &[place])
     }
 
-    /// Where the places hold, as near to where it was as can be; true if it is there now.
+    /// Moves a box to where the places hold, as near to its old place as possible; true if it is there now.
     pub(super) fn moved_to(&mut self, id: BoxId, places: &[Place]) -> bool {
         let Some(b) = self.boxes.get(&id).copied() else {
             return false;
@@ -268,7 +269,7 @@ impl Stage<'_> {
             let parked = self.does(&b, ObjectState::Parked) && b.class.is_vehicle();
             spec.state = Some(match (moves || travels && b.class.is_vehicle(), parked) {
                 (true, _) => ObjectState::Moving,
-                // (what is parked stays so on the other side)
+                // (a parked box stays parked on the other side)
                 (_, true) if spec.relations.iter().all(sided) => ObjectState::Parked,
                 _ => ObjectState::Waiting,
             });
@@ -276,7 +277,7 @@ impl Stage<'_> {
             spec.state = Some(ObjectState::Parked);
         }
         let mut found = self.destination(&b, &spec, &plan);
-        // (it was there already: then close to it is meant)
+        // (it was there already: then a closer place is meant)
         if found.as_ref().is_some_and(|f| f.moved_m(&b) < 1.0) {
             let mut closer = spec.clone();
             let mut open = false;
@@ -352,7 +353,8 @@ impl Stage<'_> {
         true
     }
 
-    /// Who is only told where to look stays where he is; what stands is only turned. `None`: it has to move.
+    /// Turns a box that is only told a direction to face. It stays at its place; `None` if it has to move for that.
+    /// False after a question.
     fn only_turned(&mut self, b: &SceneBox, places: &[Place]) -> Option<bool> {
         let [place] = places else { return None };
         let p = b.center_m.truncate();
@@ -390,7 +392,7 @@ impl Stage<'_> {
                 } else {
                     -along
                 };
-                // (a driver changes to the lane that leads there)
+                // (a driver changes to the lane with that direction)
                 let wrong = self
                     .map
                     .nearest(p)
@@ -410,7 +412,7 @@ impl Stage<'_> {
     }
 }
 
-/// So far from the ego vehicle, on the side where it is.
+/// A place at a distance from the ego vehicle, on the side where the box is.
 fn range(metres: f64) -> Place {
     Place {
         relation: Relation::At,

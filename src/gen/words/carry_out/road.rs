@@ -1,4 +1,4 @@
-//! What is said of the road of a scene that is there: lanes, width, course, walkways, a roundabout.
+//! Changes of the road of an open scene: lanes, width, course, walkways, a roundabout.
 
 use scene::roads::{LaneKind, RoadWish};
 
@@ -7,11 +7,11 @@ use super::super::remark::Remark;
 use super::super::stage::Stage;
 use place::description::Road;
 
-/// Lanes of a narrow and of a wide road are so many times as wide.
+/// Factors of the lane width of a narrow and of a wide road.
 const NARROW: f64 = 0.85;
 const WIDE: f64 = 1.2;
 
-/// What an act asks of the road; `None` if only a new scene can have it.
+/// The change of the road that an act asks for; `None` if only a new scene can have it.
 fn wish(what: &What) -> Option<RoadWish> {
     let walk = LaneKind::Walk;
     Some(match what {

@@ -1,4 +1,4 @@
-//! Readings on a scene: who is meant, what is asked back, what stays.
+//! Readings on a scene: boxes that are meant, questions, and boxes that stay.
 
 use std::collections::BTreeMap;
 
@@ -220,7 +220,7 @@ fn what_is_said_to_stay_stays() {
     let done = base.edit("keep the car ; leave the bus");
     assert_eq!(done.edits.len(), 2, "{done:?}");
     assert!(!done.edits.contains(&Edit::RemoveBox { id: bus }));
-    // (where what is said contradicts itself, that it did not stay is said)
+    // (in a contradiction a remark says that it did not stay)
     let done = base.edit("remove the bus ; leave the bus");
     let spared = Remark::Spared { what: "bus".into() };
     assert!(done.remarks.iter().any(|r| r.1 == spared), "{done:?}");
@@ -332,12 +332,13 @@ fn what_is_said_of_it_waits_for_the_answer() {
     let base = Base::new("add 1 taxi ( ahead ego 9m ) and 1 suv ( ahead ego 34m )");
     let done = base.edit("move the car by back 2m ; set it red");
     assert_eq!((done.questions.len(), done.remarks.len()), (1, 0), "{done:?}");
-    // (where nothing is asked, that nobody was spoken of is said)
+    // (without a question, a remark says that no box was named)
     let done = base.edit("set it red");
     assert_eq!(done.remarks.len(), 1, "{done:?}");
 }
 
-/// What moves is an edit of its own; who cuts in needs somebody to cut in before, and what begins late needs a longer scene.
+/// A motion is an edit of its own. A vehicle that cuts in needs one to cut in on, and a late start needs a longer
+/// scene.
 #[test]
 fn motions_become_edits() {
     let base = Base::new("add 1 car ( ahead ego 15m ) and 1 bus ( behind ego )");
@@ -366,7 +367,7 @@ fn motions_become_edits() {
         outcome.remarks.is_empty() && outcome.edits.len() == 2,
         "{outcome:?}"
     );
-    // One thing after another: the speed stays, an earlier manoeuvre does not, which is said.
+    // One manoeuvre after another: the speed stays; an earlier manoeuvre is lost, with a remark.
     let outcome = base.edit("go the car drive slow ; go the car stop from 2s");
     assert!(outcome.remarks.is_empty(), "{outcome:?}");
     assert!(

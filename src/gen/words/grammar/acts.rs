@@ -1,4 +1,4 @@
-//! Clauses: commands, statements about what is there, and what a new scene holds.
+//! Clauses: commands, statements about the scene, and contents of a new scene.
 
 use super::super::lexicon::{LONGEST_PHRASE, Lexicon};
 use super::super::mode::Mode;
@@ -77,7 +77,7 @@ impl Grammar<'_> {
                     "road" if prompt => What::Road {
                         what: Road::ALL.iter().copied().find(|x| named(x.name()))?,
                     },
-                    // (of a car park that is more than where something stands)
+                    // (a car park as the kind of road, not as the place of something)
                     "place" if prompt && s.symbol == "carpark" => What::Road { what: Road::Parking },
                     "env" if prompt => What::Env {
                         what: Environment::ALL.iter().copied().find(|x| named(x.name()))?,
@@ -88,7 +88,7 @@ impl Grammar<'_> {
                     _ => return None,
                 })
             })?;
-            // ("a foggy highway": the next one is read next)
+            // ("a foggy highway": the road is read after this)
             Some((what, at + n))
         })
     }
@@ -118,7 +118,7 @@ impl Grammar<'_> {
         for t in &mut things {
             match t.quantity {
                 Quantity::N(_) | Quantity::Range(..) | Quantity::Some | Quantity::Many => {}
-                // (a bare plural in a new scene is some)
+                // (a bare plural in a new scene means some)
                 Quantity::All
                     if prompt && self.after("all", i).is_none() && self.after("the", i).is_none() =>
                 {
@@ -226,7 +226,7 @@ impl Grammar<'_> {
         }
     }
 
-    /// The token after exactly these words.
+    /// The token after these exact words.
     fn exactly(&self, words: &str, i: usize) -> Option<usize> {
         let words: Vec<&str> = words.split(' ').collect();
         let same = words.iter().enumerate().all(|(k, w)| self.word(i + k) == *w);
@@ -399,7 +399,7 @@ impl Grammar<'_> {
         Some((What::Count { who: vec![t], amount }, end))
     }
 
-    /// What is said of something that is there: "the bus is red", "the truck should be 20 m ahead".
+    /// A statement about something that is there: "the bus is red", "the truck should be 20 m ahead".
     fn statement(&self, i: usize) -> Found {
         let mut best: Found = None;
         for places in [false, true] {

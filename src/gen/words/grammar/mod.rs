@@ -1,5 +1,5 @@
-//! The compact grammar: plain English sentences to readings. It answers only for what it reads to the last word: a sentence
-//! of which a word is left over is not its own.
+//! The compact grammar: plain English sentences to readings. It answers only for sentences that it reads completely: a
+//! sentence with a word left over is left to the learned reader.
 
 mod acts;
 mod places;
@@ -16,12 +16,12 @@ use super::tokens::Token;
 use place::beside_road::Span;
 use table::Table;
 
-/// What the grammar reads of a text.
+/// Result of the grammar for a text.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plain {
     /// The acts, with their spans.
     pub reading: Reading,
-    /// Words that fit nowhere.
+    /// Words that were not read.
     pub left_over: Vec<Span>,
 }
 
@@ -51,7 +51,7 @@ pub fn read(tokens: &[Token], mode: Mode) -> Plain {
     out
 }
 
-/// How many tokens name something that no act can bring: "dog", "traffic light".
+/// Number of tokens that name something which no act can add: "dog", "traffic light".
 pub fn cannot(tokens: &[Token]) -> Option<usize> {
     Table::bundled().at("cannot", tokens, 0).map(|f| f.1)
 }
@@ -66,7 +66,7 @@ struct Grammar<'t> {
     tokens: &'t [Token],
     table: &'static Table,
     mode: Mode,
-    /// How many exceptions of exceptions the reading is in.
+    /// Depth of nested exceptions at the current place.
     deep: Cell<u8>,
 }
 
@@ -89,7 +89,7 @@ impl Grammar<'_> {
                     });
                     i = self.separators(end);
                 }
-                // (what is not read to the end is not the grammar's)
+                // (a sentence that is not read to its end is left to the learned reader)
                 None => {
                     out.left_over.push(self.tokens[i].span);
                     return;
@@ -116,11 +116,11 @@ impl Grammar<'_> {
         self.table.at(kind, self.tokens, i)
     }
 
-    /// Passes over what carries nothing.
+    /// Skips tokens without meaning.
     fn skip(&self, mut i: usize) -> usize {
         loop {
             let comma = (self.word(i) == ",").then_some(i + 1);
-            // (a street is what every scene has)
+            // (every scene has a street)
             let street = self.after("street", i).filter(|_| self.mode == Mode::Prompt);
             match comma
                 .or(street)

@@ -81,7 +81,7 @@ impl Grammar<'_> {
             .find_map(|(name, end)| self.related(name, end));
         let by_ego = self.table.all_at("ego", self.tokens, i).find_map(|(name, end)| {
             let relation = Relation::of(name)?;
-            // ("left" alone is a side only where nothing follows that it could be of)
+            // ("left" alone is a side only if no noun follows that it could belong to)
             Some((to_ego(relation), end))
         });
         match (by_relation, by_ego) {

@@ -11,7 +11,7 @@ const LONGEST: usize = 9;
 /// Phrases by kind.
 pub(super) struct Table {
     kinds: HashMap<&'static str, HashMap<&'static str, &'static str>>,
-    /// Words of all phrases but those of what cannot be done.
+    /// Words of all phrases, except those for things that cannot be done.
     words: HashSet<&'static str>,
 }
 
@@ -67,7 +67,7 @@ impl Table {
         found.into_iter()
     }
 
-    /// True if a word stands in any phrase: it is understood, or knowingly passed over.
+    /// True if a word stands in any phrase: it is understood, or skipped on purpose.
     pub(super) fn has_word(&self, word: &str) -> bool {
         self.words.contains(word)
     }

@@ -23,7 +23,7 @@ impl Grammar<'_> {
                 },
             };
             match self.thing(joint, places) {
-                // (what is there and what is new are no one list)
+                // (existing and new things do not form one list)
                 Some((t, end)) if self.alike(&things[0], &t) => {
                     things.push(t);
                     i = end;
@@ -38,7 +38,7 @@ impl Grammar<'_> {
         there(a) == there(b)
     }
 
-    /// One noun phrase; with what follows the noun, if `places`.
+    /// One noun phrase; with the parts after the noun, if `places`.
     pub(super) fn thing(&self, i: usize, places: bool) -> Option<(Thing, usize)> {
         if let Some(end) = self.after("it", i) {
             let many = matches!(self.word(i), "them" | "they" | "those" | "these");
@@ -68,7 +68,7 @@ impl Grammar<'_> {
             i = self.after_noun(&mut t, i);
         }
         if matches!(t.noun, Noun::Cone | Noun::Barrier) {
-            t.state = None; // (they do nothing but stand)
+            t.state = None; // (they can only stand)
         }
         Some((t, i))
     }
@@ -239,7 +239,7 @@ impl Grammar<'_> {
         }
     }
 
-    /// A paint that is nothing else.
+    /// A paint, if the word has no other meaning here.
     pub(super) fn paint(&self, i: usize) -> Option<(Paint, usize)> {
         let senses = Lexicon::bundled().senses(self.word(i))?;
         let s = senses.iter().find(|s| s.kind == "paint")?;

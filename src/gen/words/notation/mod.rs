@@ -1,5 +1,5 @@
 //! The one-line form of a reading: `move the truck to ( ahead ego 25m ) ; time night`. Its grammar is in
-//! `training/words/notation.md`; the reader network says it, labelled sentences are written in it.
+//! `training/words/notation.md`; the reader network outputs it, and labelled sentences are written in it.
 
 mod parse;
 #[cfg(test)]

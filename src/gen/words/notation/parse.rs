@@ -11,13 +11,13 @@ use scene::clip::{Manoeuvre, Template};
 use scene::graph::{ObjectState, SizeHint};
 use scene::{TimeOfDay, Weather};
 
-/// Why a line is no reading.
+/// Reason why a line is not a reading.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found:?} where {expected} should be, after {after:?}")]
 pub struct NotationError {
     /// The token that does not fit; empty at the end.
     pub found: String,
-    /// What would.
+    /// Tokens that would fit.
     pub expected: String,
     /// The tokens before.
     pub after: String,
@@ -57,17 +57,17 @@ pub fn parse(line: &str) -> Result<Reading, NotationError> {
     Ok(reading)
 }
 
-/// What the beginning of a line is.
+/// State of a beginning of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Prefix {
-    /// A valid reading as it stands.
+    /// True if it is a valid reading as it stands.
     pub is_whole: bool,
-    /// It can be continued to a valid reading.
+    /// True if it can be continued to a valid reading.
     pub is_open: bool,
 }
 
 impl Default for Prefix {
-    /// Nothing was said yet.
+    /// The state of an empty line.
     fn default() -> Self {
         Self {
             is_whole: false,

@@ -1,5 +1,5 @@
-//! The learned reader: a small encoder-decoder that says a reading in notation, symbol by symbol; only what continues a
-//! valid reading can be said. Twin of `training/words/reader.py`.
+//! The learned reader: a small encoder-decoder that outputs a reading in notation, symbol by symbol, restricted to
+//! symbols that continue a valid reading. Twin of `training/words/reader.py`.
 
 mod net;
 mod symbols;
@@ -22,17 +22,17 @@ use symbols::{Input, Symbols};
 /// File name of the weights.
 pub const FILE: &str = "reader.safetensors";
 
-/// Parts of a long text that are read; what lies beyond is named.
+/// Parts of a long text that are read; the text beyond is reported.
 pub const MOST_PARTS: usize = 6;
 
-/// What the network said.
+/// Output of the network for a text.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Said {
-    /// The reading; acts bear spans and confidences.
+    /// The reading; its acts have spans and confidences.
     pub reading: Reading,
     /// Its tokens.
     pub tokens: Vec<Token>,
-    /// What lies beyond the longest text that is read.
+    /// Tokens beyond the longest text that is read.
     pub left_out: Vec<Token>,
 }
 
@@ -48,7 +48,7 @@ impl LearnedReader {
     ///
     /// # Errors
     ///
-    /// If the file does not hold what its twin writes.
+    /// If the file differs from the format that its twin writes.
     pub fn bundled() -> Result<Arc<Self>, WeightsError> {
         static READER: OnceLock<Arc<LearnedReader>> = OnceLock::new();
         if let Some(reader) = READER.get() {
@@ -63,7 +63,7 @@ impl LearnedReader {
     ///
     /// # Errors
     ///
-    /// If sizes, symbols or senses are not those of this program.
+    /// If sizes, symbols or senses differ from those of this program.
     pub fn new(mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
         let config: NetConfig = file.config("config")?;
         let words: Vec<String> = file.config("words")?;
@@ -81,18 +81,18 @@ impl LearnedReader {
         })
     }
 
-    /// Mends slips as the network expects it.
+    /// Corrects typing errors as in the network's training.
     pub fn speller(&self) -> &Speller {
         &self.speller
     }
 
-    /// True if a word means something, or is one of the frequent ones; a number alone is neither.
+    /// True if a word has a meaning, or is one of the frequent ones; false for a number.
     pub fn knows(&self, t: &Token) -> bool {
         let is_word = t.value.is_none() && (self.speller.is_common(&t.text) || grammar::knows(&t.text));
         !t.senses.is_empty() || is_word
     }
 
-    /// Reads a text: whole if it is short, else sentence by sentence, and at most [`MOST_PARTS`] of these.
+    /// Reads a text: as a whole if it is short, else sentence by sentence, at most [`MOST_PARTS`] of them.
     pub fn read(&self, text: &str, mode: Mode) -> Said {
         let mut all = tokens(text, Some(&self.speller));
         let ends = parts(&all);
@@ -101,7 +101,7 @@ impl LearnedReader {
         let mut from = 0;
         for end in ends {
             let part = &all[from..end];
-            // (of words that are in no list, and of numbers alone, nothing is guessed)
+            // (a part of only unknown words and numbers is not read)
             if part.iter().any(|t| self.knows(t)) {
                 out.reading.acts.extend(self.say(text, part, mode).acts);
             }
@@ -112,8 +112,8 @@ impl LearnedReader {
         out
     }
 
-    /// The reading of a few tokens: the most likely symbols one by one; where these leave words out, the few lines that
-    /// part from it where it was least sure are tried too.
+    /// The reading of a few tokens: the most likely symbols one by one. If these leave words out, a few alternatives
+    /// are tried too, which branch off where the network was least sure.
     fn say(&self, text: &str, all: &[Token], mode: Mode) -> Reading {
         let input = self.symbols.input(all, mode);
         let memory = self.net.encode(&input);
@@ -136,7 +136,7 @@ impl LearnedReader {
                 said: first.said[..at].to_vec(),
             };
             other.said.push(rival.into());
-            // (of the steps before, the last one has heard all symbols but the rival)
+            // (back to the step that has taken in all symbols before the rival)
             let mut state = state.clone();
             state.back_to(at + 1, &self.net);
             if rival.0 != symbols::END {
@@ -151,7 +151,7 @@ impl LearnedReader {
         best
     }
 
-    /// Says the rest of a line, greedily; only what continues a valid reading can be said.
+    /// Completes a line greedily; only symbols that continue a valid reading are taken.
     fn go_on(&self, spoken: &mut Spoken, state: &mut State, memory: &Memory, input: &Input, all: &[Token]) {
         let mut said = spoken.symbols();
         while said.len() < symbols::MOST_SYMBOLS {
@@ -168,7 +168,7 @@ impl LearnedReader {
             spoken.said.push(Symbol {
                 id: symbol,
                 p: f64::from(p[symbol]),
-                // (what the attention of the network rests on belongs to the act that is being said)
+                // (the token with the most attention belongs to the act of this symbol)
                 looked_at: attention
                     .iter()
                     .skip(1)
@@ -184,10 +184,10 @@ impl LearnedReader {
         }
     }
 
-    /// What was said as a reading; its acts are as sure as their least sure symbol.
+    /// The reading of a line; the confidence of an act is that of its least sure symbol.
     fn reading(&self, spoken: &Spoken, all: &[Token]) -> Reading {
         let line = self.symbols.line(&spoken.symbols(), all);
-        // (a reading that ran out of room ends with its last whole act)
+        // (a line that was cut off ends with its last whole act)
         let mut reading = notation::parse(&line).unwrap_or_default();
         if reading.acts.is_empty()
             && let Some((whole, _)) = line.rsplit_once(" ; ")
@@ -204,11 +204,11 @@ impl LearnedReader {
     }
 }
 
-/// What a word that is left out costs, in log probability.
+/// Penalty for a word that is left out, in log probability.
 const PRICE: f64 = 3.0;
-/// Other lines that are tried.
+/// Most alternatives that are tried.
 const OTHERS: usize = 3;
-/// Symbols this probable have no rival.
+/// Probability from which on a symbol has no rival.
 const SURE: f32 = 0.9;
 
 #[derive(Clone, Copy)]
@@ -217,7 +217,7 @@ struct Symbol {
     p: f64,
     /// The token that the network looked at most.
     looked_at: Option<usize>,
-    /// What else could be said here, and its probability.
+    /// The second likeliest symbol at this place, and its probability.
     rival: Option<(usize, f64)>,
 }
 
@@ -232,14 +232,14 @@ impl From<(usize, f64)> for Symbol {
     }
 }
 
-/// A line as it is said.
+/// A line in the making.
 #[derive(Default)]
 struct Spoken {
     said: Vec<Symbol>,
 }
 
 impl Spoken {
-    /// Without the end.
+    /// Ids of its symbols, without the end.
     fn symbols(&self) -> Vec<usize> {
         let ids = self.said.iter().map(|s| s.id);
         ids.filter(|id| *id != symbols::END).collect()
@@ -249,7 +249,7 @@ impl Spoken {
         self.said.iter().map(|s| s.p.max(1e-9).ln()).sum()
     }
 
-    /// Places where another symbol could be said, the least sure first.
+    /// Places with a rival symbol, the least sure first.
     fn least_sure(&self) -> Vec<usize> {
         let mut at: Vec<usize> = (0..self.said.len())
             .filter(|i| self.said[*i].rival.is_some())
@@ -260,7 +260,7 @@ impl Spoken {
     }
 }
 
-/// Where the parts of a text end: one part if it is short, else sentences, as many together as fit.
+/// Ends of the parts of a text: one part if it is short, else sentences, as many together as fit.
 fn parts(all: &[Token]) -> Vec<usize> {
     let mut ends = Vec::new();
     let mut from = 0;

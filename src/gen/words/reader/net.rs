@@ -9,7 +9,7 @@ use nn::kernels;
 use nn::layers::{Linear, Norm};
 use nn::weights::{WeightFile, WeightsError};
 
-/// Positions whose bias differs.
+/// Farthest position in either direction that has a bias of its own.
 const NEAR: usize = 24;
 /// Buckets of values.
 const VALUES: usize = 34;
@@ -47,7 +47,7 @@ struct Attention {
     k: Linear,
     v: Linear,
     o: Linear,
-    bias: Vec<f32>, // [heads][2 NEAR + 1]; empty where all places are alike
+    bias: Vec<f32>, // [heads][2 NEAR + 1]; empty where position does not matter
 }
 
 impl Attention {
@@ -62,8 +62,8 @@ impl Attention {
         Ok(Self { q, k, v, o, bias })
     }
 
-    /// One query row against keys and values of all rows; `at` is its place. Adds the output to `x`, and the attention,
-    /// mean over heads, to `attention`.
+    /// Attention of one query row, at position `at`, over the keys and values of all rows. Adds the output to `x`, and
+    /// the attention, mean over heads, to `attention`.
     fn attend(
         &self,
         heads: usize,
@@ -158,7 +158,7 @@ impl Layer {
     }
 }
 
-/// The text, encoded: what the decoder looks at.
+/// The encoded text, which the decoder attends to.
 pub(super) struct Memory {
     rows: Vec<f32>,
     #[cfg(test)]
@@ -176,7 +176,7 @@ impl Memory {
     }
 }
 
-/// What was said so far.
+/// State of the decoder after the symbols so far.
 #[derive(Clone)]
 pub(super) struct State {
     keys: Vec<Vec<f32>>,
@@ -185,7 +185,7 @@ pub(super) struct State {
 }
 
 impl State {
-    /// As it was after so many symbols were said, to go on differently.
+    /// Goes back to the state after `said` symbols, to continue differently.
     pub(super) fn back_to(&mut self, said: usize, net: &Net) {
         let most = said * net.c.width;
         self.keys
@@ -310,7 +310,7 @@ impl Net {
         }
     }
 
-    /// Probabilities of the symbols after `last` (`None`: of the first), and how much each token was looked at.
+    /// Probabilities of the symbols after `last` (`None`: of the first symbol), and the attention on each token.
     pub(super) fn next(
         &self,
         state: &mut State,
@@ -382,7 +382,7 @@ impl Net {
                 if let Some(s) = copy {
                     let p = copied[k * tokens + i];
                     logits[*s] += p;
-                    // (what is copied is looked at)
+                    // (a copied token counts as attended to)
                     attention[i] = attention[i].max(p);
                 }
             }

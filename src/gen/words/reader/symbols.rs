@@ -1,4 +1,4 @@
-//! What the network hears and says, as numbers. Twin of `training/words/symbols.py`.
+//! Input and output of the network as numbers. Twin of `training/words/symbols.py`.
 
 use std::collections::HashMap;
 
@@ -13,11 +13,11 @@ use nets::text::hash;
 pub(super) const GRAMS: usize = 4096;
 /// Numeric tokens that can be pointed at.
 pub(super) const MOST_NUMBERS: usize = 8;
-/// Tokens that are read at once.
+/// Most tokens that are read at once.
 pub(super) const MOST_TOKENS: usize = 111;
-/// Symbols of a reading.
+/// Most symbols of a reading.
 pub(super) const MOST_SYMBOLS: usize = 160;
-/// Ends a reading.
+/// Symbol that ends a reading.
 pub(super) const END: usize = 0;
 
 /// Tokens as the network takes them; the first place is the mode.
@@ -27,7 +27,7 @@ pub(super) struct Input {
     pub(super) senses: Vec<Vec<usize>>,
     pub(super) values: Vec<usize>,
     pub(super) pointers: Vec<usize>,
-    /// The symbol that copying a token says: of its sense, and as a number to point at.
+    /// The symbols that copying a token gives: by its sense, and as a number to point at.
     pub(super) copy_sense: Vec<Option<usize>>,
     pub(super) copy_number: Vec<Option<usize>>,
 }
@@ -116,7 +116,7 @@ impl Symbols {
         }
     }
 
-    /// The notation that symbols say.
+    /// The notation of symbols.
     pub(super) fn line(&self, said: &[usize], tokens: &[Token]) -> String {
         let numbers: Vec<f64> = tokens.iter().filter_map(|t| t.value).take(MOST_NUMBERS).collect();
         let value = |name: &str| {
@@ -148,7 +148,8 @@ impl Symbols {
         out.join(" ")
     }
 
-    /// True if a symbol continues what was said to the beginning of a valid reading, or ends it where it is whole.
+    /// True if a symbol continues the symbols so far to the beginning of a valid reading, or ends them where they are a
+    /// whole one.
     pub(super) fn may_follow(
         &self,
         symbol: usize,
@@ -182,7 +183,7 @@ impl Symbols {
     }
 }
 
-/// The unit of a number that stands after a symbol, where it is not metres.
+/// The unit of a number after a symbol, if it is not metres.
 fn unit_after(symbol: &str) -> Option<&'static str> {
     match symbol {
         "from" | "length" => Some("s"),

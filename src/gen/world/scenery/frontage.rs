@@ -9,7 +9,7 @@ use scene::Form;
 use scene::background::{Building, Facade, Roof, STOREY_M};
 use scene::draw::Draw;
 
-/// How a setting builds; ranges in m.
+/// Building style of a setting; ranges in m.
 struct Lots {
     setback: [f64; 2],
     width: [f64; 2],
@@ -123,7 +123,7 @@ fn lots(setting: Setting) -> Option<Lots> {
 /// Puts buildings along every road.
 pub(super) fn buildings(site: &mut Site<'_>) {
     let mut draw = Draw::new(site.seed, "buildings");
-    // Both sides share a setback where they are alike, so that a line serves both.
+    // The setback is the same on both sides where their settings are alike, so that one line serves both.
     let setback = draw.unit();
     for row in 0..2 {
         for setting in Setting::ALL {
@@ -181,12 +181,12 @@ fn line_up(site: &mut Site<'_>, line: &[DVec2], lots: &Lots, setting: Setting, r
                 if lots.gap[1] > 0.0 { 0.4 } else { 0.0 },
             );
         }
-        // On a bend the chord is shorter than the way along the line; what stands there is as wide as the chord.
+        // On a bend the chord is shorter than the distance along the line; a building there is as wide as the chord.
         at += width.min(total) + gap;
     }
 }
 
-/// A building whose front runs from `a` to `b`, if it finds room; a shallower one where there is less.
+/// A building whose front runs from `a` to `b`, if there is room; a shallower one where there is less.
 #[expect(clippy::too_many_arguments, reason = "one lot, described once")]
 fn building(
     site: &Site<'_>,
@@ -219,7 +219,7 @@ fn building(
         Setting::Industry | Setting::Retail => draw.range(3.6, 4.6),
         _ => STOREY_M,
     };
-    // What stands out must not hang over the road.
+    // Projecting parts must not hang over the road.
     let hangs = matches!(facade, Facade::Balconies | Facade::Bays);
     let room = site.paved_m((a + b) / 2.0);
     let facade = if hangs && room < 1.8 {

@@ -9,7 +9,7 @@ use scene::Form;
 use scene::background::{Line, LineKind, Post, PostKind};
 use scene::draw::Draw;
 
-/// What runs along the road in a setting: weights of hedge, wall, fence, guard rail, nothing; and its distance, m.
+/// Boundary along the road in a setting: weights of hedge, wall, fence, guard rail, none; and its distance, m.
 fn boundary(setting: Setting) -> ([f64; 5], [f64; 2]) {
     match setting {
         Setting::Suburb => ([0.34, 0.18, 0.3, 0.0, 0.18], [0.5, 1.2]),

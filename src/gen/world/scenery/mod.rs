@@ -1,4 +1,4 @@
-//! What stands beside roads, drawn from a seed as things: it follows the road and its surroundings.
+//! Scenery, drawn from a seed as things: it follows the road and its surroundings.
 
 mod frontage;
 mod lines;
@@ -30,7 +30,7 @@ pub fn background_of(
     seed: u64,
 ) -> Background {
     let mut site = Site::new(layout, boxes, style, seed);
-    // Largest first: each keeps clear of what is there.
+    // Largest first: each keeps clear of the things before it.
     structures::walls(&mut site);
     structures::bridges(&mut site, &mut Draw::new(seed, "bridges"));
     frontage::buildings(&mut site);

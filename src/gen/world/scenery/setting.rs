@@ -1,4 +1,4 @@
-//! What kind of place it is, on either side of the ego's road.
+//! The kind of place on either side of the ego's road.
 
 use serde::{Deserialize, Serialize};
 
@@ -66,7 +66,7 @@ impl Setting {
 /// One side of the ego's road.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// What kind of place.
+    /// The kind of place.
     pub setting: Setting,
     /// Number of trees and shrubs, 1 = usual for the setting; 0 is none.
     pub green: f64,
@@ -81,7 +81,7 @@ pub struct Side {
 }
 
 impl Side {
-    /// The usual of a setting.
+    /// A side that is usual for a setting.
     pub fn usual(setting: Setting) -> Self {
         Self {
             setting,
@@ -94,7 +94,7 @@ impl Side {
     }
 }
 
-/// Both sides of the ego's road.
+/// Styles of both sides of the ego's road.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
     /// Left of the ego's road.
@@ -104,7 +104,7 @@ pub struct Style {
 }
 
 impl Style {
-    /// The same on both sides.
+    /// A style with the same side on the left and on the right.
     pub fn both(side: Side) -> Self {
         Self {
             left: side,
@@ -137,7 +137,7 @@ impl Style {
     }
 }
 
-/// How likely each of [`Setting::ALL`] is beside a layout.
+/// Weight of each of [`Setting::ALL`] beside a layout.
 fn weights(layout: &BevLayout) -> [f64; 9] {
     let count = |layer: BevLayer| layout.count(layer) as f64;
     let road = count(BevLayer::DrivableArea).max(1.0);

@@ -1,4 +1,4 @@
-//! The ground that scenery is put on: distances to what must stay clear, and what is taken already.
+//! The ground that scenery is put on: distances to areas that must stay clear, and the cells that are taken.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ pub fn distance_cells(extent: Extent, set: impl Fn(usize) -> bool) -> Vec<f32> {
     const FAR: f32 = 255.0;
     const DIAGONAL: f32 = 1.414;
     let (nx, ny) = (extent.nx(), extent.ny());
-    // A border of cells that are never nearest spares the loops all tests.
+    // A border of cells that are never nearest saves tests in the loops.
     let row = ny + 2;
     let mut d = vec![2.0 * FAR; (nx + 2) * row];
     for x in 0..nx {
@@ -119,7 +119,7 @@ impl<'a> Site<'a> {
         Self::at(&self.to_paved, p)
     }
 
-    /// The same of a cell.
+    /// Distance of a cell to the nearest road, car park or sidewalk, m.
     pub fn cell_to_paved_m(&self, cell: usize) -> f64 {
         f64::from(self.to_paved[cell]) * Window::VOXEL_M
     }
@@ -148,7 +148,7 @@ impl<'a> Site<'a> {
         (g.length() > 0.8).then(|| g.normalize())
     }
 
-    /// True if nothing is taken within a disc, and boxes are further away.
+    /// True if no cell within a disc is taken and boxes are further away.
     pub fn free(&self, p: DVec2, radius_m: f64) -> bool {
         if self.box_m(p) < radius_m + 0.4 {
             return false;
@@ -171,7 +171,7 @@ impl<'a> Site<'a> {
         free
     }
 
-    /// Puts a thing in and takes its ground, grown by a margin.
+    /// Adds a thing and marks its ground, grown by a margin, as taken.
     pub fn put(&mut self, form: Form, margin_m: f64) {
         let taken = &mut self.taken;
         let mut take = |x: usize, y: usize| taken[x * Window::NY + y] = true;

@@ -1,4 +1,5 @@
-//! What roads and ground are held by: retaining walls where the ground steps, parapets where it falls away, bridges across.
+//! Structures that hold roads and ground: retaining walls where the ground steps, parapets where it falls away, bridges
+//! across.
 
 use glam::DVec2;
 
@@ -11,13 +12,13 @@ use scene::{BevLayer, Form, Window};
 
 /// Distances from paved ground at which a step of the ground is looked for, m.
 const STEPS_AT_M: [f64; 4] = [1.2, 1.6, 2.0, 2.4];
-/// How far apart the ground is compared, m.
+/// Distance over which heights of the ground are compared, m.
 const ACROSS_M: f64 = 1.1;
-/// Ground that rises by this much within [`ACROSS_M`] is held by a wall, m.
+/// Rise within [`ACROSS_M`] from which on the ground is held by a wall, m.
 const HELD_M: f64 = 0.6;
-/// Ground that falls by this much beside a road has a parapet before it, m.
+/// Fall of the ground beside a road from which on there is a parapet, m.
 const FALLS_M: f64 = 1.5;
-/// Runs of fewer vertices, 0.8 m apart, are left out.
+/// Least number of vertices, 0.8 m apart, of a run that is kept.
 const SHORTEST: usize = 4;
 
 /// Rise of the ground from `p` away from the road over a distance, m.
@@ -27,7 +28,7 @@ fn rise_m(site: &Site<'_>, p: DVec2, across_m: f64) -> Option<f64> {
     Some(relief.height_m(p + away * across_m) - relief.height_m(p))
 }
 
-/// Runs of the line at a distance from paved ground along which the ground rises by enough, with the most it rises.
+/// Runs of the line at a distance from paved ground for whose rise `enough` is true, each with its greatest rise.
 fn runs(site: &Site<'_>, distance_m: f64, enough: impl Fn(f64) -> bool) -> Vec<(Vec<DVec2>, f64)> {
     let mut out = Vec::new();
     for line in walk::lines(site, distance_m) {

@@ -1,4 +1,4 @@
-//! Lines that keep a distance from the road: where house fronts, fences, rails and rows of trees run.
+//! Lines that keep a distance from the road: for house fronts, fences, rails and rows of trees.
 
 use glam::DVec2;
 
@@ -7,10 +7,10 @@ use scene::{Extent, Window};
 
 /// Steps along a line, m.
 const STEP_M: f64 = 0.8;
-/// Lines go on this far outside the grid, m.
+/// Distance that lines continue outside the grid, m.
 const BEYOND_M: f64 = 1.0;
 
-/// Lines at `distance_m` from paved ground, with a vertex about every 0.8 m; the road is on the right of the walk.
+/// Lines at `distance_m` from paved ground, with a vertex about every 0.8 m; the road is on their right.
 pub(super) fn lines(site: &Site<'_>, distance_m: f64) -> Vec<Vec<DVec2>> {
     let mut seen = vec![false; Window::COLUMNS];
     let mut out = Vec::new();
@@ -18,7 +18,7 @@ pub(super) fn lines(site: &Site<'_>, distance_m: f64) -> Vec<Vec<DVec2>> {
         if seen[start] {
             continue;
         }
-        // The cell's own distance differs from the blended one at its centre by rounding alone.
+        // The cell's own distance differs from the blended one at its centre by rounding only.
         if (site.cell_to_paved_m(start) - distance_m).abs() > 0.26 {
             continue;
         }
@@ -48,7 +48,7 @@ fn walk(site: &Site<'_>, from: DVec2, distance_m: f64, sign: f64, seen: &mut [bo
     let half = 40.0 + BEYOND_M;
     for _ in 0..600 {
         let Some(away) = site.away(p) else { break };
-        // The road on the right: the walk runs with `away` on its left.
+        // Keeps the road on the right: the line runs with `away` on its left.
         let along = -away.perp() * sign;
         let mut next = p + along * STEP_M;
         if let Some(turned) = site.away(next) {

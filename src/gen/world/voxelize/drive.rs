@@ -1,18 +1,18 @@
-//! The drive whose sweeps make labels.
+//! The drive from whose sweeps labels are made.
 
 use glam::DVec2;
 
 use crate::World;
 use scene::{Polyline, PolylineKind};
 
-/// How the simulated labelling drive goes.
+/// Parameters of the simulated labelling drive.
 #[derive(Clone, Debug)]
 pub struct Drive {
     /// Sweeps along the drive.
     pub sweeps: usize,
     /// Metres between sweeps.
     pub step_m: f64,
-    /// Share of rays that bring nothing back for no reason.
+    /// Share of rays that return nothing at random.
     pub dropout: f64,
     /// Standard deviation of the measured range, m.
     pub range_noise_m: f64,

@@ -1,4 +1,4 @@
-//! Labels as real ones are made: LiDAR sweeps along a drive, accumulated, the majority per voxel.
+//! Labels made like real ones: LiDAR sweeps along a drive, accumulated, the majority per voxel.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -10,18 +10,20 @@ use crate::World;
 use scene::draw::Draw;
 use scene::{Class, LidarPattern, Relief, SensorRig, VoxelGrid, Window};
 
-/// A lowest hit up to so many bins above the ground still belongs to something standing on it, before the smear.
+/// Highest bin above the ground at which a column's lowest hit still belongs to an object that stands on it, before the
+/// smear.
 const HIGHEST_UNDERSIDE: usize = 4;
-/// Ground this many bins above other ground is a deck that stands over it.
+/// Number of bins above other ground from which on ground is a deck over it.
 const DECK: usize = 4;
 
-/// Labels of a drive, and what it observed; free where unobserved means unknown.
+/// Labels of a drive, and the voxels it observed; free where unobserved means unknown.
 pub struct Labelled {
     /// The labels.
     pub grid: VoxelGrid,
-    /// One flag per voxel, `[x][y][z]`: a ray ended in it or went through it. Ground that was filled in from around is not.
+    /// One flag per voxel, `[x][y][z]`: true if a ray ended in it or went through it; false for ground that was filled
+    /// in from around.
     pub by_lidar: Vec<bool>,
-    /// Those of them that a camera of the rig sees from where the vehicle stands: in a picture, and nothing in front.
+    /// Voxels of those that a camera of the rig sees from the vehicle's place: in a picture, with nothing in front.
     pub by_camera: Vec<bool>,
 }
 
@@ -38,7 +40,7 @@ pub fn labels(
     voted(world, sweeps.into_iter().map(|s| s.hits), vertical).0
 }
 
-/// The same with the masks that a data set has beside its labels, by the first LiDAR and the cameras of a rig.
+/// The labels with the masks that a data set has beside them, by the first LiDAR and the cameras of a rig.
 pub fn labelled(world: &World, rig: &SensorRig, drive: &Drive, vertical: Vertical, seed: u64) -> Labelled {
     let (grid, by_lidar) = observed_labels(world, rig.lidars.first(), drive, vertical, seed);
     let by_camera = seen_by_cameras(&grid, &by_lidar, rig);
@@ -49,7 +51,7 @@ pub fn labelled(world: &World, rig: &SensorRig, drive: &Drive, vertical: Vertica
     }
 }
 
-/// The same without cameras: the labels, and per voxel `[x][y][z]` whether the LiDAR observed it.
+/// The labels without cameras' masks, and per voxel `[x][y][z]` whether the LiDAR observed it.
 pub fn observed_labels(
     world: &World,
     lidar: Option<&LidarPattern>,
@@ -151,7 +153,7 @@ fn voted(
         let is_ground = |v: &(u16, u8)| Class::from_id(v.1).is_some_and(Class::is_ground);
         let z = column_votes.iter().position(is_ground);
         ground.push(z.map(|z| (z, column_votes[z].1)));
-        // What is left are things that stand on it, and decks over it.
+        // The remaining hits are objects that stand on the ground, and decks over it.
         let below_deck = z.map_or(0, |z| (z + DECK).min(Window::NZ));
         let all = column_votes[..below_deck].iter_mut().filter(|v| is_ground(v));
         all.for_each(|v| *v = (0, Class::FREE));
@@ -178,8 +180,8 @@ fn voted(
     (grid, filled.collect())
 }
 
-/// Ground with its small holes filled, as surface reconstruction does before labels are made: a column
-/// without any takes that of its neighbours if half of the eight have some.
+/// Ground with its small holes filled, as surface reconstruction does before labels are made: a column without ground
+/// takes that of its neighbours if half of the eight have some.
 fn closed(ground: &[Option<(usize, u8)>]) -> Vec<Option<(usize, u8)>> {
     let at = |x: usize, y: usize| -> Option<(usize, u8)> {
         let inside = x < Window::NX && y < Window::NY;

@@ -1,5 +1,5 @@
-//! Worlds to voxels, two ways: complete (every voxel of every solid) and as real labels are made
-//! (LiDAR sweeps along a drive, accumulated, majority per voxel, with holes and occlusion).
+//! Worlds to voxels, in two ways: complete (every voxel of every solid), and made like real labels (LiDAR sweeps along
+//! a drive, accumulated, majority per voxel, with holes and occlusion).
 
 mod drive;
 mod labels;
@@ -12,20 +12,20 @@ use scene::raster::bev_channels;
 use scene::solid::fill::{SMEAR, fill, smear_down};
 use scene::{BevLayer, Class, Extent, Relief, VoxelGrid, Window};
 
-/// Where the ground sits vertically.
+/// Vertical position of the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Vertical {
-    /// As in the Occ3D labels: the ground two bins below its true height, in bin 0, and every
-    /// other voxel extended two bins down (`real_statistics.md`, 2.2).
+    /// The convention of the Occ3D labels: the ground two bins below its true height, in bin 0, and every other voxel
+    /// extended two bins down (`real_statistics.md`, 2.2).
     #[default]
     Occ3d,
-    /// As measured: the ground in bin 2.
+    /// The measured position: the ground in bin 2.
     Physical,
 }
 
-/// Every voxel that a solid fills, and the ground under them: what a sensor that sees everything
-/// would label; see [`fill`]. An object's voxels stay in the columns of its box's footprint, as the
-/// layout's do: what sticks out by less than half a column belongs to no column.
+/// Every voxel that a solid fills, and the ground under them: the labels that a sensor which sees everything would
+/// give; see [`fill`]. An object's voxels stay in the columns of its box's footprint, as the layout's do: parts that
+/// stick out by less than half a column belong to no column.
 pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
     let mut best = vec![(0u8, Class::FREE); Window::VOXELS]; // votes, class
     let bev = bev_channels(&world.layout, world.boxes.values());
@@ -56,12 +56,13 @@ pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
     grid
 }
 
-/// Bin of the ground in a column, as measured.
+/// Bin of the ground in a column, at its measured height.
 fn ground_bin(world: &World, x: usize, y: usize) -> usize {
     Relief::physical_bin(world.ground_height(Window::center(x, y, 0).truncate()))
 }
 
-/// Where the ground steps down to a neighbour by more than a bin, its side is ground too: one could look under it else.
+/// Fills the side of a step: where the ground falls to a neighbour by more than a bin, its side is ground too, because
+/// one could look under it otherwise.
 fn close_step(column: &mut [u8; Window::NZ], world: &World, [x, y]: [usize; 2], vertical: Vertical) {
     if world.layout.relief.is_flat() {
         return;
@@ -82,7 +83,7 @@ fn close_step(column: &mut [u8; Window::NZ], world: &World, [x, y]: [usize; 2], 
     column[from..own].fill(world.ground_class(x, y).id());
 }
 
-/// Puts the ground below what stands on it and applies the vertical convention.
+/// Puts the ground below the objects that stand on it and applies the vertical convention.
 fn finish_column(column: &mut [u8; Window::NZ], ground: Option<(usize, u8)>, vertical: Vertical) {
     if vertical == Vertical::Occ3d {
         smear_down(column);

@@ -1,4 +1,4 @@
-//! What a labelling drive observed: voxels that its rays went through, and those that cameras see.
+//! Observations of a labelling drive: voxels that its rays went through, and voxels that cameras see.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use scene::{Camera, Class, Optics, Pose, SensorRig, VoxelGrid, Window};
 pub(super) struct Passed(Vec<u64>);
 
 impl Passed {
-    /// Marks the voxels between two points, the last one left out.
+    /// Marks the voxels between two points, without the last one.
     pub(super) fn walk(&mut self, from: DVec3, to: DVec3) {
         let mut last = None;
         voxels_between(from, to, |voxel| {
@@ -28,7 +28,7 @@ impl Passed {
         self.0[voxel / 64] |= 1 << (voxel % 64);
     }
 
-    /// Adds what another sweep went through.
+    /// Adds the voxels that another sweep went through.
     pub(super) fn join(&mut self, other: &Self) {
         self.0.resize(self.0.len().max(other.0.len()), 0);
         self.0.iter_mut().zip(&other.0).for_each(|(a, b)| *a |= b);
@@ -42,7 +42,7 @@ impl Passed {
     }
 }
 
-/// Calls `visit` with the index of each voxel of the grid along a segment, in order, until it says no.
+/// Calls `visit` with the index of each voxel of the grid along a segment, in order, until it returns false.
 fn voxels_between(from: DVec3, to: DVec3, mut visit: impl FnMut(usize) -> bool) {
     let (a, b) = (Window::to_voxel_units(from), Window::to_voxel_units(to));
     let d = b - a;
@@ -92,8 +92,8 @@ fn voxels_between(from: DVec3, to: DVec3, mut visit: impl FnMut(usize) -> bool) 
     }
 }
 
-/// Which of the voxels that the LiDAR observed a camera sees: the middle of a side that faces it lies in its picture and
-/// nothing is in front of it. (Occ3D's own masks see somewhat deeper into thin things.)
+/// The voxels that both the LiDAR observed and a camera sees: the middle of a side that faces the camera lies in its
+/// picture and nothing is in front of it. (Occ3D's own masks see somewhat deeper into thin things.)
 pub(super) fn seen_by_cameras(grid: &VoxelGrid, by_lidar: &[bool], rig: &SensorRig) -> Vec<bool> {
     let solid: Vec<bool> = grid.to_dense().iter().map(|l| *l != Class::FREE).collect();
     let views: Vec<View<'_>> = rig.cameras.iter().map(View::new).collect();
@@ -119,7 +119,7 @@ pub(super) fn seen_by_cameras(grid: &VoxelGrid, by_lidar: &[bool], rig: &SensorR
     observed.map(|(voxel, lidar)| *lidar && sees(voxel)).collect()
 }
 
-/// A camera where it is mounted.
+/// A camera at its mount.
 struct View<'a> {
     camera: &'a Camera,
     optics: Optics,
@@ -219,7 +219,7 @@ mod tests {
         assert!((0.1..0.8).contains(&share(&found.by_camera, false)));
         assert!((0.02..0.5).contains(&share(&found.by_lidar, true)));
         assert!(found.by_camera.iter().zip(&found.by_lidar).all(|(c, l)| !c || *l));
-        // Without cameras nothing is seen, and what the LiDAR observed is the same.
+        // Without cameras nothing is seen by them, and the LiDAR's observations are unchanged.
         let blind = SensorRig {
             cameras: Vec::new(),
             ..rig

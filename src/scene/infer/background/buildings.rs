@@ -1,4 +1,4 @@
-//! Buildings from manmade columns. Labels show their facades; how deep they are lies hidden behind, and is guessed.
+//! Buildings from manmade columns. Labels show their facades; their depth is hidden behind, and is guessed.
 
 use glam::DVec2;
 
@@ -14,10 +14,10 @@ const LOWEST_M: f64 = 2.2;
 const FEWEST: usize = 38;
 /// Shortest facade, m.
 const SHORTEST_M: f64 = 3.0;
-/// Columns above this are cut off by the top of the grid, m; what is cut off has this height.
+/// Height above which columns are cut off by the top of the grid, m; a building that is cut off gets this height.
 const CUT_M: f64 = 5.2;
 const CUT_HEIGHT_M: f64 = 6.0;
-/// Longest facade and deepest building that are taken for one, m.
+/// Longest facade and deepest building that are taken as one building, m.
 const LONGEST_M: f64 = 46.0;
 const DEEPEST_M: f64 = 17.0;
 /// Depth that a facade without visible sides is given, m.
@@ -32,7 +32,7 @@ pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [boo
     let tall: Vec<bool> = (0..Window::COLUMNS)
         .map(|c| manmade.top_m[c] >= LOWEST_M && manmade.count(c) >= 4)
         .collect();
-    // Nothing was seen there: inside or behind something, or out of reach.
+    // Columns where nothing was seen: inside or behind something, or out of reach.
     let hidden: Vec<bool> = (0..Window::COLUMNS)
         .map(|c| {
             labels
@@ -94,14 +94,14 @@ pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [boo
     out
 }
 
-/// Height that nearly all columns stay below, m.
+/// Height below which nearly all columns stay, m.
 fn top_m(columns: &[usize], manmade: &Standing) -> f64 {
     let mut tops: Vec<f64> = columns.iter().map(|c| manmade.top_m[*c]).collect();
     tops.sort_by(f64::total_cmp);
     tops[(tops.len() - 1) * 9 / 10]
 }
 
-/// Where along a rectangle the height changes for good, from its middle, m.
+/// Place along a rectangle, from its middle, where the height changes and stays changed, m.
 fn height_step(r: &Rectangle, columns: &[usize], manmade: &Standing) -> Option<f64> {
     let slot_m = 2.0 * Window::VOXEL_M;
     let slots = (2.0 * r.half_m.x / slot_m) as usize;

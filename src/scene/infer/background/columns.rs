@@ -1,4 +1,4 @@
-//! What the columns of labels show of one class, and sets of columns: connected, grown, closed.
+//! Columns of labels that hold one class, and sets of columns: connected, grown, closed.
 
 use glam::DVec2;
 
@@ -24,7 +24,7 @@ impl Standing {
             let ground = ground_bin(layout, x, y);
             let column = labels.column(x, y);
             for z in (ground + 1..Window::NZ).filter(|z| column[*z] == class.id()) {
-                // Tops are where they are; only the undersides of these labels reach down.
+                // Tops are exact; only the undersides of these labels reach down to the ground.
                 let top = (z + 1) as f64 * Window::VOXEL_M + Window::MIN_M[2];
                 out.top_m[c] = (top - layout.relief.column_m(x, y)).max(0.1);
                 out.bins[c] |= 1 << (z - ground);
@@ -38,7 +38,7 @@ impl Standing {
         self.bins[c].count_ones()
     }
 
-    /// How many of the four bins above the ground hold the class.
+    /// Number of the four bins above the ground that hold the class.
     pub fn low(&self, c: usize) -> u32 {
         (self.bins[c] >> 1 & 0b1111).count_ones()
     }

@@ -33,7 +33,7 @@ pub(super) fn walls_and_poles(manmade: &Standing, left: &[bool]) -> Vec<Form> {
             }
             let kind = match top {
                 t if t < 1.0 => LineKind::GuardRail,
-                // Mesh and boards let rays through: what is seen of a fence has gaps.
+                // Mesh and boards let rays through: the labels of a fence have gaps.
                 t if t < LineKind::Fence.typical_m().0 + 0.3 && !is_dense(&r, &columns) => LineKind::Fence,
                 _ => LineKind::Wall,
             };

@@ -21,7 +21,7 @@ pub fn background(labels: &VoxelGrid, layout: &BevLayout) -> Background {
     let mut taken = vec![false; Window::COLUMNS];
     let buildings = buildings::buildings(labels, &manmade, &mut taken);
     forms.extend(buildings.into_iter().map(Form::Building));
-    // What is right beside a facade goes with the building.
+    // Columns right beside a facade belong to the building.
     let left: Vec<bool> = (0..Window::COLUMNS)
         .map(|c| manmade.top_m[c] > 0.0 && !around(c, 1).any(|n| taken[n]))
         .collect();

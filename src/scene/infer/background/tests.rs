@@ -1,4 +1,4 @@
-//! Tests on labels painted by hand: what is plainly one thing becomes that thing.
+//! Tests on labels painted by hand: an obvious single thing becomes one thing.
 
 use glam::DVec2;
 
