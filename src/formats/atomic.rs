@@ -41,7 +41,7 @@ fn replace(target: &Path, bytes: &[u8]) -> io::Result<()> {
     sync_folder(&folder)
 }
 
-/// What any new file gets; temporary files are private otherwise.
+/// Gives a file the permissions that any new file gets; a temporary file would be private otherwise.
 #[cfg(unix)]
 fn use_default_permissions(builder: &mut tempfile::Builder<'_, '_>) {
     use std::os::unix::fs::PermissionsExt;

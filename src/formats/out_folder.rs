@@ -19,7 +19,7 @@ pub enum OutError {
     Name {
         /// The folder.
         folder: String,
-        /// What is wrong.
+        /// The problem with the name.
         problem: NotPlain,
     },
     /// A link on the way leads out of the folder, or to nothing.
@@ -28,14 +28,14 @@ pub enum OutError {
         /// The link.
         path: String,
     },
-    /// Something else has the name.
+    /// A thing of another kind has the name.
     #[error("{path}: found {found}, expected {expected}")]
     Taken {
-        /// What has it.
+        /// Path of that thing.
         path: String,
-        /// What it is.
+        /// Its kind.
         found: &'static str,
-        /// What may be there.
+        /// The kinds that may be there.
         expected: &'static str,
     },
     /// Two files of one name, on systems that do not look at the case of letters at least.
@@ -49,11 +49,11 @@ pub enum OutError {
     /// The file system refused.
     #[error("{what} {path}: {source}")]
     Io {
-        /// What was tried.
+        /// The action that was tried.
         what: &'static str,
         /// The file or folder.
         path: String,
-        /// What the system said.
+        /// Error of the system.
         source: io::Error,
     },
 }
@@ -61,9 +61,9 @@ pub enum OutError {
 /// A folder and what was written into it.
 #[derive(Debug)]
 pub struct OutFolder {
-    /// As the user named it.
+    /// Path as the user named it.
     named: PathBuf,
-    /// Without links.
+    /// Path without links.
     root: PathBuf,
     /// Where each file went, by its name without the case of letters.
     written: BTreeMap<String, PathBuf>,

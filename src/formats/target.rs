@@ -1,11 +1,12 @@
-//! What a path that is to be written leads to: a file, which is replaced whole, or what takes bytes as they come.
+//! Target of a path that is to be written: a file, which is replaced whole, or a stream, which takes bytes as they
+//! come.
 
 use std::fs::{self, File, FileType, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// As many links as systems follow.
+/// Most links that are followed, as many as systems follow.
 const MOST_LINKS: usize = 40;
 
 /// True once bytes of a file went to standard output.
@@ -18,13 +19,13 @@ pub(crate) enum Target {
     File(PathBuf),
     /// A pipe, or a device that takes bytes one after the other: `/dev/null`, a terminal.
     Stream(PathBuf),
-    /// Something that this process has open already: `/dev/stdout`, `/dev/fd/3`.
+    /// A file that this process has open already: `/dev/stdout`, `/dev/fd/3`.
     Open(u32, PathBuf),
 }
 
 impl Target {
-    /// Of a path. Errors for folders, for devices of blocks (a disk's contents would be gone), for sockets, and if links lead in
-    /// a circle.
+    /// The target of a path. Errors for folders, for block devices (a disk's contents would be lost), for sockets, and
+    /// if links lead in a circle.
     pub(crate) fn of(path: &Path) -> io::Result<Self> {
         let path = match followed(path)? {
             Self::File(path) => path,

@@ -17,7 +17,7 @@ const LARGEST_FILE: u64 = 4 << 20;
 pub struct Language {
     /// Its short name (ISO 639-1), that of its file.
     pub code: String,
-    /// What it calls itself.
+    /// Its name in the language itself.
     pub name: String,
     texts: HashMap<String, String>,
 }
@@ -56,7 +56,7 @@ impl Language {
     }
 }
 
-/// What comes with the program: their codes and files.
+/// The languages that come with the program: their codes and files.
 const BUILT_IN: [(&str, &str); 3] = [
     ("de", include_str!("../../assets/languages/de.json")),
     ("ja", include_str!("../../assets/languages/ja.json")),

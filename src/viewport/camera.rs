@@ -86,7 +86,7 @@ const ROOM_AROUND: f64 = 1.05;
 const NEAR_M: f64 = 0.1;
 /// Half of the depth that an orthographic view shows about its target at least, m.
 const ORTHO_HALF_DEPTH_M: f64 = 1000.0;
-/// What is under the pointer is zoomed to if it is nearer than this, m.
+/// Farthest hit under the pointer that zooming goes to, m.
 const FAR_ZOOM_M: f64 = 400.0;
 /// A map that is seen less steeply than this is seen from its edge, rad.
 const LEVEL_RAD: f64 = -0.17;
@@ -133,7 +133,7 @@ impl ViewCamera {
         }
     }
 
-    /// The same over a map: one from above shows all of it, the others look where the ego vehicle is.
+    /// A standard viewpoint over a map: the one from above shows all of it, the others look where the ego vehicle is.
     pub fn preset_over(preset: ViewPreset, extent: Extent) -> Self {
         let mut camera = Self::preset(preset);
         if preset == ViewPreset::Top {
@@ -176,7 +176,7 @@ impl ViewCamera {
         .sane()
     }
 
-    /// The same camera with every field finite and in its range; what is broken comes from the start view.
+    /// The camera with every field finite and in its range; a field that is not finite comes from the start view.
     pub fn sane(&self) -> Self {
         use std::f64::consts::{FRAC_PI_2, PI};
         let start = Self::preset(ViewPreset::Perspective);

@@ -1,4 +1,4 @@
-//! What a drawable is, and the table of all of them.
+//! The trait of a drawable, and the table of all drawables.
 //!
 //! A new drawable is one file here with a type that implements [`Drawable`], one shader of the same name, and one line in
 //! [`all`].
@@ -91,7 +91,7 @@ pub(super) struct View<'a> {
     pub part: bool,
 }
 
-/// Something that is drawn into the 3D view.
+/// A thing that is drawn into the 3D view.
 pub(super) trait Drawable: Debug + Send + Sync {
     /// Its name, that of its file and of its shader.
     fn name(&self) -> &'static str;

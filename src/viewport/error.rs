@@ -1,4 +1,4 @@
-//! What can go wrong when drawing without a window.
+//! Errors of drawing without a window.
 
 pub(super) use scene::message::one_line; // drivers say more
 

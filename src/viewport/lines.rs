@@ -21,7 +21,7 @@ pub(super) struct LineVertex {
 const _: () = assert!(size_of::<LineVertex>() == 32);
 
 impl LineVertex {
-    /// Both ends, ego frame, m, and the width in points.
+    /// The two ends, ego frame, m, and the width in points.
     pub fn line(&self) -> ([DVec3; 2], f64) {
         let at = |p: [f32; 3]| DVec3::from_array(p.map(f64::from));
         ([at(self.from_m), at(self.to_m)], f64::from(self.width_pt))

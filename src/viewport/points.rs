@@ -21,7 +21,7 @@ struct PointVertex {
 
 const _: () = assert!(size_of::<PointVertex>() == 16);
 
-/// What the colour of a LiDAR return tells.
+/// Meaning of the colour of a LiDAR return.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LidarColorMode {
     /// Distance from the sensor: near is warm, far is cool; the scale ends at 50 m.

@@ -22,9 +22,9 @@ const _: () = assert!(size_of::<UiVertex>() == 20);
 pub struct UiMesh {
     /// Left, top, width, height, pixels, inside the target.
     pub scissor: [u32; 4],
-    /// Of the frame's indices.
+    /// Range of the frame's indices.
     pub indices: std::ops::Range<u32>,
-    /// What is added to them.
+    /// Number that is added to each index.
     pub base_vertex: i32,
 }
 
@@ -44,7 +44,7 @@ pub struct UiPainter {
     canvas: Option<Canvas>,
 }
 
-/// What the window shows; the target that it hands over for a frame does not keep the last one.
+/// The picture that the window shows, kept here because the target of a frame does not keep the last one.
 #[derive(Debug)]
 struct Canvas {
     size: [u32; 2],
@@ -72,7 +72,7 @@ fn uniform(size: u64) -> wgpu::BindingType {
     }
 }
 
-/// What the shader binds: the uniforms of the window, and a texture as egui's renderer binds it.
+/// Layouts of what the shader binds: the uniforms of the window, and a texture as egui's renderer binds it.
 struct Layouts {
     screen: wgpu::BindGroupLayout,
     texture: wgpu::BindGroupLayout,

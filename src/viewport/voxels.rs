@@ -35,7 +35,7 @@ pub(super) struct Voxels {
     bricks: Vec<BrickBuffer>,
 }
 
-/// What is shown, as last uploaded.
+/// The voxels that are shown, as last uploaded.
 #[derive(Debug)]
 struct Held {
     grid: VoxelGrid, // holding it keeps the addresses of its bricks unique
@@ -49,7 +49,7 @@ struct BrickBuffer {
     quads: [std::ops::Range<u32>; 6],
 }
 
-/// What is shown under these options.
+/// The visible part of a grid under these options.
 pub(super) fn visible(options: &ViewOptions) -> Visible {
     if !options.voxels {
         return Visible {

@@ -23,9 +23,9 @@ pub(crate) struct PicturePlaces<'a>(Numbers<'a>);
 
 /// Indices of corners, or simply their order.
 pub(crate) enum Indices<'a> {
-    /// As listed.
+    /// The indices that the file lists.
     Listed(Numbers<'a>),
-    /// The corners in their order; how many there are.
+    /// No list: the corners in their order, so many of them.
     InOrder(u64),
 }
 

@@ -96,12 +96,12 @@ pub(crate) struct Heights {
     /// First column, and how many along x and y.
     from: [usize; 2],
     size: [usize; 2],
-    /// Along y first; `NEG_INFINITY` where nothing was found.
+    /// `[x][y]` from the first column on; `NEG_INFINITY` where nothing was found.
     top: Vec<f64>,
 }
 
 impl Heights {
-    /// Nothing yet of a thing with this box.
+    /// The heights of a thing with this box, none found yet.
     pub(crate) fn new(extent: Extent, b: &SceneBox) -> Self {
         let reach = DVec3::new(1.0, 1.0, 0.0) * (b.size_m.truncate().length() / 2.0);
         let [low, high] = [-reach, reach].map(|r| extent.to_voxel_units(b.center_m + r));

@@ -40,14 +40,14 @@ const HARMLESS: [&str; 8] = [
 
 /// A document that was read, and the nodes of its scene.
 pub(crate) struct Document<'a> {
-    /// As in the file.
+    /// The JSON document as in the file.
     pub(crate) root: Root,
     /// Every node that the scene shows, parents before their children.
     pub(crate) nodes: Vec<Node>,
     /// Name of the scene; empty without one.
     pub(crate) scene_name: String,
     buffers: Vec<Cow<'a, [u8]>>,
-    /// What is beside it is read from here.
+    /// The file itself; other files beside it are read through this.
     source: &'a Source<'a>,
 }
 
@@ -65,14 +65,14 @@ pub(crate) struct Node {
     pub(crate) extras: Option<String>,
 }
 
-/// What was left out while triangles were read.
+/// Parts that were left out while triangles were read, counted by kind.
 #[derive(Default)]
 pub(crate) struct LeftOut {
     counts: BTreeMap<&'static str, usize>,
 }
 
 impl LeftOut {
-    /// Counts one of a kind.
+    /// Adds `n` to the count of a kind.
     pub(crate) fn add(&mut self, what: &'static str, n: usize) {
         if n > 0 {
             *self.counts.entry(what).or_default() += n;

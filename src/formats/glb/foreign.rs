@@ -23,10 +23,10 @@ use crate::import::Loaded;
 const MODEL_M: f64 = 25.0;
 /// Most columns of a foreign map along a side: 819 m.
 const MOST_SIDE: i32 = 2048;
-/// Something without a telling name is ground if it is lower than the first and longer than the second, m.
+/// A thing without a telling name is ground if it is lower than the first and longer than the second, m.
 const FLAT_M: f64 = 0.5;
 const LONG_M: f64 = 5.0;
-/// And manmade if it is larger than this, m.
+/// A thing without a telling name that is no ground is manmade if its longest side is longer than this, m.
 const LARGE_M: f64 = 2.5;
 
 /// The corners of a box along the axes; empty if the first is above the second.
@@ -36,7 +36,7 @@ pub(super) struct Bounds {
     pub(super) high: DVec3,
 }
 
-/// What is known of a node before its voxels are made.
+/// Facts about a node before its voxels are made.
 pub(super) struct About {
     pub(super) said: Said,
     /// Around its own mesh, and around all below it.
@@ -178,7 +178,7 @@ fn model(
     }
 }
 
-/// Class of something without a telling name.
+/// Class of a thing without a telling name.
 fn by_extent(high: &DVec3, low: &DVec3) -> Class {
     let size = *high - *low;
     let long = size.x.max(size.y);

@@ -49,7 +49,7 @@ pub(crate) struct SceneExtras {
     pub(crate) recipe: serde_json::Value,
 }
 
-/// What a file of ours says of its scene. Unknown keys are passed over.
+/// Description of the scene in a file that this program wrote. Unknown keys are passed over.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Told {
     pub(crate) version: u32,
@@ -109,7 +109,7 @@ pub(crate) struct BoxExtras {
 }
 
 impl BoxExtras {
-    /// Of a box, and whether it has voxels of its own.
+    /// The extras of a box; `has_voxels` says whether it has voxels of its own.
     pub(crate) fn of(b: &SceneBox, has_voxels: bool) -> Self {
         Self {
             class: b.class,
@@ -124,7 +124,7 @@ impl BoxExtras {
         }
     }
 
-    /// The box that they tell.
+    /// The box that the extras describe.
     pub(crate) fn scene_box(&self) -> SceneBox {
         SceneBox {
             id: self.id,

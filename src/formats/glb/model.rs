@@ -30,7 +30,7 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// Of a thing whose node lies so.
+    /// The outline of a thing whose node lies as `world_from_node` says; without points yet.
     pub(crate) fn new(world_from_node: &DAffine3) -> Self {
         let linear = world_from_node.matrix3;
         let level = |axis: DVec3| axis.truncate().try_normalize();

@@ -24,7 +24,7 @@ const STILL: f64 = 1e-4;
 /// Farthest column of a map from the origin: 400 km.
 const FARTHEST: u32 = 1_000_000;
 
-/// What a node is, by its own extras or those around it.
+/// Role of a node, by its own extras or those of a node around it.
 enum Role {
     /// Voxels of a class.
     Class(Class),
@@ -32,7 +32,8 @@ enum Role {
     Box(Box<BoxExtras>),
 }
 
-/// What a document says of its scene, if it is one of ours. Errors if it is, and newer or otherwise not readable.
+/// The extras that describe the scene of a document; `None` if this program did not write it. Errors if they are of a
+/// newer version, of other classes or otherwise not readable.
 pub(crate) fn extras(document: &Document<'_>) -> Result<Option<SceneExtras>, FormatError> {
     for node in &document.nodes {
         let Some(text) = node
@@ -137,7 +138,7 @@ fn parsed<T: DeserializeOwned>(node: &Node) -> Option<T> {
     serde_json::from_str(node.extras.as_deref()?).ok()
 }
 
-/// What each node says that it is.
+/// The role that each node has by its own extras. Counts boxes whose extras are not readable.
 fn roles(document: &Document<'_>, left_out: &mut LeftOut) -> Vec<Option<Role>> {
     let mut role = |node: &Node| {
         let text = node.extras.as_deref()?;
@@ -152,7 +153,7 @@ fn roles(document: &Document<'_>, left_out: &mut LeftOut) -> Vec<Option<Role>> {
     document.nodes.iter().map(&mut role).collect()
 }
 
-/// What a node is: what it says, or the nearest one around it.
+/// The role of a node: its own, or that of the nearest node around it that has one.
 fn role_of<'a>(document: &Document<'_>, roles: &'a [Option<Role>], node: usize) -> Option<&'a Role> {
     let around = std::iter::successors(Some(node), |i| document.nodes[*i].parent);
     around.into_iter().find_map(|i| roles[i].as_ref())

@@ -44,7 +44,7 @@ struct Coat<'a> {
 }
 
 impl<'a> Coats<'a> {
-    /// Of a document.
+    /// The coats of a document; none of its pictures is read yet.
     pub(crate) fn new(document: &'a Document<'a>) -> Self {
         Self {
             document,

@@ -28,7 +28,7 @@ impl Surface {
         Self { extent, visits: 0 }
     }
 
-    /// What [`visit`](Self::visit) will cost for a triangle (m), told without doing it: as many units as columns that the
+    /// Cost of [`visit`](Self::visit) for a triangle (m), told without doing it: one unit for each column that the
     /// triangle covers wholly, and [`RIM`] for each along its rim.
     pub(crate) fn cost(extent: Extent, corners: [DVec3; 3]) -> u64 {
         let corners = corners.map(|p| extent.to_voxel_units(p));

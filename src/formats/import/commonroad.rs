@@ -46,7 +46,7 @@ struct Beside {
     other: i64,
     is_left: bool,
     same_way: bool,
-    /// What the bound says of its paint.
+    /// Whether the bound is painted, if the file says so.
     paint: Option<bool>,
 }
 
@@ -163,7 +163,7 @@ fn lanelet(
     Ok(())
 }
 
-/// What a lanelet is for, by its types.
+/// The use of a lanelet, by its types.
 fn use_of(node: Node<'_, '_>, skipped: &mut Skipped) -> Use {
     let kinds = named(node, "laneletType").filter_map(|n| n.text());
     let kinds: BTreeSet<&str> = kinds.map(str::trim).collect();

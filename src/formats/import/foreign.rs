@@ -7,18 +7,18 @@ use crate::FormatError;
 
 /// A format that is not read.
 struct Foreign {
-    /// What it is, with its article.
+    /// Name of the format, with its article.
     what: &'static str,
-    /// What to do instead.
+    /// Advice on what to do instead.
     instead: &'static str,
     /// True for the first bytes of such a file.
     is: fn(&Head<'_>) -> bool,
 }
 
-/// What a file is told by.
+/// The parts of a file that tell its format.
 struct Head<'a> {
     bytes: &'a [u8],
-    /// The same as text, from the first character that is no space on.
+    /// The bytes as text, from the first character on that is neither space nor byte order mark.
     text: &'a str,
     /// In small letters; empty without one.
     extension: &'a str,
@@ -327,7 +327,8 @@ const TABLE: &[Foreign] = &[
     },
 ];
 
-/// What a file is that no format claims: an error in one line, without the file's name. `None` if nobody knows it.
+/// Names the kind of a file that no format claims: an error in one line, without the file's name. `None` for an unknown
+/// kind.
 pub(super) fn told(path: &Path, head: &[u8]) -> Option<FormatError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let text = String::from_utf8_lossy(head);

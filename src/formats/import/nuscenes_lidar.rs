@@ -29,7 +29,7 @@ pub const IMPORTER: Importer = Importer {
     sample: tests::sample,
 };
 
-/// What the name of a file of labels ends in.
+/// Ending of the names of label files.
 const LABELS: &str = "_lidarseg.bin";
 
 /// Classes of nuScenes-lidarseg in their order, as Occ3D has them; none for noise and the own vehicle.

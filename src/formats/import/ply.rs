@@ -41,9 +41,9 @@ pub enum PlyError {
     Header {
         /// Which line, from 1.
         line: usize,
-        /// What it says.
+        /// Text of the line.
         found: String,
-        /// What would do.
+        /// The text that was expected.
         expected: &'static str,
     },
     /// The header has no such property of points.
@@ -68,10 +68,10 @@ pub enum PlyError {
         at: usize,
         /// Which property.
         property: String,
-        /// What is there.
+        /// The value that was found.
         found: String,
     },
-    /// Nothing would be left.
+    /// No point would be left.
     #[error(transparent)]
     Nothing(#[from] NothingOnTheMap),
 }
@@ -182,7 +182,7 @@ impl Number {
 struct Property {
     name: String,
     number: Number,
-    /// Of a list: the type of its length.
+    /// Type of the length, for a list; `None` for a single value.
     length: Option<Number>,
 }
 
@@ -293,7 +293,7 @@ impl Header {
     }
 }
 
-/// What comes after the header, read from the front.
+/// The bytes after the header, read from the front.
 struct Body<'a> {
     rest: &'a [u8],
     encoding: Encoding,

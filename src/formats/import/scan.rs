@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::Source;
 use crate::FormatError;
 
-/// What the columns after x, y, z are.
+/// Kind of the columns after x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Columns {
     /// KITTI: remission, 0 to 1.
@@ -111,12 +111,12 @@ impl Columns {
     }
 }
 
-/// What a place of three numbers says.
+/// Meaning of a place of three numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Slot {
-    /// Something is there.
+    /// A return.
     Return,
-    /// Nothing came back: the place is not finite, or the sensor's own but for rounding.
+    /// No return: the place is not finite, or the sensor's own but for rounding.
     Empty,
     /// No place of a LiDAR's return: too far, or so small that it is no number of a sensor.
     Wild,

@@ -94,7 +94,7 @@ fn beside(source: &Source<'_>, extension: &str) -> Result<Option<Vec<u8>>, Strin
     }
 }
 
-/// What no scan saw: a voxel is observed if one of the cells with their middle in it is valid.
+/// The voxels that no scan saw: a voxel is observed if one of the cells with their middle in it is valid.
 fn mask(extent: Extent, invalid: &[u8]) -> Option<Unobserved> {
     let rig = SensorRig::default();
     let pose = ego_from_cells(rig.lidars.first()?);

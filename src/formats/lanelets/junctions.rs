@@ -15,7 +15,7 @@ pub(super) struct Junctions {
 }
 
 impl Junctions {
-    /// What lies before the start of a lanelet and beyond its end.
+    /// Neighbours of a lanelet: before its start, and beyond its end.
     pub fn ends(&self, id: i64) -> [Option<RoadEnd>; 2] {
         [&self.before, &self.behind].map(|ends| ends.get(&id).cloned())
     }

@@ -8,9 +8,9 @@ const AXIS_M: f64 = 6_378_137.0;
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Scale on the central meridian.
 const SCALE: f64 = 0.9996;
-/// Of the central meridian, m.
+/// Easting of the central meridian, m.
 const EASTING_M: f64 = 500_000.0;
-/// Of the equator on the southern half, m.
+/// Northing of the equator on the southern half of the earth, m.
 const SOUTH_M: f64 = 10_000_000.0;
 
 /// A zone: its central meridian, and which half of the earth.

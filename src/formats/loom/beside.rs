@@ -71,7 +71,7 @@ pub(super) fn write(out: &mut Writer, kept: &Kept) -> Result<(), ProjectError> {
     Ok(())
 }
 
-/// What is kept; versions are not opened.
+/// Reads the kept versions and typed texts; the versions are not opened.
 pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<Kept, ProjectError> {
     if !file.has(KEPT) {
         return Ok(Kept::default());

@@ -3,7 +3,7 @@
 
 use scene::{BoxName, Class};
 
-/// What a category is in a scene.
+/// Meaning of a category in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Means {
     /// Points of it are left out.
@@ -62,7 +62,7 @@ pub const ALL: [(&str, Means); 32] = [
 /// Index of `static.other`, which points of the class "others" get.
 const STATIC_OTHER: u8 = 29;
 
-/// What a category of that name is; `None` for a name that is not in the list.
+/// The meaning of the category of that name; `None` for a name that is not in the list.
 pub fn meaning(name: &str) -> Option<Means> {
     ALL.iter()
         .find(|(known, _)| *known == name)

@@ -10,7 +10,7 @@ pub struct Tokens {
 }
 
 impl Tokens {
-    /// Of this scene.
+    /// The tokens of a scene.
     pub fn of(scene: &Scene) -> Self {
         Self {
             base: hash(scene.seed ^ of_text(&scene.name)),

@@ -1,5 +1,5 @@
-//! What an XML file may cost: counted in one pass before the parser sees it, because the parser compares each attribute
-//! of an element with those before it, and copies the namespaces of the elements around each.
+//! Bounds on the cost of an XML file: counted in one pass before the parser sees it, because the parser compares each
+//! attribute of an element with those before it, and copies the namespaces of the elements around each.
 
 use super::xml::{OpenDriveError, Result, shown};
 
@@ -80,7 +80,7 @@ struct Tag {
     attributes: usize,
     namespaces: usize,
     closed: bool,
-    /// Where its `>` stands; none in a file that is cut short.
+    /// Place of its `>`; `None` in a file that is cut short.
     end: Option<usize>,
 }
 

@@ -12,7 +12,7 @@ const MAX_WIDTH_M: f64 = 1000.0;
 /// One cubic that holds from `s_m` on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubicPiece {
-    /// Where it begins, m.
+    /// Start of the piece, m.
     pub s_m: f64,
     /// a, b, c, d over the distance from `s_m`.
     pub k: [f64; 4],
@@ -47,7 +47,7 @@ impl Cubics {
     }
 }
 
-/// What a lane is for; the names of OpenDRIVE 1.4 to 1.8, grouped by what they mean for a layout.
+/// Use of a lane; the names of OpenDRIVE 1.4 to 1.8, grouped by what they mean for a layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LaneKind {
     /// driving, entry, exit, onRamp, offRamp, connectingRamp, slipLane, mwyEntry, mwyExit, bus, taxi, HOV.
@@ -101,7 +101,7 @@ impl LaneKind {
         matches!(self, Self::Driving | Self::Bidirectional)
     }
 
-    /// What it is called where it is drivable although no traffic flows on it: `shoulder`. `None` for other kinds.
+    /// Name of a kind that is drivable although no traffic flows on it, such as `shoulder`. `None` for other kinds.
     pub fn beside_traffic(self) -> Option<&'static str> {
         Some(match self {
             Self::Shoulder => "shoulder",
@@ -156,7 +156,7 @@ pub enum Extent {
 pub struct Mark {
     /// Start, m.
     pub s_m: f64,
-    /// What is painted.
+    /// The paint.
     pub style: MarkStyle,
     /// True if yellow; any other colour counts as white.
     pub yellow: bool,
@@ -165,7 +165,7 @@ pub struct Mark {
 /// The paint of a road mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkStyle {
-    /// Nothing: the types none, curb and grass.
+    /// No paint: the types none, curb and grass.
     None,
     /// One or two unbroken lines.
     Solid,
@@ -180,7 +180,7 @@ pub enum MarkStyle {
 pub struct Lane {
     /// Positive left of the centre, negative right.
     pub id: i32,
-    /// What it is for.
+    /// Its use.
     pub kind: LaneKind,
     /// Direction of its traffic, if its kind has any.
     pub travel: Travel,
@@ -216,7 +216,7 @@ pub struct LaneSection {
     pub center_marks: Vec<Mark>,
 }
 
-/// What the ground of a lane is in a layout.
+/// Ground of a lane in a layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     /// Drivable area.

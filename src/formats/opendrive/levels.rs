@@ -69,7 +69,7 @@ impl Cover {
 }
 
 impl Levels {
-    /// Of the roads around the ego; `None` if every road of the file is flat.
+    /// Levels of the roads around the ego vehicle; `None` if every road of the file is flat.
     pub fn survey(network: &RoadNetwork, window: &MapCut) -> Option<Self> {
         if network.roads.iter().all(is_flat) {
             return None;

@@ -1,4 +1,4 @@
-//! What lies on the road or stands beside it, and its outlines in the file's frame.
+//! Objects on the road or beside it, and their outlines in the file's frame.
 
 use glam::DVec2;
 
@@ -21,7 +21,7 @@ pub enum ObjectKind {
     },
     /// Ground of the kind of lane that its outline names.
     Area(Ground),
-    /// Something that stands beside the road.
+    /// An object that stands beside the road.
     Standing(Standing),
 }
 
@@ -55,10 +55,10 @@ pub struct Repeat {
     pub lift_m: Option<[f64; 2]>,
 }
 
-/// A crossing, a parking space, a stop line, or what stands beside the road.
+/// A crossing, a parking space, a stop line, an area, or an object that stands beside the road.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoadObject {
-    /// What it is.
+    /// Its kind.
     pub kind: ObjectKind,
     /// Position along the road, m.
     pub s_m: f64,

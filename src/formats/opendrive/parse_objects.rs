@@ -54,7 +54,7 @@ fn names(node: Node<'_, '_>) -> [String; 3] {
     ["type", "subtype", "name"].map(|f| plain(node.attribute(f)))
 }
 
-/// What an object is that stands beside the road.
+/// Kind of an object that stands beside the road; `None` if it is not known or does not stand there.
 fn standing(node: Node<'_, '_>) -> Option<Standing> {
     let [kind, subtype, name] = names(node);
     Standing::from_names(&kind, &subtype, &name)

@@ -12,9 +12,9 @@ use scene::{BevLayer, BevLayout, Form};
 
 /// Things of one window, at most.
 const MOST_THINGS: usize = 4000;
-/// What begins higher above the road than this hangs or lies on something, m.
+/// A thing that begins higher above the road than this hangs or lies on something, m.
 const HANGS_M: f64 = 1.0;
-/// A signal that begins higher above the road than this and stands on it hangs from something, m.
+/// A signal at a place on the road that begins higher above it than this hangs from something, m.
 const OVERHEAD_M: f64 = 2.5;
 /// A step along something that runs with the road, m.
 const STEP_M: f64 = 2.0;

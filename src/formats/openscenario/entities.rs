@@ -1,4 +1,4 @@
-//! Who takes part: the ego vehicle, every box that stands, every track.
+//! Participants: the ego vehicle, every box that stands, every track.
 
 use std::fmt::Write as _;
 
@@ -15,13 +15,13 @@ const BASE_SHARE: f64 = 0.6;
 /// Name of the ego vehicle.
 pub(super) const EGO: &str = "Ego";
 
-/// Somebody or something of the scenario.
+/// A participant of the scenario.
 pub(super) struct Actor {
     /// Unique in the file; letters, digits and `_`.
     pub name: String,
     pub who: Who,
     pub class: Class,
-    /// What it is called, for a person.
+    /// Name for a person.
     pub called: String,
     /// Length, width, height, m.
     pub size_m: DVec3,
@@ -30,7 +30,7 @@ pub(super) struct Actor {
     pub center_m: DVec3,
 }
 
-/// What of the scene it is.
+/// The ego vehicle or the box of the scene that a participant is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Who {
     Ego,

@@ -19,7 +19,7 @@ struct Place {
     turn_rad: [f64; 3],
 }
 
-/// Somebody's place at a time, and the speed along the heading, m/s; `None` while it is not there.
+/// Place of a participant at a time, and its speed along the heading, m/s; `None` while it is not there.
 fn place(scene: &Scene, actor: &Actor, time_s: f64) -> Option<(Place, f64)> {
     let (clip, canvas) = (scene.clip(), scene.canvas());
     let relief = &canvas.layout.relief;

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use crate::error::FormatError;
 
-/// What a file of moving pictures is.
+/// Format of a file of moving pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VideoKind {
     /// 256 colours a frame; every browser and mail program shows it.

@@ -7,7 +7,7 @@ use scene::message::quoted;
 
 use super::LONGEST;
 
-/// What a file holds that is used here.
+/// The parts of a file that are used here.
 #[derive(Debug, Default)]
 pub(crate) struct File<'a> {
     pub models: Vec<Model<'a>>,
@@ -113,7 +113,7 @@ fn name(id: &[u8; 4]) -> String {
     quoted(&String::from_utf8_lossy(id), 8)
 }
 
-/// What is used of a dictionary.
+/// The entries of a dictionary that are used.
 #[derive(Default)]
 struct Dict {
     name: Option<String>,
@@ -122,7 +122,7 @@ struct Dict {
     move_by: Option<[i64; 3]>,
 }
 
-/// What has not been read yet.
+/// Bytes that have not been read yet.
 struct Bytes<'a> {
     left: &'a [u8],
 }

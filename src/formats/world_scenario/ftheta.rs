@@ -103,7 +103,7 @@ impl FTheta {
         })
     }
 
-    /// The same view in a picture of another size and the same shape.
+    /// The view in a picture of another size with the same aspect ratio.
     pub fn resized(&self, width: u32, height: u32) -> Self {
         let sx = f64::from(width) / f64::from(self.width);
         let sy = f64::from(height) / f64::from(self.height);

@@ -40,7 +40,7 @@ impl Growing {
         self.buffer = None;
     }
 
-    /// What [`Growing::at_least`] made last.
+    /// The buffer that [`Growing::at_least`] made last, if there is one.
     pub fn get(&self) -> Option<&wgpu::Buffer> {
         self.buffer.as_ref()
     }

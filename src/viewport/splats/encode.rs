@@ -25,7 +25,7 @@ pub(super) struct Shape {
     pub key_bits: u32,
 }
 
-/// What goes into a batch and comes out of it.
+/// Input and output buffers of a batch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Data<'a> {
     pub batch: &'a wgpu::Buffer,

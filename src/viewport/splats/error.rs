@@ -10,9 +10,9 @@ pub enum SplatError {
         adapter: String,
         /// Name of the limit in wgpu.
         limit: &'static str,
-        /// What the device has.
+        /// Limit of the device.
         has: u64,
-        /// What the shaders need.
+        /// Limit that the shaders need.
         needs: u64,
     },
     /// More Gaussians than the device can hold.

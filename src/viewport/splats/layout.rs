@@ -1,4 +1,4 @@
-//! What the splat shaders read, field by field as in `shaders/shared/splat.wgsl`.
+//! Data that the splat shaders read, field by field as in `shaders/shared/splat.wgsl`.
 
 use glam::DMat3;
 

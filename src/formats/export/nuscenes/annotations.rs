@@ -163,8 +163,8 @@ pub(super) fn visibilities() -> Vec<Visibility> {
     BINS.iter().enumerate().map(row).collect()
 }
 
-/// What is said of a scene: its prompt, and time of day and weather where the prompt does not name them. The devkit and
-/// many of its users look for `night` and `rain`.
+/// Description of a scene: its prompt, and time of day and weather where the prompt does not name them (day and clear
+/// weather are never added). The devkit and many of its users look for `night` and `rain`.
 pub(super) fn description(scene: &Scene) -> String {
     let conditions = &scene.conditions;
     let time = Some(conditions.time)

@@ -9,7 +9,7 @@ use crate::nuscenes::tokens::Tokens;
 
 /// Pixels of a mask along the side of a column: the devkit takes them as 0.1 m.
 const PER_COLUMN: usize = 4;
-/// What counts as driven or walked on.
+/// Layers of the mask: ground that is driven or walked on.
 const ON_MASK: [BevLayer; 4] = [
     BevLayer::DrivableArea,
     BevLayer::PedCrossing,

@@ -65,7 +65,7 @@ struct Tables {
     lidarseg: Vec<Lidarseg>,
 }
 
-/// What is written, so far.
+/// The export while it is made: the tables and files so far.
 struct Writing<'a> {
     scene: &'a Scene,
     tokens: Tokens,
@@ -238,7 +238,7 @@ fn scene_name(tokens: &Tokens) -> String {
     format!("scene-{}", 2000 + number % 8000)
 }
 
-/// What the recording is called: in the names of files, too.
+/// Name of the recording, which is also in the names of files.
 fn log_name(scene: &Scene) -> String {
     format!("sceneloom-{}", scene.seed)
 }

@@ -36,10 +36,10 @@ pub(super) struct Sensors {
 /// Share of each box that cameras see of what they would see if nothing stood in front, 0 to 1, all cameras together.
 pub(super) type Visible = BTreeMap<BoxId, f64>;
 
-/// What a key frame shows of its boxes.
+/// Visibility of the boxes in a key frame, to the LiDAR and to the cameras.
 #[derive(Default)]
 pub(super) struct Sighted {
-    /// Returns of the sweep as it is written that lie in each box, those with any.
+    /// Returns of the sweep, as it is written, that lie in each box; boxes without returns are left out.
     pub(super) returns: BTreeMap<BoxId, u32>,
     pub(super) visible: Visible,
 }

@@ -16,12 +16,13 @@ use scene::{Class, Window};
 
 /// Points so much above the ground belong to it, m.
 const GROUND_BAND_M: f64 = 0.15;
-/// How far ground may lie above what is around it, m, and so much more per m to the nearest of it.
+/// How far ground may lie above the ground around it, m, and how much more for each m to the nearest of it.
 const RISE_M: f64 = 0.12;
 const RISE_PER_M: f64 = 0.10;
-/// How far it may lie below, m (what is lower is an echo from elsewhere), and more per m as above.
+/// How far ground may lie below the ground around it, m (lower points are echoes from elsewhere); more per m as above.
 const FALL_M: f64 = 0.5;
-/// The same for ground that is driven on, up and down.
+/// How far ground that is driven on may lie above or below such ground around it, m, and how much more for each m to
+/// it.
 const STEP_M: f64 = 0.06;
 const STEP_PER_M: f64 = 0.02;
 /// Ground farther away than this counts as being there, m.
@@ -95,7 +96,7 @@ fn distance_m(a: usize, b: usize) -> f64 {
 
 /// Heights of the ground per column.
 struct Ground {
-    /// Of ground that was found or is near, m.
+    /// Height of the ground that was found there or is near, m.
     height_m: Vec<f64>,
     /// Reached from the vehicle without a step.
     is_driven: Vec<bool>,

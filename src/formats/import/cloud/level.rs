@@ -85,7 +85,7 @@ impl Ground {
         }
     }
 
-    /// What was done with a cloud, for a person.
+    /// Notes on what was done with a cloud, for a person.
     pub(super) fn told(self) -> Vec<String> {
         let lift_m = self.lift_m();
         let mut out = match lift_m {

@@ -40,7 +40,7 @@ const CLASSES: u32 = 32;
 const PENDING: usize = 1 << 20;
 /// Points that wait until the height of the ground is known; of a larger cloud these tell it.
 const WAITING: usize = 1 << 22;
-/// What is nearer to the sensor than this, m, is no return: sensors write such places where nothing came back.
+/// Nearest return to the sensor, m: sensors write nearer places where no echo came back.
 const EMPTY_M: f64 = 0.1;
 /// Unlabelled points of one voxel of which the shape is looked at.
 const MOST_PER_VOXEL: u8 = 32;
@@ -52,28 +52,28 @@ const LEAST_FOR_LEVEL: u64 = 20;
 /// Ground below the first layer is where labels have it; ground above the last one (0.3 m) is a hill and stays.
 const LOWEST_LEVEL: usize = FINE - 1;
 const HIGHEST_LEVEL: usize = 25;
-/// Nothing of the own vehicle is above the ground by less, or beyond its box by more, m.
+/// A point of the own vehicle lies higher above the ground than the first and at most the second beyond its box, m.
 const OWN_FROM_M: f64 = 0.3;
 const OWN_MARGIN_M: f64 = 0.2;
 
-/// What is known of a point's class.
+/// Label of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Label {
-    /// It has one.
+    /// It stands for a class.
     Class(Class),
-    /// It has a label that no class stands for: "others", counted.
+    /// It stands for no class: "others", counted.
     Unknown,
-    /// It has none: its shape tells.
+    /// There is none: the shape tells the class.
     None,
 }
 
-/// None of the points would be left.
+/// Error of a cloud of which no point would be left.
 #[derive(Debug, PartialEq, thiserror::Error)]
 #[error("{}", self.line())]
 pub struct NothingOnTheMap {
     /// Points in the file.
     pub points: usize,
-    /// Those without a place, or at the sensor itself: nothing came back.
+    /// Points without a place, or at the sensor itself: no echo came back.
     pub empty: usize,
 }
 
@@ -98,11 +98,11 @@ pub(super) struct Cloud {
     lift_m: Option<f64>,
     /// The user said how far.
     is_asked: bool,
-    /// What was done with the height, for a person.
+    /// Notes on what was done with the height, for a person.
     notes: Vec<String>,
     /// Column, layer and class of a point in one number.
     pending: Vec<u32>,
-    /// The same numbers, sorted, and how many points have them.
+    /// Sorted numbers of the same kind, each with the count of its points.
     counted: Vec<(u32, u32)>,
     loose: Vec<Loose>,
     /// Loose points of each voxel.
@@ -369,7 +369,7 @@ impl Cloud {
     }
 }
 
-/// What of a cloud without labels is a guess.
+/// Guessed parts of a scene from a cloud without labels.
 const GUESSED_BY_SHAPE: [&str; 4] = ["classes", "layout", "boxes", "background"];
 
 /// Equal keys as one, their counts added up; sorted.

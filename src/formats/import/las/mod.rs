@@ -42,9 +42,9 @@ pub enum LasError {
     Header {
         /// Which field.
         what: &'static str,
-        /// What it says.
+        /// Its value.
         found: String,
-        /// What would do.
+        /// The values that are accepted.
         expected: String,
     },
     /// The file holds less than its header says.
@@ -60,10 +60,10 @@ pub enum LasError {
     Packed {
         /// Which point, from 0.
         point: u64,
-        /// What is wrong.
+        /// Why the points cannot be unpacked.
         problem: String,
     },
-    /// Nothing would be left.
+    /// No point would be left.
     #[error(transparent)]
     Nothing(#[from] NothingOnTheMap),
 }
@@ -139,8 +139,9 @@ const STRAY: f64 = 0.01;
 const GROUND_SHARE: f64 = 0.1;
 const GROUND_REACH_M: f64 = 40.0;
 
-/// What is subtracted from each point: nothing of a cloud of this program, or one around the origin whose ground is on the
-/// map; of others the middle, to the metre, and the height of the ground there, unless the user says how far to lift.
+/// The point that is subtracted from every point: zero for a cloud of this program. Else x and y are those of the
+/// middle, to the metre, or 0 for a cloud around the origin. z is the height of the ground there; it is 0 where the
+/// user says how far to lift, and for a cloud around the origin whose ground is on the map.
 fn origin(header: &Header, bytes: &[u8], keeps_height: bool) -> Result<DVec3, LasError> {
     if header.is_own {
         return Ok(DVec3::ZERO);

@@ -13,7 +13,7 @@ use laz::{DecompressionSelection, LazItem, LazVlr};
 use super::header::Header;
 use super::{LasError, wrong};
 
-/// What is used of a point.
+/// The fields of a point that are used.
 pub(super) struct Record {
     /// In the file's coordinates, m.
     pub(super) at_m: DVec3,

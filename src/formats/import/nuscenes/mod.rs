@@ -155,10 +155,10 @@ fn read_drive(source: &Source<'_>, which: usize) -> Result<(Loaded, read::Record
     Ok((loaded, recording))
 }
 
-/// What is guessed from the voxels.
+/// The parts that are guessed from the voxels.
 const GUESSED: [&str; 2] = ["layout", "background"];
 
-/// Text of a file without what ends lines.
+/// Text of a file with spaces in place of control characters.
 fn plain(text: &str) -> String {
     text.chars()
         .map(|c| if c.is_control() { ' ' } else { c })

@@ -9,19 +9,20 @@ use scene::{BoxId, Class, Clip, Frame, Key, Motion, SceneBox, Track};
 use super::read::{Annotation, Object, Recording};
 use super::{Skipped, count};
 
-/// What never leaves this distance from where it was first, and this heading, stands.
+/// An object stands if it stays within this distance of its first place, m, and this angle of its first heading, rad.
 const STANDS_M: f64 = 0.05;
 const STANDS_RAD: f64 = 0.01;
-/// What is parked, and barriers and cones, stand within this distance of their middle place: annotations jitter.
+/// Parked objects, barriers and cones stand if they stay within this distance of their middle place, m: annotations
+/// jitter.
 const JITTER_M: f64 = 0.5;
 /// Longest time between two boxes from which the devkit tells a velocity, s; twice that for both neighbours.
 const LONGEST_S: f64 = 1.5;
 
 /// Objects of a scene.
 pub(super) struct Things {
-    /// Those that stand, always there.
+    /// Objects that stand and are always there.
     pub(super) standing: BTreeMap<BoxId, SceneBox>,
-    /// Those that move, come or go.
+    /// Objects that move, come or go.
     pub(super) tracks: BTreeMap<BoxId, Track>,
     /// Boxes of the tracks by key frame.
     pub(super) moving: Vec<Vec<SceneBox>>,
@@ -137,9 +138,9 @@ fn stands(object: &Object, first: &Annotation) -> bool {
     })
 }
 
-/// What stands for all places of an object: the middle one along x and along y, with heading and size of the nearest to it. Its height
-/// is that of the key frame in which the vehicle is nearest, as poses on a slope are known without their height. An object that never
-/// moves is where it was first, to the last bit.
+/// The box that stands for all places of an object: the middle place along x and along y, with heading and size of the
+/// box nearest to it. Its height is that of the key frame in which the vehicle is nearest, as poses on a slope are
+/// known without their height. `None` for an object that never moves: it is where it was first, to the last bit.
 fn middle(recording: &Recording, object: &Object) -> Option<Annotation> {
     let first = object.boxes.values().next()?;
     if stands(object, first) {

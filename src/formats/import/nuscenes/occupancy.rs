@@ -19,12 +19,12 @@ const LARGEST_SWEEP: u64 = 64 << 20;
 const POINT: usize = 20;
 /// A point this far outside of a box still comes from what is in it, m.
 const MARGIN_M: f64 = 0.15;
-/// The same of voxels.
+/// A voxel this far outside of a box still belongs to what is in it, m.
 const VOXEL_MARGIN_M: f64 = 0.4;
 /// Classes that a number can hold beside its voxel.
 const CLASSES: u64 = 32;
 
-/// What stands still.
+/// The parts of the scene that stand still.
 pub(super) struct Observed {
     pub(super) layout: BevLayout,
     pub(super) voxels: VoxelGrid,

@@ -60,7 +60,7 @@ impl Picture {
 pub struct PictureDrive {
     /// The scene, at its first moment.
     pub scene: Scene,
-    /// Those with all pictures.
+    /// Key frames with all pictures.
     pub moments: Vec<Photographed>,
 }
 
@@ -106,7 +106,7 @@ impl PictureFolder {
         })
     }
 
-    /// Of each drive, in the order of their names, the number of key frames with all pictures.
+    /// Number of key frames with all pictures in each drive, in the order of the drives' names.
     pub fn drives(&self) -> impl Iterator<Item = usize> {
         self.drives.iter().map(Vec::len)
     }

@@ -64,7 +64,7 @@ pub(super) struct Sweep {
 
 /// An object through the scene.
 pub(super) struct Object {
-    /// What it is.
+    /// Class of the object.
     pub(super) class: Class,
     /// Its name, where its category has one.
     pub(super) label: BoxLabel,

@@ -16,7 +16,7 @@ const BESIDE_M: f64 = 0.3;
 const SHORT: usize = 6;
 /// Half of the zone where a lane parts from its bundle, samples.
 const PART: usize = 6;
-/// What is left of lanes before a zone is the zone's up to this length, samples.
+/// A rest of lanes before a zone is part of the zone if it is shorter than this, samples.
 const RAGGED: usize = 30;
 /// Shortest road, samples.
 const SHORTEST: usize = 8;
@@ -360,7 +360,8 @@ impl Pass<'_> {
         }
     }
 
-    /// What no bundle has, and where one bundle goes over to another, becomes a zone.
+    /// Makes zones of short rests beside a zone that are in no bundle, and of places where one bundle changes to
+    /// another.
     fn leftovers(&mut self) {
         for (i, chain) in self.chains.iter().enumerate() {
             for run in runs(chain, i, |k| self.is_open(i, k)) {

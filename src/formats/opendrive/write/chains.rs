@@ -16,7 +16,7 @@ pub(super) const BEYOND_M: f64 = 12.0;
 const BORDER_M: f64 = 0.6;
 /// Pieces of one lane are no farther apart, m.
 const GAP_M: f64 = 1.2;
-/// And turn by no more from one to the next, as a cosine.
+/// Least cosine of the angle between two pieces of one lane.
 const LEAST_COSINE: f64 = 0.9;
 /// A lane that runs as close to another one all the way is the same lane drawn twice, m.
 const SAME_M: f64 = 0.6;
@@ -246,7 +246,7 @@ impl Near {
     }
 }
 
-/// What lies on the ground of a place.
+/// Ground at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Surface {
     Road,

@@ -59,7 +59,7 @@ pub(super) struct Gates {
     pub outward: Vec<Door>,
 }
 
-/// What is asked about while roads are connected.
+/// Data for connecting roads.
 pub(super) struct Ground<'a> {
     pub layout: &'a BevLayout,
     pub chains: &'a [Chain],

@@ -10,7 +10,7 @@ use crate::loom;
 use scene::road_map::{project, resampled};
 use scene::{BevLayer, Extent, PolylineKind};
 
-/// What came back of a layout.
+/// Figures of how well a layout came back.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Figures {
     /// Overlap of what is paved (roads and car parks) and of walkways, 0 to 1.

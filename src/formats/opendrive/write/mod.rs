@@ -35,7 +35,7 @@ use zones::Zones;
 /// Ground beside a way of one lane that is still its own, m.
 const VERGE_M: f64 = 0.6;
 
-/// What a file holds besides Sceneloom's own rows.
+/// Amount of detail in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Detail {
     /// Roads alone.
@@ -43,7 +43,7 @@ pub(super) enum Detail {
     /// Roads, and areas for what no road covers.
     #[cfg(test)]
     Areas,
-    /// And Sceneloom's own rows.
+    /// Roads, areas, and Sceneloom's own rows.
     Rows,
 }
 
@@ -53,7 +53,7 @@ pub fn to_bytes(name: &str, layout: &BevLayout, roads: &RoadNetwork, background:
     text_of(name, layout, (roads, background), Detail::Rows).into_bytes()
 }
 
-/// The same as text without limits, with less in it.
+/// The text of a file with chosen detail, without a road network's limits and without background.
 #[cfg(test)]
 pub(super) fn to_text(name: &str, layout: &BevLayout, detail: Detail) -> String {
     text_of(

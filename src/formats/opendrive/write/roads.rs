@@ -30,7 +30,7 @@ pub(super) struct Road {
     /// Places of the stations along the reference line, m: 0 first, its length last.
     pub s_m: Vec<f64>,
     pub strips: Strips,
-    /// What lies before its start and beyond its end.
+    /// Neighbours before its start and beyond its end.
     pub ends: [Option<End>; 2],
     /// For each strip the ids of the lanes before and behind.
     pub links: Vec<[Option<i32>; 2]>,
@@ -45,7 +45,7 @@ pub(super) struct Road {
     pub signals: Vec<String>,
 }
 
-/// What a road ends at.
+/// Neighbour at an end of a road.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
     /// A road, at its end if true, else at its start.

@@ -1,5 +1,5 @@
-//! What lies across a road: lanes, and to both sides of them paved ground, car parks and walkways as far as the cells of the
-//! layout say.
+//! Strips across a road: lanes, and to both sides of them paved ground, car parks and walkways as far as the cells of
+//! the layout say.
 
 use glam::DVec2;
 
@@ -9,22 +9,22 @@ use scene::BevLayout;
 /// Paved ground belongs to a road up to this far from its lanes, m; less to one that leads through a junction, as it turns.
 pub(super) const PAVED_M: f64 = 10.0;
 pub(super) const PAVED_IN_JUNCTION_M: f64 = 6.0;
-/// A car park as far beyond that, m.
+/// A car park belongs to it up to this far beyond that, m.
 const CARPARK_M: f64 = 8.0;
 /// A walkway begins at most this far from the paved ground, m.
 const VERGE_M: f64 = 3.0;
-/// And is at most that wide, m.
+/// Widest walkway, m.
 const WALKWAY_M: f64 = 8.0;
 /// Distance between two looks at the ground, m.
 const LOOK_M: f64 = 0.1;
 /// A strip that is nowhere wider is none, m: it holds no centre of a cell.
 const NARROWEST_M: f64 = 0.15;
-/// What is moved for a straight middle, m.
+/// A middle that is nowhere farther from the reference line than this is moved onto it, m.
 const NEARLY_M: f64 = 0.03;
 /// Widths are medians over so many stations to both sides: cells leave steps where a road runs at a slant.
 const AROUND: usize = 3;
 
-/// What a strip of a road is.
+/// Kind of a strip of a road.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Strip {
     /// A lane of this chain; true if it is driven along the road.
@@ -96,7 +96,7 @@ impl Strips {
         }
     }
 
-    /// The same seen from a place `by_m` (per station) to the left of where it was.
+    /// Measures the borders from a place `by_m` (per station) to the left of where they were measured from.
     pub fn seen_from(&mut self, by_m: impl Fn(usize) -> f64) {
         for border in &mut self.borders_m {
             border.iter_mut().enumerate().for_each(|(i, t)| *t -= by_m(i));
@@ -113,7 +113,7 @@ struct Reach {
     walkway_m: [f64; 2], // from, to
 }
 
-/// What is looked at beside lanes.
+/// Surroundings of the lanes, as far as they are looked at.
 struct Around<'a> {
     layout: &'a BevLayout,
     most_m: f64,

@@ -17,7 +17,7 @@ const OWN_M: f64 = 12.0;
 const GAP_M: f64 = 6.0;
 /// A zone reaches this far beyond what is in the way, m.
 const MARGIN_M: f64 = 3.0;
-/// What is left free between two zones of a lane is at least this long, m.
+/// Shortest free part of a lane beside a zone, m; a shorter one joins the zone.
 const SHORTEST_FREE_M: f64 = 4.0;
 
 /// No zone.
