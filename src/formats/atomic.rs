@@ -1,5 +1,5 @@
-//! Writing files whole or not at all: beside the final name, flushed to disk, then renamed. What is no file (a pipe, a device) is
-//! written to as what it is.
+//! Writing files whole or not at all: beside the final name, flushed to disk, then renamed. A pipe or a device is no
+//! file; its bytes are written directly.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -20,7 +20,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// Puts a file in place of what has the name: an old file or nothing.
+/// Puts a file in place of an old file of that name, if there is one.
 fn replace(target: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = match target.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),

@@ -57,8 +57,8 @@ pub fn of_asprs(number: u8) -> Asprs {
     }
 }
 
-/// The number of the standard for a class, `height_m` being how far the point is above the ground. Ground that is no road is
-/// 2; what has no number of its own is 64 and its number in Occ3D.
+/// The number of the standard for a class, with `height_m` the height of the point above the ground. Ground other than
+/// road is 2; a class without a number of the standard is 64 plus its number in Occ3D.
 pub fn asprs_of(class: Class, height_m: f64) -> u8 {
     match class {
         Class::DriveableSurface => 11,

@@ -21,7 +21,7 @@ pub fn decompress(bytes: &[u8], size: usize) -> Option<Vec<u8>> {
             }
             let back = ((control & 31) << 8) + usize::from(*rest.split_off_first()?) + 1;
             let from = out.len().checked_sub(back)?;
-            // It may run into what it writes.
+            // The copied range may overlap the bytes that it writes.
             for i in from..from + length + 2 {
                 out.push(out[i]);
             }

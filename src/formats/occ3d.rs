@@ -250,7 +250,7 @@ enum Values {
 
 /// One array of the grid's shape, whatever its integer type.
 fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Values, Occ3dError> {
-    // What a parser says may be a drawing of several lines, and holds what the file holds.
+    // A parser's message may be a drawing of several lines, and may hold content of the file.
     let problem = |problem: String| Occ3dError::Array {
         name: quoted(name, 80),
         problem: shortened(&problem.split_whitespace().collect::<Vec<_>>().join(" "), 200),

@@ -1,5 +1,5 @@
-//! A folder that files are written into. Their names come of scenes: nothing outside the folder is reached, whatever a name
-//! holds and wherever a link in it leads.
+//! A folder that files are written into. Their names come from scenes, so no name and no link in the folder may lead to
+//! a file outside of it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -22,7 +22,7 @@ pub enum OutError {
         /// The problem with the name.
         problem: NotPlain,
     },
-    /// A link on the way leads out of the folder, or to nothing.
+    /// A link on the way leads out of the folder, or to a path that does not exist.
     #[error("{path}: a link that leads out of the folder or to nothing, expected a file or folder in it")]
     LeadsOut {
         /// The link.
@@ -58,7 +58,7 @@ pub enum OutError {
     },
 }
 
-/// A folder and what was written into it.
+/// A folder, and the files written into it.
 #[derive(Debug)]
 pub struct OutFolder {
     /// Path as the user named it.
@@ -86,7 +86,7 @@ impl OutFolder {
         &self.named
     }
 
-    /// Errors if a file of that name (with `/` between folders in this one) may not be written, and makes nothing.
+    /// Errors if a file of that name (with `/` between folders in this one) may not be written. Does not make the file.
     pub fn check(&self, name: &str) -> Result<(), OutError> {
         self.place(name).map(drop)
     }

@@ -33,7 +33,7 @@ pub enum PngError {
 /// Content of a picture beside its pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Notes<'a> {
-    /// Text: a keyword of 1 to 79 Latin letters and digits, and what it says. Others are left out.
+    /// Text: a keyword of 1 to 79 Latin letters and digits, and its value. Other keywords are left out.
     pub text: &'a [(&'a str, &'a str)],
     /// A scene as a `.loom` file.
     pub scene: Option<&'a [u8]>,
@@ -42,7 +42,7 @@ pub struct Notes<'a> {
 /// The [`Notes`] in a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inside<'a> {
-    /// Keywords and what they say.
+    /// Keywords and their values.
     pub text: Vec<(String, String)>,
     /// A scene as a `.loom` file.
     pub scene: Option<&'a [u8]>,

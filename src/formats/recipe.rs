@@ -76,7 +76,7 @@ impl Recipe {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Calls `encode` with what a PNG says of it. Only pictures that are looked at carry the scene (`whole`).
+    /// Calls `encode` with the notes that a PNG gets of it. Only pictures for viewing carry the scene (`whole`).
     pub fn in_png<T>(&self, whole: bool, encode: impl FnOnce(&png::Notes<'_>) -> T) -> T {
         let (seed, json) = (self.seed.to_string(), self.to_json());
         let software = format!("{} {}", self.software, self.version);

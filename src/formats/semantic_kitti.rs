@@ -22,7 +22,7 @@ pub(crate) const CELLS: usize = 256 * 256 * 32;
 /// Bytes of a file with a bit per cell.
 pub(crate) const BIT_BYTES: usize = CELLS / 8;
 
-/// Raw ids with their names (`config/semantic-kitti.yaml`) and what they become; `None` is free.
+/// Raw ids with their names (`config/semantic-kitti.yaml`) and classes; `None` is free.
 pub(crate) const RAW: [(u16, &str, Option<Class>); 34] = [
     (0, "unlabeled", None),
     (1, "outlier", Some(Class::Others)),

@@ -95,7 +95,7 @@ impl Kind {
     }
 }
 
-/// A scene's voxels as such a file, sorted by the columns; where things are, not where Occ3D has them.
+/// A scene's voxels as such a file, sorted by the columns, at their true height instead of that of Occ3D.
 pub(crate) fn to_bytes(scene: &Scene, kind: &Kind) -> Result<Vec<u8>, FormatError> {
     let lidar = scene.rig.lidars.first();
     let lidar =

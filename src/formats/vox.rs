@@ -21,7 +21,8 @@ const LONGEST: usize = 256;
 /// Name of the uppermost node of a file that this program wrote: its models cover the whole map.
 const OWN_NAME: &str = "sceneloom";
 
-/// Middle of a model of so many voxels along an axis, as `MagicaVoxel` counts: the place of a model is that of its middle.
+/// Middle of a model of so many voxels along an axis, as `MagicaVoxel` counts: the place of a model is that of its
+/// middle.
 fn middle(size: i64) -> i64 {
     size / 2
 }

@@ -117,7 +117,7 @@ pub fn add_from(folder: &Path) -> Vec<String> {
         }
     }
     languages.sort_by(|a, b| a.code.cmp(&b.code));
-    // (nobody else sets it in between but another window of a test)
+    // (only another window of a test may set it in between)
     drop(LANGUAGES.set(languages));
     errors
 }
@@ -128,7 +128,7 @@ pub fn choose(code: &str) {
     CHOSEN.store(at.map_or(0, |at| at + 1), Ordering::Relaxed);
 }
 
-/// The language that is shown; none for English.
+/// The language that is shown; `None` for English.
 pub fn chosen() -> Option<&'static Language> {
     let at = CHOSEN.load(Ordering::Relaxed).checked_sub(1)?;
     all().get(at)
@@ -155,7 +155,7 @@ pub fn filled(text: &str, values: &[(&str, &dyn Display)]) -> String {
     out
 }
 
-/// The next `{name}`: what is before it, the name, what comes after it.
+/// The next `{name}`: the text before it, the name, and the text after it.
 fn next_place(text: &str) -> Option<(&str, &str, &str)> {
     let mut from = 0;
     loop {

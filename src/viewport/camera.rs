@@ -80,7 +80,7 @@ impl Default for ViewCamera {
     }
 }
 
-/// A whole map is looked at from so much farther away than where its corners are just seen.
+/// A whole map is looked at from this many times the distance at which its corners are just seen.
 const ROOM_AROUND: f64 = 1.05;
 /// Nearest visible distance in a perspective view, m.
 const NEAR_M: f64 = 0.1;
@@ -196,7 +196,7 @@ impl ViewCamera {
         }
     }
 
-    /// Goes along with something that moves: where it was, and where it is.
+    /// Moves along with a thing whose pose was `before` and is `after`.
     pub fn go_along(&mut self, before: &Pose, after: &Pose) {
         let turned = |pose: &Pose| (pose.rotation * DVec3::X).truncate().to_angle();
         self.target_m = after.apply(before.inverse().apply(self.target_m));
@@ -405,7 +405,7 @@ fn aspect(size_px: [u32; 2]) -> f64 {
     f64::from(size_px[0].max(1)) / f64::from(size_px[1].max(1))
 }
 
-/// Vertical field of view, rad; what of it a flat picture can show.
+/// Vertical field of view, rad; for a wide lens the part of it that a flat picture can show.
 fn tall_rad(camera: &Camera) -> f64 {
     let pinhole = 2.0 * (f64::from(camera.height) / 2.0 / camera.focal_px[1]).atan();
     if camera.lens == Lens::Pinhole {

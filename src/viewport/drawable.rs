@@ -26,14 +26,14 @@ pub(super) fn all() -> Vec<Box<dyn Drawable>> {
     ]
 }
 
-/// When something is drawn. A drawable may draw in several layers.
+/// Layer in which a thing is drawn. A drawable may draw in several layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Layer {
     /// First of all, if only a part of a picture is drawn again: clears that part.
     Erase,
     /// Opaque things.
     Opaque,
-    /// The background, where nothing opaque is.
+    /// The background, where no opaque thing is.
     Backdrop,
     /// The plane on the ground.
     Ground,
@@ -93,11 +93,11 @@ pub(super) struct View<'a> {
 
 /// A thing that is drawn into the 3D view.
 pub(super) trait Drawable: Debug + Send + Sync {
-    /// Its name, that of its file and of its shader.
+    /// Its name, which is that of its file and of its shader.
     fn name(&self) -> &'static str;
 
-    /// Takes over the scene and uploads what differs from the last one. Returns which part of the picture changes. What did
-    /// not change must cost no more than a comparison.
+    /// Takes over the scene and uploads the parts that differ from the last one. Returns which part of the picture
+    /// changes. Parts that did not change must cost no more than a comparison.
     fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change;
 
     /// Makes its pipelines for a number of samples per pixel, if they are not there yet.

@@ -26,7 +26,7 @@ pub enum ViewportError {
         /// Largest side the device allows.
         max: u32,
     },
-    /// Supersampling outside of what is useful.
+    /// Supersampling outside of the useful range.
     #[error("supersampling is {0}, expected 1 to 8")]
     Supersample(u32),
     /// The device was lost or the picture could not be read back.

@@ -158,7 +158,7 @@ fn cell(around: [&Column; 5], z: usize) -> [u8; 2] {
     [byte(SKY_IN_SOLID), byte(if n > 0.0 { sum / n } else { 0.0 })]
 }
 
-/// Where the steps of rays lie in columns of so many a row.
+/// Offsets of the steps of rays in columns, `stride` apart along x.
 fn offsets(rays: &[Vec<Step>], stride: usize) -> Vec<Vec<Offset>> {
     let offset = |&Step { aside: [dx, dy], dz }: &Step| Offset {
         offset: dx * stride as isize + dy,

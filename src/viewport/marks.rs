@@ -16,7 +16,7 @@ use scene::{Camera, Extent, Optics, SceneBox, SensorRig};
 /// All marks of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Marks {
-    /// Lines that show through what hides them.
+    /// Lines that show through the things that hide them.
     pub see_through: LineList,
     /// Other lines.
     pub plain: LineList,
@@ -133,7 +133,7 @@ impl Marks {
         let optics = Optics::new(camera);
         let [cx, cy] = camera.center_px;
         let at = |u: f64, v: f64| {
-            // Where the lens sees nothing, the frustum ends nearer to its middle.
+            // The frustum ends nearer to its middle where the lens sees nothing.
             let towards = |share: f64| optics.direction(cx + (u - cx) * share, cy + (v - cy) * share);
             let ways = (0..20).map(|i| towards(1.0 - f64::from(i) / 20.0));
             let way = ways.into_iter().find(|d| *d != DVec3::ZERO).unwrap_or(DVec3::Z);

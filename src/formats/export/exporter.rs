@@ -75,8 +75,8 @@ pub enum Product {
 /// Makes the products of one scene when a format asks for them. Errors in one line: the rig lacks the sensor, a network or a
 /// device is missing, or the export was cancelled.
 pub trait Products {
-    /// Another moment of the clip: what is made from now on is of that one, in its ego frame. Errors once the export was
-    /// cancelled.
+    /// Goes to another moment of the clip: products that are made from now on are of that moment, in its ego frame.
+    /// Errors once the export was cancelled.
     fn show(&mut self, time_s: f64) -> Result<(), FormatError>;
     /// How often sensors see each box.
     fn seen(&mut self) -> Result<Seen, FormatError>;
@@ -94,8 +94,9 @@ pub trait Products {
         &mut self,
         take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError>;
-    /// A picture of every camera and the truth about it, made of the same hits, in the order of the rig; each is taken before the
-    /// next is made. Poses and boxes are in the ego frame. Flow leads to the clip's next frame, if there is one.
+    /// A picture of every camera and the truth about it, made of the same hits, in the order of the rig; each is taken
+    /// before the next is made. Poses and boxes are in the ego frame. Flow leads to the clip's next frame, if there is
+    /// one.
     fn truth(
         &mut self,
         take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,

@@ -184,7 +184,7 @@ fn descriptions() -> Vec<u8> {
     out
 }
 
-/// Text with zeros after it; what is too long is cut.
+/// Text with zeros after it; text that is too long is cut.
 fn padded<const N: usize>(text: &str) -> [u8; N] {
     let mut out = [0; N];
     let length = text.len().min(N - 1);

@@ -1,4 +1,4 @@
-//! Which class and paint a thing has by what it is called: `Car_01`, `SM_TrafficCone`, `vehicle-truck-yellow`, `roadAsphalt`.
+//! Class and paint of a thing by its name: `Car_01`, `SM_TrafficCone`, `vehicle-truck-yellow`, `roadAsphalt`.
 
 use scene::{Class, Paint};
 

@@ -276,8 +276,8 @@ fn map(
     })
 }
 
-/// Class of a part of what stands still: by its node's name, its material, its mesh and what is around it. `None` where none
-/// of them tells.
+/// Class of a still part: by its node's name, its material, its mesh, or the names around it. `None` if none of them
+/// tells a class.
 pub(super) fn static_class(
     document: &Document<'_>,
     abouts: &[About],
@@ -307,7 +307,8 @@ pub(super) fn each_triangle(
     Ok(())
 }
 
-/// The extent of a map around all that is shown, and the move that brings that onto it, m: none if the origin is within it and
+/// The extent of a map around everything that is shown, and the shift that brings it onto that map, m. Along the ground
+/// the shift is zero if the origin is within it or all of it lies within 400 m of the origin; upwards it is zero if
 /// part of it is at the height of the map.
 fn extent(all: &Bounds) -> (Extent, DVec3) {
     let middle = (all.low + all.high) / 2.0;

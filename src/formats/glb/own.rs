@@ -1,4 +1,5 @@
-//! Scenes of ours: voxels from their meshes as these lie now, so that what was moved or cut elsewhere comes back as it is seen.
+//! Scenes of this program: voxels come from the meshes as they lie now, so that parts moved or cut elsewhere come back
+//! as they are seen.
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,7 +18,7 @@ use super::{BoxExtras, CLASS_MAP, ClassExtras, SceneExtras, VERSION, class_words
 use crate::FormatError;
 use crate::import::Loaded;
 
-/// Within this a node is where its extras say: it was not moved. m, and the same for parts of a unit vector.
+/// A node within this of where its extras say was not moved: m, and the same for parts of a unit vector.
 const STILL_M: f64 = 2e-3;
 const STILL: f64 = 1e-4;
 
@@ -90,7 +91,7 @@ pub(crate) fn scene(
     let cost = |extent, corners| Solid::cost(extent, corners).max(Surface::cost(extent, corners));
     work::check(document, cost, extent, shown)?;
     let mut occupancy = VoxelGrid::over(extent);
-    // What stands still first: a box that was moved into it is seen in front of it.
+    // Still parts first: a box that was moved into them then shows in front.
     for boxes in [false, true] {
         for (i, node) in document.nodes.iter().enumerate() {
             match role_of(document, &roles, i) {
@@ -187,7 +188,7 @@ fn add_solid(
     Ok(())
 }
 
-/// Adds the surface of a mesh that is not from us: something was added to the scene elsewhere.
+/// Adds the surface of a mesh that this program did not write: a part that was added to the scene elsewhere.
 fn add_surface(
     document: &Document<'_>,
     node: &Node,

@@ -7,7 +7,7 @@ use scene::Extent;
 use super::work::{MOST_WORK, RIM};
 use crate::FormatError;
 
-/// Surfaces are moved up by so much, in voxels: one that lies on the border of two voxels belongs to the upper one alone.
+/// Surfaces are moved up by this, in voxels, so that one on the border of two voxels belongs to the upper one alone.
 const NUDGE: f64 = 1e-4;
 
 /// Passes triangles on column by column, as long as that takes a bearable time.
@@ -16,7 +16,7 @@ pub(crate) struct Surface {
     visits: u64,
 }
 
-/// A corner of what is left of a triangle; at most seven after four cuts.
+/// The corners of a triangle after cuts; at most seven after four cuts.
 struct Corners {
     list: [DVec3; 8],
     count: usize,

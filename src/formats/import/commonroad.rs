@@ -76,7 +76,7 @@ fn map(bytes: &[u8], name: &str) -> Result<LaneletMap> {
                 let id = out.boxes.len() as u32 + 1;
                 out.boxes.extend(obstacle(node, id, &mut out.skipped)?);
             }
-            // They say nothing that a layout shows.
+            // These hold nothing that a layout shows.
             "location" | "scenarioTags" | "intersection" => {}
             other => count(&mut out.skipped, shown(other, 40)),
         }
@@ -102,7 +102,7 @@ pub(super) fn point(node: Node<'_, '_>) -> Result<DVec3> {
     Ok(DVec3::new(coordinate("x")?, coordinate("y")?, coordinate("z")?))
 }
 
-/// The points of a bound, and what it says of its paint.
+/// The points of a bound, and whether it is painted, if the file says so.
 fn bound(node: Node<'_, '_>, side: &'static str, points: &mut usize) -> Result<(Vec<DVec3>, Option<bool>)> {
     let bound = child(node, side).ok_or_else(|| bad(node, side, "one element", "none"))?;
     let line = named(bound, "point").map(point).collect::<Result<Vec<_>>>()?;

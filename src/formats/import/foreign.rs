@@ -1,5 +1,5 @@
-//! Formats that are not read, told by their first bytes: what a file is, and what to make of it that is read. One table; whoever
-//! opens a file by its content ([`super::format_of`]) asks it where no format that is read claims the file.
+//! Formats that are not read, recognised by their first bytes: what a file is, and what readable format to make of it.
+//! One table; [`super::format_of`] consults it when no format that is read claims the file.
 
 use std::path::Path;
 
@@ -379,7 +379,8 @@ fn is_rows_of_numbers(text: &str) -> bool {
     rows > 0 && rows + 2 >= whole.len()
 }
 
-/// True if what begins with `<` is an element and none that is read: those are claimed by their names.
+/// True if a text that begins with `<` is an element of a format that is not read; the others are claimed by their
+/// names.
 fn is_element(text: &str) -> bool {
     let name = text.trim_start_matches("<?").trim_start_matches('<');
     name.starts_with(|c: char| c.is_alphabetic() || c == '!' || c == '_')

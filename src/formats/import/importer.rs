@@ -41,7 +41,7 @@ pub struct Source<'a> {
     pub name: &'a str,
     /// Where the file is, for formats of several files; `None` for bytes alone.
     pub path: Option<&'a Path>,
-    /// How far a point cloud is lifted, m; `None`: as its ground asks.
+    /// Height by which a point cloud is lifted, m; `None` to take it from the ground.
     pub lift_m: Option<f64>,
 }
 
@@ -91,8 +91,8 @@ pub struct Loaded {
     pub notes: Vec<String>,
 }
 
-/// A scene from labels: their voxels as they are; layout, boxes and background are inferred, of a larger map in the networks'
-/// window.
+/// A scene from labels: the voxels are kept, layout, boxes and background are inferred. On a larger map they are
+/// inferred in the networks' window only.
 pub(crate) fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobserved>) -> Scene {
     let window = labels.crop(Extent::WINDOW);
     let (layout, boxes) = (infer::layout(&window), infer::boxes(&window));

@@ -81,8 +81,8 @@ pub fn in_words() -> String {
     all().iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// The format of a file: by its first bytes, and by its extension where those say nothing. Errors say what a file is that is not
-/// read.
+/// The format of a file: by its first bytes, or by its extension where they are not telling. Errors name the kind of a
+/// file that is not read.
 pub fn format_of(path: &Path) -> Result<&'static Importer, FormatError> {
     let head = input::head(path, HEAD).map_err(FormatError::new)?;
     recognised(path, &head).map_err(|e| e.at(&path.display()))

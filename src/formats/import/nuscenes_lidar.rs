@@ -68,7 +68,7 @@ const CLASSES: [Option<Class>; 32] = [
     None,                             // own vehicle
 ];
 
-/// Reads such a file, whatever it is called.
+/// Reads such a file under any name.
 pub(super) fn read(source: &Source<'_>) -> Result<Content, FormatError> {
     let points = Columns::NuScenes.read(source.bytes)?;
     let labels = match labels_name(source.path) {

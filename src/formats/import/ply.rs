@@ -193,7 +193,7 @@ struct Element {
 }
 
 impl Element {
-    /// Bytes of one in a binary file; `None` if it has lists.
+    /// Bytes of one element in a binary file; `None` if it has lists.
     fn size(&self) -> Option<usize> {
         let sizes = self.properties.iter().map(|p| match p.length {
             Some(_) => None,
@@ -304,7 +304,7 @@ impl<'a> Body<'a> {
         Self { rest, encoding }
     }
 
-    /// Reads all of an element and gives the wanted properties of each; none of them is a list.
+    /// Reads all of an element and gives the wanted properties of each entry; none of these may be a list.
     fn pass(
         &mut self,
         element: &Element,

@@ -16,12 +16,12 @@ pub(super) enum Columns {
     NuScenes,
 }
 
-/// Farthest that a LiDAR sees, m, and nearest: what is nearer is no return.
+/// Farthest and nearest distance that a LiDAR sees, m: nearer places are no returns.
 const FAR_M: f32 = 10_000.0;
 const NEAR_M: f32 = 0.1;
 /// Points in a head are nearer than this, m.
 const HEAD_FAR_M: f32 = 500.0;
-/// Share of the places that must be sound, or the file is something else. Slots where nothing came back say nothing.
+/// Share of the places that must be sound, or the file is of another kind. Slots without a return do not count.
 const LEAST_SOUND: f64 = 0.9;
 /// Strongest echo, and most rings.
 const STRONGEST: f32 = 255.0;

@@ -1,5 +1,6 @@
-//! Lanelets, the roads of Lanelet2 and CommonRoad: pieces of lane between a left and a right bound. Each becomes a road of one lane in
-//! an OpenDRIVE network, so that everything which reads such a network (a place on it, heights, junctions) reads these maps too.
+//! Lanelets, the roads of Lanelet2 and CommonRoad: pieces of lane between a left and a right bound. Each becomes a road
+//! of one lane in an OpenDRIVE network, so that all code which reads such a network (a place on it, heights, junctions)
+//! reads these maps too.
 
 mod junctions;
 mod road;

@@ -175,7 +175,7 @@ fn meets(bound: &[DVec3], i: usize, base: DVec2, across: DVec2) -> Option<f64> {
     Some((p - base).dot(across))
 }
 
-/// Straight pieces from value to value; those on one line with the pieces around them are one.
+/// Straight pieces from value to value; neighbouring pieces on one line are joined.
 fn pieces(s_m: &[f64], values: &[f64]) -> Cubics {
     const NEAR: f64 = 1e-3;
     let mut out: Vec<CubicPiece> = Vec::new();

@@ -22,8 +22,8 @@ pub(crate) struct Zone {
 }
 
 impl Zone {
-    /// The zone of a place, degrees; the exceptions of Norway and Svalbard are left aside. `None` beyond 84 degrees and for what is no
-    /// place.
+    /// The zone of a place, degrees; the exceptions of Norway and Svalbard are left aside. `None` beyond 84 degrees of
+    /// latitude, beyond 180 of longitude, and for numbers that are not finite.
     pub fn of(latitude_deg: f64, longitude_deg: f64) -> Option<Self> {
         let sound = (-84.0..=84.0).contains(&latitude_deg) && (-180.0..=180.0).contains(&longitude_deg);
         sound.then(|| Self {

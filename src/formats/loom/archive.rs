@@ -47,7 +47,7 @@ impl Writer {
     fn entry(&mut self, entry: &str, bytes: &[u8], method: CompressionMethod) -> Result<(), ProjectError> {
         self.unpacked += bytes.len() as u64;
         within("the size of the unpacked project", self.unpacked, MAX_UNPACKED)?;
-        // Nothing of the machine or the moment may enter the bytes.
+        // The bytes must not depend on the machine or the moment.
         let options = SimpleFileOptions::default()
             .compression_method(method)
             .compression_level((method == CompressionMethod::Deflated).then_some(6))
@@ -85,7 +85,7 @@ impl Writer {
     }
 }
 
-/// Reads entries by name and keeps account of those nobody asked for.
+/// Reads entries by name and keeps a list of those that were not read.
 pub(super) struct Reader<R> {
     zip: ZipArchive<R>,
     unread: BTreeSet<String>,

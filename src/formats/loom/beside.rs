@@ -1,4 +1,4 @@
-//! `kept.json` and the versions beside it: what a project keeps that is no part of its scene.
+//! `kept.json` and the versions beside it: the parts of a project that do not belong to its scene.
 
 use std::io::{Read, Seek};
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! `manifest.json`: what a project file is and of which version.
+//! `manifest.json`: format and version of a project file.
 
 use serde::{Deserialize, Serialize};
 

@@ -10,7 +10,7 @@ pub enum Means {
     Nothing,
     /// A class.
     Class(Class),
-    /// A class, and what a box of it is called.
+    /// A class, and the name of a box of it.
     Named(Class, &'static str),
 }
 
@@ -78,7 +78,7 @@ pub fn of_points(class: Class) -> u8 {
     }
 }
 
-/// The category of a box: that of its name if there is one of its class, else that of its class.
+/// The category of a box: that of its name, if a category of its class has that name, else that of its class.
 pub fn of_box(class: Class, name: &BoxName) -> u8 {
     let named = |(_, means): &(&str, Means)| match means {
         Named(of, called) => *of == class && called.eq_ignore_ascii_case(name.as_str()),

@@ -106,7 +106,7 @@ pub struct SceneRow {
     /// Description of what happens.
     #[serde(default)]
     pub description: String,
-    /// Not in the schema: what the scene is called. Only in folders that Sceneloom wrote.
+    /// Not in the schema: the title of the scene. Only in folders that Sceneloom wrote.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }
@@ -144,12 +144,12 @@ pub struct SampleData {
     /// `pcd` or `jpg`.
     #[serde(default)]
     pub fileformat: String,
-    /// True for what belongs to a key frame.
+    /// True for a measurement of a key frame.
     pub is_key_frame: bool,
-    /// Rows of a picture, else 0.
+    /// Rows of a picture; 0 for other files.
     #[serde(default)]
     pub height: u32,
-    /// Pixels per row of a picture, else 0.
+    /// Pixels per row of a picture; 0 for other files.
     #[serde(default)]
     pub width: u32,
     /// File, from the folder of the data set on.
@@ -198,7 +198,7 @@ pub struct CalibratedSensor {
     pub translation: [f64; 3],
     /// w, x, y, z.
     pub rotation: [f64; 4],
-    /// 3 x 3, pixels; empty for what is no camera.
+    /// 3 x 3, pixels; empty for a sensor that is no camera.
     #[serde(default)]
     pub camera_intrinsic: Vec<[f64; 3]>,
 }

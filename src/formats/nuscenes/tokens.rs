@@ -1,4 +1,4 @@
-//! Keys of rows: 32 hexadecimal digits, the same for the same scene.
+//! Keys of rows: 32 hexadecimal digits, equal for equal scenes.
 
 use scene::Scene;
 use scene::draw::hash;

@@ -55,7 +55,7 @@ const WAYMO: [Class; 15] = [
     Class::Sidewalk,
 ];
 
-/// Free in files of Occ3D-Waymo, and in what its loaders make of them.
+/// Labels of free in files of Occ3D-Waymo, and in the arrays that its loaders make of them.
 const WAYMO_FREE: [u8; 2] = [23, 15];
 
 impl Numbering {
@@ -69,7 +69,7 @@ impl Numbering {
         }
     }
 
-    /// The class that a label of the file means; `None` if it means none.
+    /// The class that a label of the file stands for; `None` for a label without a class.
     pub fn class(self, label: u8) -> Option<Class> {
         let at = usize::from(label);
         match self {

@@ -12,7 +12,8 @@ pub const MOST_NESTED: usize = 200;
 /// Declarations of namespaces in a file; the standard has one.
 pub const MOST_NAMESPACES: usize = 64;
 
-/// Errors on the first element that goes beyond a bound. What is not well formed is left to the parser: it stops there.
+/// Errors on the first element that goes beyond a bound. Text that is not well formed is left to the parser, which
+/// stops there.
 pub(super) fn check(text: &str) -> Result<()> {
     let bytes = text.as_bytes();
     let mut found = Count::default();

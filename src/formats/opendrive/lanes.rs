@@ -70,7 +70,7 @@ pub enum LaneKind {
     Edge,
     /// median.
     Median,
-    /// none, and whatever is not known.
+    /// none, and every unknown type.
     None,
 }
 
@@ -112,7 +112,7 @@ impl LaneKind {
         })
     }
 
-    /// The ground of an area of this kind that lies by itself; `None` where it is of no layer.
+    /// The ground of an area of this kind that belongs to no road; `None` if the kind is in no layer.
     pub fn ground_alone(self) -> Option<Ground> {
         match self {
             Self::Parking => Some(Ground::Carpark),
@@ -225,7 +225,7 @@ pub enum Ground {
     Carpark,
     /// Walkway.
     Walkway,
-    /// Neither; stated so by the file (median, border, none).
+    /// Neither, and the file says so (median, border, none).
     Other,
 }
 
@@ -280,7 +280,7 @@ impl LaneSection {
         outward(&self.right, -1.0, out);
     }
 
-    /// True if the edge with this index carries a painted mark at `s_m`; `None` if the file says nothing.
+    /// True if the edge with this index carries a painted mark at `s_m`; `None` if the file gives no mark.
     pub fn painted(&self, border: usize, s_m: f64) -> Option<bool> {
         let center = self.center_index();
         let (marks, origin) = match border.cmp(&center) {

@@ -72,7 +72,7 @@ impl MapCut {
     }
 }
 
-/// A layout and what went into it.
+/// A layout, and facts about the roads that went into it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayoutImport {
     /// Ego at the origin, x forward.
@@ -102,7 +102,8 @@ pub struct LayoutImport {
 }
 
 impl LayoutImport {
-    /// The layout without the lanes that lead through junctions: nobody waits there, so traffic is seeded on the others.
+    /// The layout without the lanes that lead through junctions: traffic is seeded on the other lanes, as vehicles do
+    /// not wait there.
     pub fn without_lanes_of_junctions(&self) -> BevLayout {
         let extent = self.layout.extent();
         let stays = |line: &&Polyline| {
@@ -284,7 +285,7 @@ impl Canvas {
         self.budget = self
             .budget
             .saturating_sub(cost::of_scan(extent, area_in_ego.len()));
-        // What is left out is counted with the roads beyond the budget.
+        // An area that is left out is counted with the roads beyond the budget.
         if self.budget == 0 {
             return false;
         }

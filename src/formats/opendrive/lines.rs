@@ -105,7 +105,8 @@ impl SectionLines<'_> {
         tracks
     }
 
-    /// Between two lane edges with opposite traffic: the edges of what is not paved, else the two themselves.
+    /// The edges of the unpaved lanes between two lane edges with opposite traffic; the two edges themselves if all is
+    /// paved.
     fn median_edges(&self, left: usize, right: usize) -> [usize; 2] {
         let mut unpaved =
             (left..right).filter(|i| matches!(self.grounds[*i], Ground::Other | Ground::Walkway));

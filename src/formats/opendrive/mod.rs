@@ -86,7 +86,7 @@ pub struct Road {
     pub predecessor: Option<RoadEnd>,
     /// Neighbour beyond its end.
     pub successor: Option<RoadEnd>,
-    /// Speed limits of all its lanes, mm/s, each from an s in m on, in order; none where none is given.
+    /// Speed limits of all its lanes, mm/s, each from an s in m on, in order; `None` for a part without a limit.
     pub limits: Vec<(f64, Option<u32>)>,
     /// Plan view.
     pub reference: ReferenceLine,
@@ -96,7 +96,7 @@ pub struct Road {
     pub lane_offset: Cubics,
     /// In order, without gaps.
     pub sections: Vec<LaneSection>,
-    /// Crossings, parking spaces, stop lines, and what stands beside the road.
+    /// Crossings, parking spaces, stop lines, and objects that stand beside the road.
     pub objects: Vec<RoadObject>,
 }
 

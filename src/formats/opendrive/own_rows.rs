@@ -169,7 +169,7 @@ fn pack<T: std::fmt::Display>(
     }
 }
 
-/// The rows of one name; they cover the extent and nothing else.
+/// The rows of one name; together they cover exactly the extent.
 fn packed<T>(
     node: Node<'_, '_>,
     name: &'static str,

@@ -1,4 +1,4 @@
-//! From XML to the height of a road's surface. What a profile does that no road can do is counted.
+//! From XML to the height of a road's surface. Profiles that no road can have are counted.
 
 use roxmltree::Node;
 

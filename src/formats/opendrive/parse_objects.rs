@@ -1,5 +1,5 @@
-//! From XML to what lies on the road: crossings, parking spaces, stop lines, and to what stands beside
-//! it. Everything else is counted.
+//! From XML to objects: crossings, parking spaces and stop lines on the road, and objects that stand beside it. All
+//! other objects are counted.
 
 use roxmltree::Node;
 
@@ -105,7 +105,7 @@ fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject
     ];
     count_others(node, &known, skipped);
     let mut corners = Vec::new();
-    // Sizes upward matter only for what stands.
+    // Heights matter only for objects that stand.
     let stands = matches!(kind, ObjectKind::Standing(_));
     let upward = |node, field| {
         if stands {

@@ -34,8 +34,8 @@ impl Standing {
         }
     }
 
-    /// From `type`, `subtype` and `name`, each in lower-case letters only; `None` for what is not known or does not
-    /// stand beside roads. The name counts only where there is no type.
+    /// From `type`, `subtype` and `name`, each in lower-case letters only; `None` for an object that is not known or
+    /// does not stand beside roads. The name counts only where there is no type.
     pub fn from_names(kind: &str, subtype: &str, name: &str) -> Option<Self> {
         let kind = match kind {
             "" | "none" => name,

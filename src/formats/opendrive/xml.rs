@@ -1,4 +1,4 @@
-//! Reading attributes with a place to name in the error, and the count of what is not understood.
+//! Reading attributes with a place to name in the error, and counting elements that are not understood.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

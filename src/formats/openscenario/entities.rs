@@ -25,8 +25,9 @@ pub(super) struct Actor {
     pub called: String,
     /// Length, width, height, m.
     pub size_m: DVec3,
-    /// From its reference point to the middle of its box, along its heading, to its left and up, m. The reference point of a vehicle
-    /// is its rear axle on the ground, of all else the middle of its box on the ground.
+    /// From its reference point to the middle of its box, along its heading, to its left and up, m. The reference point
+    /// of a vehicle is its rear axle on the ground; that of any other participant is the middle of its box on the
+    /// ground.
     pub center_m: DVec3,
 }
 
@@ -80,7 +81,7 @@ fn actor(b: &SceneBox, who: Who) -> Actor {
     }
 }
 
-/// True for what the standard has as a vehicle: two-wheelers too.
+/// True for classes that are vehicles in the standard, two-wheelers included.
 fn is_vehicle(class: Class) -> bool {
     class.is_vehicle() || matches!(class, Class::Motorcycle | Class::Bicycle)
 }

@@ -97,8 +97,8 @@ impl Physical {
         })
     }
 
-    /// True if the ground lies where Occ3D's labels have it: more than one bin below where it is, by the middle one of the
-    /// ground's voxels around the ego vehicle, or of all if there are none. False without ground.
+    /// True if the ground lies where Occ3D's labels have it, more than one bin below its true place. The median of the
+    /// ground's voxels around the ego vehicle tells, or of all if there are none around it. False without ground.
     pub fn is_lowered(&self) -> bool {
         let ground = |near_m: f64| {
             let near = |(x, y, z, label): (usize, usize, usize, u8)| {
@@ -114,7 +114,7 @@ impl Physical {
             .is_some_and(|bin| bin == 0)
     }
 
-    /// A map that holds all of it and the networks' window: no larger than what is set needs.
+    /// A map that holds all voxels that are not free and the networks' window, and no more columns than that needs.
     pub fn snug(&self) -> Self {
         let window = Extent::WINDOW;
         let (mut low, mut high) = (window.from(), [0, 1].map(|a| window.from()[a] + side(window, a)));

@@ -118,7 +118,7 @@ pub(crate) struct Cells<'a> {
 const CLASSES: u32 = 32;
 
 impl<'a> Cells<'a> {
-    /// None yet. Errors in one line if the lattice lies nowhere near the ego vehicle.
+    /// Holds no cells yet. Errors in one line if the lattice lies nowhere near the ego vehicle.
     pub fn new(lattice: &'a Lattice, ego_from_lattice: &'a Pose) -> Result<Self, String> {
         let corners = lattice.corners_m().map(|corner| ego_from_lattice.apply(corner));
         let low = corners.iter().fold(corners[0], |low, c| low.min(*c));

@@ -123,7 +123,7 @@ struct Eye<'a> {
 }
 
 impl Eye<'_> {
-    /// Where a point is in the picture, and its depth along the optical axis, m; `None` outside of what is drawn.
+    /// Place of a point in the picture, and its depth along the optical axis, m; `None` if it is not drawn.
     fn corner(&self, p: DVec3, color: DVec3) -> Option<(Corner, f64)> {
         let local = self.camera_from_scenario.apply(p);
         let distance_m = local.length();
@@ -140,7 +140,7 @@ impl Eye<'_> {
         Some((corner, local.z))
     }
 
-    /// How long parts of something at a distance may be, m, so that no bend of the lens is missed.
+    /// Longest part of a line at a distance, m, for which no bend of the lens is missed.
     fn step_m(distance_m: f64, longest_m: f64) -> f64 {
         (0.06 * distance_m).clamp(0.04, longest_m)
     }

@@ -16,7 +16,7 @@ const CHECKS: usize = 2000;
 const CELLS: usize = 32;
 /// Rounds of reweighting after which the greatest error is as small as it gets.
 const ROUNDS: usize = 200;
-/// Beyond the corners of the picture the model goes on straight for so much of an angle, rad.
+/// The model goes on straight beyond the corners of the picture for this angle, rad.
 const BEYOND_RAD: f64 = 0.2;
 
 /// An f-theta camera; optical axes x right, y down, z forward. Pixel (0, 0) reaches from 0 to 1 on both axes.
@@ -38,7 +38,7 @@ pub struct FTheta {
 }
 
 impl FTheta {
-    /// The model of a camera. What its lens bends to one side (tangential distortion) and its rolling shutter are left out.
+    /// The model of a camera. Tangential distortion and a rolling shutter are left out.
     pub fn of(camera: &Camera) -> Self {
         let [fx, fy] = camera.focal_px;
         let linear_c = fx / fy;
@@ -46,7 +46,7 @@ impl FTheta {
         let center = DVec2::from_array(camera.center_px);
         let corner = center.abs().max((size - center).abs());
         let corner_px = DVec2::new(corner.x / linear_c, corner.y).length();
-        // The lens alone, as far as it is the same all round.
+        // The lens alone, without tangential distortion.
         let radial = Camera {
             focal_px: [1.0; 2],
             center_px: [0.0; 2],
@@ -72,7 +72,7 @@ impl FTheta {
             error_px: 0.0,
             farthest_px,
         };
-        // An error of the angle is so many times larger in pixels.
+        // The factor from an error of the angle to one in pixels.
         let px_per_rad = |r_px: f64| {
             let step = farthest_px * 1e-4;
             let (near, far) = ((r_px - step).max(0.0), (r_px + step).min(farthest_px));
@@ -122,7 +122,7 @@ impl FTheta {
         }
     }
 
-    /// Angle of a ray, rad, that meets the picture so far from the principal point (in pixels along y).
+    /// Angle, rad, of a ray that meets the picture at this distance from the principal point (in pixels along y).
     pub fn angle(&self, r_px: f64) -> f64 {
         self.angle_of_px.iter().rev().fold(0.0, |sum, k| sum * r_px + k)
     }

@@ -7,7 +7,7 @@ use scene::{BevLayer, BevLayout, PolylineKind, Pose, Scene};
 use super::boundary::borders;
 use super::on_ground;
 
-/// Points of a line are at most so far apart, m, so that it follows the ground.
+/// Largest distance between points of a line, m, so that it follows the ground.
 const STEP_M: f64 = 2.0;
 /// Slope by which crossings are tilted.
 const TILT: f64 = 1e-3;
@@ -53,7 +53,7 @@ impl Edge {
     }
 }
 
-/// An edge of a lane with what marks each of its segments.
+/// An edge of a lane with the mark on each of its segments.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rail {
     pub(crate) points_m: Vec<DVec3>,
@@ -164,7 +164,7 @@ fn thinned(line: &[DVec2]) -> Vec<DVec2> {
     kept.map(|(_, p)| *p).collect()
 }
 
-/// A line so far to the left of another, m.
+/// A line `offset_m` to the left of another, m.
 fn beside(line: &[DVec2], offset_m: f64) -> Vec<DVec2> {
     let direction = |i: usize| {
         let (from, to) = (i.saturating_sub(1), (i + 1).min(line.len() - 1));

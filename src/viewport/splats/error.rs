@@ -3,7 +3,7 @@
 /// Each message is one line.
 #[derive(Debug, thiserror::Error)]
 pub enum SplatError {
-    /// The device lacks what the shaders need.
+    /// A limit of the device is lower than the shaders need.
     #[error("graphics adapter {adapter:?} draws no splats: {limit} is {has}, needed {needs}")]
     Unable {
         /// Name of the adapter.
@@ -39,7 +39,7 @@ pub enum SplatError {
         /// How many there may be.
         max: u32,
     },
-    /// The driver refused something, or the device was lost.
+    /// The driver refused a command, or the device was lost.
     #[error("the graphics device failed to draw splats: {0}")]
     Device(String),
 }

@@ -32,7 +32,7 @@ pub(super) fn write(writing: &mut Writing<'_>) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// 8 bits of grey: 255 on the mask, else 0. The lower left corner is the origin of the global frame.
+/// Grey values of 8 bits: 255 on the mask, 0 beside it. The lower left corner is the origin of the global frame.
 fn mask(layout: &BevLayout) -> Result<Vec<u8>, png::EncodingError> {
     let extent = layout.extent();
     let [nx, ny] = [extent.nx(), extent.ny()];

@@ -231,7 +231,8 @@ impl Writing<'_> {
     }
 }
 
-/// Scenes are called `scene-` and four digits; the devkit makes a number of them. Those of the data set end at 1110.
+/// Name of the scene, `scene-` and four digits; the devkit makes a number of them. The names of the data set end at
+/// 1110.
 fn scene_name(tokens: &Tokens) -> String {
     let token = tokens.token("scene", 0);
     let number = u64::from_str_radix(&token[..12], 16).unwrap_or(0);

@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use glam::{DVec2, DVec3};
 use scene::{Class, Window};
 
-/// Points so much above the ground belong to it, m.
+/// Points up to this far above the ground belong to it, m.
 const GROUND_BAND_M: f64 = 0.15;
 /// How far ground may lie above the ground around it, m, and how much more for each m to the nearest of it.
 const RISE_M: f64 = 0.12;
@@ -30,7 +30,7 @@ const FARTHEST_M: f64 = 6.0;
 /// Radii in which ground is looked for, columns, and how many columns are enough.
 const REACH: [usize; 3] = [5, 15, 30];
 const ENOUGH: usize = 3;
-/// The level at the vehicle: this share of the lowest points within so many m lies below it.
+/// Share of the lowest points near the vehicle that lie below the level, and how near they must be, m.
 const LEVEL_SHARE: f64 = 0.25;
 const LEVEL_REACH_M: f64 = 15.0;
 /// A thing is lower and shorter than this, m.
@@ -153,8 +153,8 @@ fn quantile(mut values: Vec<f64>) -> f64 {
     values.get(at).copied().unwrap_or(0.0)
 }
 
-/// The mean of what is known around a column, the near counting more, and the distance to the nearest, m. `None` if too little
-/// is known.
+/// The mean of the known values around a column, near ones counting more, and the distance to the nearest, m. `None` if
+/// too few are known.
 fn mean_around(values: &[f64], c: usize) -> Option<(f64, f64)> {
     REACH.into_iter().find_map(|reach| {
         let (mut known, mut sum, mut weights, mut nearest_m) = (0, 0.0, 0.0, f64::INFINITY);
@@ -220,7 +220,7 @@ impl Above {
     }
 }
 
-/// For each column whether what stands there is low and short on its own.
+/// Tells for each column whether its points above the ground belong to a low and short thing that stands alone.
 fn things(above: &[Above]) -> Vec<bool> {
     let mut out = vec![false; above.len()];
     let mut seen: Vec<bool> = above.iter().map(|a| a.count == 0.0).collect();
@@ -251,7 +251,8 @@ fn things(above: &[Above]) -> Vec<bool> {
     out
 }
 
-/// How thick what stands in a column is seen from above, m: the mean over the columns around. 0 where too few points stand.
+/// Thickness of the things in each column, seen from above, m: the mean over the columns around. 0 where too few points
+/// stand.
 fn thickness(above: &[Above]) -> Vec<f64> {
     let of_column = |c: usize| {
         let here = above[c];

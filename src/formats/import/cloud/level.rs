@@ -54,7 +54,7 @@ pub(super) struct Ground {
 }
 
 impl Ground {
-    /// The ground that these points show; `None` if they show none.
+    /// The ground that these points lie on; `None` if they show no ground.
     pub(super) fn of(points: impl Iterator<Item = DVec3>) -> Option<Self> {
         let lowest = lowest(points);
         let plane = plane(&lowest)?;
@@ -146,7 +146,7 @@ fn lowest(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
     cells.iter_mut().filter_map(one).collect()
 }
 
-/// The plane that most of these points lie on and few below; `None` if no three of them tell one.
+/// The plane that most of these points lie on and few lie below; `None` if no three of them give one.
 fn plane(points: &[DVec3]) -> Option<Ground> {
     let mut random = SplitMix64::new(0);
     let mut best: Option<(i64, Ground)> = None;

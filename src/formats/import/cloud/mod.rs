@@ -89,7 +89,7 @@ impl NothingOnTheMap {
     }
 }
 
-/// Points on the map, and what is known of them.
+/// Points on the map, and their labels.
 #[derive(Default)]
 pub(super) struct Cloud {
     /// Points within the map seen from above, until it is known how far they are lifted.
@@ -142,7 +142,7 @@ impl Loose {
 }
 
 impl Cloud {
-    /// An empty cloud of a file: lifted as the user says, else as its ground asks.
+    /// An empty cloud of a file: lifted as the user says, else by the height of its ground.
     pub(super) fn of(source: &Source<'_>) -> Self {
         Self {
             lift_m: source.lift_m,
@@ -163,7 +163,7 @@ impl Cloud {
         self.add_return(at, &Pose::default(), label);
     }
 
-    /// One slot of a sensor, in m in its frame: a point, unless nothing came back.
+    /// One slot of a sensor, in m in its frame: a point, unless no echo came back.
     pub(super) fn add_return(&mut self, at: DVec3, ego_from_sensor: &Pose, label: Label) {
         if label == Label::None && is_empty_return(at) {
             self.added += 1;
@@ -173,7 +173,7 @@ impl Cloud {
         self.add_point(ego_from_sensor.apply(at), label);
     }
 
-    /// One point, in m; its height is that of the ego frame unless the ground says otherwise.
+    /// One point, in m; its height is taken as that of the ego frame unless the ground shows otherwise.
     pub(super) fn add_point(&mut self, at: DVec3, label: Label) {
         self.added += 1;
         if !at.is_finite() {
@@ -256,7 +256,7 @@ impl Cloud {
         some.map(|(what, n)| (what.to_owned(), n)).collect()
     }
 
-    /// The scene of the points; `left_out` is what else the file holds, counted by kind.
+    /// The scene of the points; `left_out` counts the other content of the file by kind.
     pub(super) fn scene(
         mut self,
         name: &str,
@@ -323,7 +323,7 @@ impl Cloud {
         }
     }
 
-    /// Counts what waits.
+    /// Counts the points that wait.
     fn settle(&mut self) {
         self.pending.sort_unstable();
         let new = self.pending.chunk_by(|a, b| a == b);

@@ -135,7 +135,7 @@ pub fn read_around(source: &Source<'_>, origin_m: Option<DVec3>) -> Result<Conte
 const SAMPLED: u64 = 1 << 16;
 /// Share of them that may be stray on either side.
 const STRAY: f64 = 0.01;
-/// Ground at the origin: this share of the points within so many m lies lower.
+/// Ground at the origin: this share of the points within this distance lies lower, m.
 const GROUND_SHARE: f64 = 0.1;
 const GROUND_REACH_M: f64 = 40.0;
 

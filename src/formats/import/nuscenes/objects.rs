@@ -28,7 +28,7 @@ pub(super) struct Things {
     pub(super) moving: Vec<Vec<SceneBox>>,
 }
 
-/// The objects, numbered in order. What is not sound is counted.
+/// The objects, numbered in order. Objects that are not sound are counted.
 pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> Things {
     let times_s: Vec<f64> = recording.frames.iter().map(|f| f.time_s).collect();
     let mut out = Things {
@@ -43,7 +43,7 @@ pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> Things {
         };
         let everywhere = object.boxes.len() == times_s.len();
         let is_fixed = object.parked || matches!(object.class, Class::Barrier | Class::TrafficCone);
-        // (what Sceneloom wrote does not jitter)
+        // (a folder that Sceneloom wrote does not jitter)
         let jitters = is_fixed && !recording.is_own;
         let middle = middle(recording, object).filter(|m| jitters && stays(object, m.center_m, JITTER_M));
         let at = middle.unwrap_or(first);
@@ -98,8 +98,8 @@ fn scene_box(id: BoxId, object: &Object, at: &Annotation, velocity_mps: DVec2) -
     }
 }
 
-/// The motion through keyframes. Before the first and after the last of them a motion stands; what moves there goes straight
-/// on to one more key on either side, so that it has its velocity at all times.
+/// The motion through keyframes. A motion stands before its first keyframe and after its last. So an object that moves
+/// there gets one more keyframe straight on at either end, to have its velocity at all times.
 pub(super) fn motion(keys: Vec<Key>) -> Motion {
     let beyond = |from: &Key, end: &Key| {
         let by_m = end.at_m - from.at_m;
@@ -182,7 +182,7 @@ fn there_s(object: &Object, times_s: &[f64]) -> [Option<f64>; 2] {
     ]
 }
 
-/// Velocity at the first box, as `NuScenes.box_velocity` tells it; 0 where it tells none.
+/// Velocity at the first box as `NuScenes.box_velocity` gives it; 0 where that gives none.
 fn velocity_mps(object: &Object, times_s: &[f64]) -> DVec2 {
     let mut boxes = object.boxes.iter();
     let (Some((from, a)), Some((to, b))) = (boxes.next(), boxes.next()) else {

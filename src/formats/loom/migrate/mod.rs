@@ -31,9 +31,9 @@ pub struct Migration {
 /// Change that a step makes.
 #[derive(Clone, Copy)]
 pub enum Change {
-    /// The next version only added keys and entries that may be absent: nothing is to be done.
+    /// The next version only added keys and entries that may be absent: no change is needed.
     Added,
-    /// `scene.json` or other entries change. Errors say in one line what cannot be taken over.
+    /// `scene.json` or other entries change. Errors say in one line which part cannot be converted.
     Rewrites(fn(&mut dyn Entries) -> Result<(), ProjectError>),
 }
 

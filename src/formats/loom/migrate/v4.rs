@@ -230,8 +230,8 @@ fn draft_voxels(b: &SceneBox) -> ([i32; 2], [usize; 2], Vec<u8>) {
     ([from[0] + low[0] as i32, from[1] + low[1] as i32], size, labels)
 }
 
-/// Puts the first frame's grids where the canvas has them, without the voxels of what moves, drops those of other frames, and
-/// adds the voxels of tracks.
+/// Puts the first frame's grids where the canvas has them, without the voxels of moving objects, drops those of other
+/// frames, and adds the voxels of tracks.
 fn move_entries(
     entries: &mut dyn Entries,
     first: &Map<String, Value>,

@@ -40,7 +40,7 @@ const VERGE_M: f64 = 0.6;
 pub(super) enum Detail {
     /// Roads alone.
     Roads,
-    /// Roads, and areas for what no road covers.
+    /// Roads, and areas for ground that no road covers.
     #[cfg(test)]
     Areas,
     /// Roads, areas, and Sceneloom's own rows.
@@ -82,7 +82,7 @@ fn text_of(
     let header = xml::header(name, layout);
     let mut body = xml::network(&roads, &junctions, layout, &limits);
     if detail != Detail::Roads {
-        // What a reader makes of the roads shows what is missing.
+        // The roads as a reader sees them show which ground is missing.
         let text = format!("{header}{body}</OpenDRIVE>\n");
         if let Ok(read) = super::read(text.as_bytes()) {
             let found = read
@@ -185,7 +185,8 @@ fn is_left_hand(bundled: &Bundled) -> bool {
     let mut right_hand = 0i64;
     for bundle in &bundled.bundles {
         for pair in bundle.members.windows(2) {
-            // Members run from left to right: whoever drives along sees the oncoming lane to the left.
+            // Members run from left to right. With right-hand traffic, oncoming lanes lie to the left of the lane that
+            // is driven.
             match (pair[0].along, pair[1].along) {
                 (false, true) => right_hand += bundle.samples.len() as i64,
                 (true, false) => right_hand -= bundle.samples.len() as i64,

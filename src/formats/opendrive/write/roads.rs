@@ -38,7 +38,7 @@ pub(super) struct Road {
     pub two_way: bool,
     /// True for left-hand traffic.
     pub left_hand: bool,
-    /// The bundle that it is made of; none for connecting roads.
+    /// The bundle that it is made of; `None` for connecting roads.
     pub bundle: Option<usize>,
     /// Elements of `<objects>` and of `<signals>`.
     pub objects: Vec<String>,
@@ -84,7 +84,7 @@ impl Road {
         along != by_rule
     }
 
-    /// A strip at the start (`false`) or end of the road; `None` for one that is no lane or has no width there.
+    /// A strip at the start (`false`) or end of the road; `None` if it is no lane or has no width there.
     pub fn contact(&self, strip: usize, at_end: bool) -> Option<Contact> {
         let Strip::Lane { along, .. } = self.strips.kinds[strip] else {
             return None;
@@ -262,8 +262,9 @@ fn alone_half_m(
     median(&median(&filled))
 }
 
-/// Borders of lanes that lie in the middle of their borders: one number is free and taken so that the borders are nearest to the
-/// middles between lanes. `None` where lanes get a width that no lane has.
+/// Borders of lanes that put each lane in the middle between its own. One number is free and chosen so that the borders
+/// are nearest to the middles between lanes. `None` if a border would be too far from there, or a lane would get a
+/// width that no lane has.
 fn shared(lanes: &[(usize, f64)], alone_m: f64) -> Option<Vec<[f64; 2]>> {
     if let [(_, t)] = lanes {
         return Some(vec![[t + alone_m, t - alone_m]]);

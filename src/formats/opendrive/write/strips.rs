@@ -17,7 +17,7 @@ const VERGE_M: f64 = 3.0;
 const WALKWAY_M: f64 = 8.0;
 /// Distance between two looks at the ground, m.
 const LOOK_M: f64 = 0.1;
-/// A strip that is nowhere wider is none, m: it holds no centre of a cell.
+/// A strip that is nowhere wider than this is dropped, m: it holds no centre of a cell.
 const NARROWEST_M: f64 = 0.15;
 /// A middle that is nowhere farther from the reference line than this is moved onto it, m.
 const NEARLY_M: f64 = 0.03;
@@ -48,7 +48,7 @@ pub(super) struct Strips {
     pub kinds: Vec<Strip>,
     /// One more than there are strips, each with a value per station: how far left, m; never growing to the right.
     pub borders_m: Vec<Vec<f64>>,
-    /// The border at which lanes to the left end and those to the right begin.
+    /// The border between the lanes to the left and those to the right.
     pub center: usize,
 }
 
@@ -60,8 +60,8 @@ pub(super) struct Station {
 }
 
 impl Strips {
-    /// Adds what lies to both sides, paved ground up to `most_m` wide. `is_own` tells of a place whether it belongs to this road
-    /// and to no other.
+    /// Adds the ground to both sides, with paved ground up to `most_m` wide. `is_own` says whether a place belongs to
+    /// this road and to no other.
     pub fn with_sides(
         mut self,
         layout: &BevLayout,
@@ -161,7 +161,7 @@ impl Around<'_> {
             (Strip::Walkway, to),
         ] {
             let wide = outer.iter().zip(&inner).any(|(o, i)| o - i > NARROWEST_M);
-            // Where there is nothing, what follows begins where this began.
+            // A strip that is too narrow is dropped, so the next one begins where it began.
             if wide {
                 out.push((kind, outer.clone()));
                 inner = outer;
@@ -226,7 +226,7 @@ impl Around<'_> {
     }
 }
 
-/// Stations beyond the map take over what the nearest one on it has.
+/// Stations beyond the map take the values of the nearest station on it.
 fn known(looks: &[Option<Reach>]) -> Vec<Reach> {
     const NOTHING: Reach = Reach {
         paved_m: 0.0,
