@@ -9,9 +9,10 @@ use super::target::Target;
 
 pub use super::target::stdout_holds_a_file;
 
-/// Replaces the file at `path` by `bytes`. Whatever happens, the path holds either the old file or
-/// the new one, whole. A symbolic link is followed and stays; an existing file's permissions are kept. Into a pipe, `/dev/null`,
-/// `/dev/stdout` and their like the bytes are written; a pipe is waited for. Errors for folders, disks and sockets.
+/// Replaces the file at `path` by `bytes`. Whatever happens, the path holds either the old file or the new one, whole.
+/// A symbolic link is followed and stays; an existing file's permissions are kept. A pipe, `/dev/null`, `/dev/stdout`
+/// and similar paths are written to directly; opening a pipe waits for its reader. Errors for folders, disks and
+/// sockets.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     match Target::of(path)? {
         Target::File(file) => replace(&file, bytes),

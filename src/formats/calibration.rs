@@ -1,4 +1,4 @@
-//! Where and how sensors look, for whoever reads their files: one JSON object beside pictures and sweeps.
+//! Calibration of the sensors for programs that read their files: one JSON object beside pictures and sweeps.
 //!
 //! `frames` names every frame that numbers are given in. A camera has `intrinsic` (3 x 3, row-major, px), its `lens` with the
 //! coefficients of the model (see [`scene::Lens`]), `shutter` where it rolls, and its pose in the ego frame: as quaternion w, x, y, z with

@@ -5,8 +5,8 @@
 //! ego frame's, but for z: the lowest voxels of a map have z = 0. The colours are those of the classes, colour k of class
 //! k - 1, and their names are in a `NOTE`.
 //!
-//! The reader is our own: `dot_vox` 5.2 calls itself for every chunk within a chunk, so that a file of nothing but headers
-//! ends the program, and leaves out names.
+//! The reader is our own: `dot_vox` 5.2 leaves out names, and is recursive for every chunk within a chunk, so that a
+//! file of nested headers alone ends the program.
 
 mod place;
 mod read;

@@ -23,7 +23,7 @@ pub struct Language {
 }
 
 impl Language {
-    /// Reads a language from JSON; the text under `""` is what it calls itself.
+    /// Reads a language from JSON; the text under `""` is its name in the language itself.
     ///
     /// # Errors
     /// One line if it is no object of texts, or if a translation has other `{places}` than its English.

@@ -64,9 +64,9 @@ pub struct ViewOptions {
     pub boxes: bool,
     /// A colour of its own for each box, by its number, in place of its class's.
     pub by_track: bool,
-    /// How much lower than they are boxes, ego vehicle and cameras are drawn, m. The voxels' ground lies 0.6 m below the
-    /// physical one ([`GROUND_TOP_M`]), so with this things stand on the drawn road. Code that picks boxes in the view adds
-    /// it to the ray's z first. 0 draws them where they are.
+    /// How much lower than their height boxes, ego vehicle and cameras are drawn, m. The voxels' ground lies 0.6 m
+    /// below the physical one ([`GROUND_TOP_M`]), so things that are lowered by that stand on the drawn road. Code that
+    /// picks boxes in the view adds this to the ray's z first. 0 draws them at their height.
     pub drop_m: f64,
     /// LiDAR returns.
     pub lidar: bool,

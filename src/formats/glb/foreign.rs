@@ -1,7 +1,9 @@
-//! Meshes of other programs: a whole scene, whose things are told by their names, or a single model, which becomes one box.
+//! Meshes of other programs: a whole scene, whose things are told by their names, or a single model, which becomes one
+//! box.
 //!
-//! A scene keeps its axes as the programs write them that have z up themselves: x stays x, -z becomes y, y becomes z. The
-//! ground is taken to be near z = 0 and is put where the labels have it, two voxels lower; what stands on it reaches down to it.
+//! The axes of a scene are turned as programs with z up do when they write glTF: x stays x, -z becomes y, y becomes z.
+//! The ground is taken to be near z = 0 and is put where the labels have it, two voxels lower; things on it reach down
+//! to it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

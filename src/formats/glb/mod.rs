@@ -1,4 +1,4 @@
-//! glTF 2.0 and its container GLB: what reading and writing share.
+//! glTF 2.0 and its container GLB: code that reading and writing share.
 //!
 //! A file of ours holds a node with extras of ours (`SceneExtras`), under it a node for each class with the mesh of its voxels, and a
 //! node for each box with the mesh of the voxels that are the box's own. glTF has y up: that node turns

@@ -1,9 +1,9 @@
 //! Point clouds (PCL's PCD, ascii, binary and compressed): a cloud becomes the occupancy of a scene.
 //!
-//! Read are `x`, `y`, `z` in metres, taken as the ego frame (x forward, y left, z up, ground near z = 0), and a field `label`,
-//! `labels`, `class` or `semantic` with the classes' numbers (Occ3D, 0 to 16). See `cloud` for what becomes of points
-//! with and without labels. Other fields, a viewpoint, points that are not finite or lie beside the map are left out and
-//! counted.
+//! The fields `x`, `y`, `z` are read, in metres, taken as the ego frame (x forward, y left, z up, ground near z = 0),
+//! and a field `label`, `labels`, `class` or `semantic` with the classes' numbers (Occ3D, 0 to 16). See `cloud` for the
+//! use of points with and without labels. Other fields, a viewpoint, points that are not finite or lie beside the map
+//! are left out and counted.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

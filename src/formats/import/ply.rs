@@ -1,9 +1,9 @@
 //! Point clouds as PLY (ascii, binary little and big endian): a cloud becomes the occupancy of a scene.
 //!
-//! Read are the properties `x`, `y`, `z` of the element `vertex`, in metres, taken as the ego frame (x forward, y left, z up,
-//! ground near z = 0), and a property of `LABELS` with the classes' numbers (Occ3D, 0 to 16). See `cloud` for what
-//! becomes of points with and without labels. Other properties and elements are left out and counted, lists too. A file of 3D
-//! Gaussians (`f_dc_0`, `scale_0`) is read as the points in their middles.
+//! The properties `x`, `y`, `z` of the element `vertex` are read, in metres, taken as the ego frame (x forward, y left,
+//! z up, ground near z = 0), and a property of `LABELS` with the classes' numbers (Occ3D, 0 to 16). See `cloud` for the
+//! use of points with and without labels. Other properties and elements are left out and counted, lists too. A file of
+//! 3D Gaussians (`f_dc_0`, `scale_0`) is read as the points in their middles.
 
 use std::collections::BTreeMap;
 

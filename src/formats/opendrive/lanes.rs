@@ -327,9 +327,9 @@ impl LaneSection {
         all
     }
 
-    /// The ground of each lane, left to right, in the sense of the nuScenes map: everything paved that
-    /// is connected to a traffic lane is drivable; a bicycle lane behind a kerb belongs to the walkway,
-    /// a shoulder behind one to nobody; an edge strip touching a walkway is part of it.
+    /// The ground of each lane, left to right, in the sense of the nuScenes map: all paved lanes that are connected to
+    /// a traffic lane are drivable. A bicycle lane behind a kerb belongs to the walkway, a shoulder behind a kerb to no
+    /// layer. A narrow edge strip that touches a walkway is part of it.
     pub fn grounds(&self) -> Vec<Ground> {
         let lanes: Vec<&Lane> = self.lanes_left_to_right().collect();
         let widths: Vec<f64> = self

@@ -1,7 +1,9 @@
-//! The f-theta camera: how far a ray's angle from the optical axis lies from the principal point is a polynomial.
+//! The f-theta camera: the angle of a ray from the optical axis is a polynomial of its distance from the principal
+//! point.
 //!
-//! World scenarios know this model alone. Any other camera, a pinhole too, is brought to it by a fit of the angle over the distance in pixels: within a
-//! tenth of a pixel up to a view 105 degrees wide (of 1600 pixels), .45 pixels at 120 degrees.
+//! World scenarios know this model alone. Any other camera, also a pinhole, is brought to it by a fit of the angle over
+//! the distance in pixels: within a tenth of a pixel up to a view 105 degrees wide (of 1600 pixels), 0.45 pixels at 120
+//! degrees.
 
 use glam::{DVec2, DVec3};
 use numeric::linear::solve;

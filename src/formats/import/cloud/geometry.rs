@@ -4,8 +4,9 @@
 //!   ground found around it, and so is every point less than 0.15 m above.
 //! - Ground that is reached from the vehicle without a step is taken as driveable surface, other ground as other flat. Grass at
 //!   the height of the road cannot be told from it.
-//! - What stands on the ground, is lower than 4.2 m and shorter than 14 m on its own is "others": a vehicle, a person, a bush.
-//! - All else is vegetation where it is thick seen from above, and manmade where it is thin as a wall is.
+//! - A thing on the ground that is lower than 4.2 m and shorter than 14 m on its own is "others": a vehicle, a person,
+//!   a bush.
+//! - All other points are vegetation where they are thick seen from above, and manmade where they are thin as a wall.
 //!
 //! Measured on the program's own sweeps; docs/formats/points.md has the figures.
 

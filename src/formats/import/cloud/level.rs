@@ -4,9 +4,9 @@
 //!   an echo by way of a mirror.
 //! - A **plane** is put through them: of planes through three of them (tilted by 12 degrees at most) the one that most lie on and
 //!   fewest lie below, then least squares through those that lie on it.
-//! - The plane is the ground if enough cells lie on it and they do not all lie in one direction: a table or a ceiling is none.
+//! - The plane is the ground if enough cells lie on it in enough directions, which a table or a ceiling does not have.
 //!
-//! The same points give the same plane: what is drawn at random is drawn from a fixed seed.
+//! Equal points give an equal plane: random draws start from a fixed seed.
 
 use glam::{DVec2, DVec3};
 use numeric::linear::solve;

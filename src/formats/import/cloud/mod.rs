@@ -1,9 +1,10 @@
-//! Points into a scene: what every format of point clouds needs.
+//! Points into a scene: code that all formats of point clouds share.
 //!
-//! Points are counted into the voxels of the networks' window. A voxel gets the class that most of its points have; of points
-//! without a label the class is told by shape ([`geometry`]). Labels of this program, as those of Occ3D, have the road under the
-//! vehicle in the lowest bin, two below its height; in clouds it lies where it is. The ground of a cloud is therefore moved so
-//! that its level around the vehicle comes to the middle of the lowest bin. Everything else stays.
+//! Points are counted into the voxels of the networks' window. A voxel gets the class that most of its points have; the
+//! class of points without a label is told by their shape ([`geometry`]). Labels of this program and of Occ3D have the
+//! road under the vehicle in the lowest bin, two bins below its height; clouds have it at its height. The ground of a
+//! cloud is therefore moved so that its level around the vehicle comes to the middle of the lowest bin. Other points
+//! stay.
 //!
 //! A cloud whose ground lies beside the map, as a sweep in its sensor's frame, is lifted as a whole before that ([`level`]), or
 //! by as much as the user says.

@@ -1,9 +1,9 @@
 //! Point clouds as LAS and LAZ (ASPRS LAS 1.0 to 1.4, all point formats): a cloud becomes the occupancy of a scene.
 //!
 //! Classes are those of the extra byte `occ3d_class`, as this program writes it, or of the standard's classification
-//! ([`crate::las`]); noise and withheld points are left out. See `cloud` for what becomes of points with and without
-//! labels. Coordinates are taken as metres. Where a cloud lies somewhere else than around the origin, as in projected
-//! coordinates, its middle becomes the origin and its ground there z = 0; what was subtracted is told.
+//! ([`crate::las`]); noise and withheld points are left out. See `cloud` for the use of points with and without labels.
+//! Coordinates are taken as metres. If a cloud does not lie around the origin, as in projected coordinates, its middle
+//! becomes the origin and its ground there z = 0; a report names the offset that was subtracted.
 
 mod header;
 mod points;

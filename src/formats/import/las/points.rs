@@ -1,7 +1,7 @@
 //! The points of a LAS file, as they are or unpacked from LAZ.
 //!
-//! LAZ is unpacked by the crate `laz`, chunk by chunk. The crate asks for as much memory as a chunk says it needs; what a chunk
-//! says is therefore checked here first, against the bytes that are there.
+//! LAZ is unpacked by the crate `laz`, chunk by chunk. The crate allocates as much memory as a chunk claims to need, so
+//! the sizes that a chunk gives are checked here first, against the bytes that are there.
 
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -1,8 +1,8 @@
-//! From version 4 to 5: frames, each with grids of its own in its ego frame, become one canvas and what moves on it.
+//! From version 4 to 5: frames, each with grids of its own in its ego frame, become one canvas and tracks.
 //!
-//! The first frame is the canvas, its ego frame the world frame. Boxes that later frames show elsewhere, or not, become tracks
-//! through those places, with draft voxels. The grids of later frames are left out: no program ever wrote more than one
-//! frame of different ground.
+//! The first frame is the canvas, its ego frame the world frame. Boxes that later frames show elsewhere, or do not
+//! show, become tracks through those places, with draft voxels. The grids of later frames are left out: no program ever
+//! wrote more than one frame of different ground.
 
 use std::collections::BTreeMap;
 

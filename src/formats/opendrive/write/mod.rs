@@ -1,7 +1,7 @@
-//! Writes the roads of a layout as OpenDRIVE 1.8. Lanes that run side by side become one road; where lanes cross, meet or part,
-//! roads end at a junction with one connecting road for each lane that leads through and for turns between the others.
-//! Paved ground, car parks and walkways beside the lanes become lanes too. Ground that no lane crosses gets lanes along its
-//! middle; what is left is written as areas. Beside all this stand Sceneloom's own rows, see `own_rows`.
+//! Writes the roads of a layout as OpenDRIVE 1.8. Lanes that run side by side become one road; where lanes cross, meet
+//! or part, roads end at a junction with one connecting road for each lane that leads through and for turns between the
+//! others. Paved ground, car parks and walkways beside the lanes become lanes too. Ground that no lane crosses gets
+//! lanes along its middle; the remaining ground is written as areas. Sceneloom's own rows follow, see `own_rows`.
 
 mod areas;
 mod bundles;
