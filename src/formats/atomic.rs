@@ -1,5 +1,5 @@
-//! Writing files whole or not at all: beside the final name, flushed to disk, then renamed. What is no file (a pipe, a device) is
-//! written to as what it is.
+//! Writing files whole or not at all: beside the final name, flushed to disk, then renamed. A pipe or a device is no
+//! file; its bytes are written directly.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -9,9 +9,10 @@ use super::target::Target;
 
 pub use super::target::stdout_holds_a_file;
 
-/// Replaces the file at `path` by `bytes`. Whatever happens, the path holds either the old file or
-/// the new one, whole. A symbolic link is followed and stays; an existing file's permissions are kept. Into a pipe, `/dev/null`,
-/// `/dev/stdout` and their like the bytes are written; a pipe is waited for. Errors for folders, disks and sockets.
+/// Replaces the file at `path` by `bytes`. Whatever happens, the path holds either the old file or the new one, whole.
+/// A symbolic link is followed and stays; an existing file's permissions are kept. A pipe, `/dev/null`, `/dev/stdout`
+/// and similar paths are written to directly; opening a pipe waits for its reader. Errors for folders, disks and
+/// sockets.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     match Target::of(path)? {
         Target::File(file) => replace(&file, bytes),
@@ -20,7 +21,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// Puts a file in place of what has the name: an old file or nothing.
+/// Puts a file in place of an old file of that name, if there is one.
 fn replace(target: &Path, bytes: &[u8]) -> io::Result<()> {
     let folder = match target.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
@@ -41,7 +42,7 @@ fn replace(target: &Path, bytes: &[u8]) -> io::Result<()> {
     sync_folder(&folder)
 }
 
-/// What any new file gets; temporary files are private otherwise.
+/// Gives a file the permissions that any new file gets; a temporary file would be private otherwise.
 #[cfg(unix)]
 fn use_default_permissions(builder: &mut tempfile::Builder<'_, '_>) {
     use std::os::unix::fs::PermissionsExt;

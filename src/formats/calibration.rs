@@ -1,4 +1,4 @@
-//! Where and how sensors look, for whoever reads their files: one JSON object beside pictures and sweeps.
+//! Calibration of the sensors for programs that read their files: one JSON object beside pictures and sweeps.
 //!
 //! `frames` names every frame that numbers are given in. A camera has `intrinsic` (3 x 3, row-major, px), its `lens` with the
 //! coefficients of the model (see [`scene::Lens`]), `shutter` where it rolls, and its pose in the ego frame: as quaternion w, x, y, z with
@@ -14,15 +14,15 @@ const VERSION: u32 = 1;
 /// Name of the file.
 pub const FILE: &str = "calibration.json";
 
-/// Of the moment that a scene shows, with cameras at the size of their pictures (none: that of the rig), as the bytes of such a
-/// file. `world_from_ego` is where the ego vehicle is.
+/// The bytes of such a file for the moment that a scene shows. Cameras are at the size of their pictures, `size`;
+/// `None` leaves them at the size in the rig. `world_from_ego` is the pose of the ego vehicle.
 pub fn to_bytes(scene: &Scene, world_from_ego: &Pose, size: Option<[u32; 2]>) -> Vec<u8> {
     let mut text = serde_json::to_string_pretty(&of(scene, world_from_ego, size)).unwrap_or_default();
     text.push('\n');
     text.into_bytes()
 }
 
-/// The same as a JSON value.
+/// The content of such a file as a JSON value, from the arguments of [`to_bytes`].
 pub fn of(scene: &Scene, world_from_ego: &Pose, size: Option<[u32; 2]>) -> Value {
     let sized = |c: &Camera| size.map_or_else(|| c.clone(), |[w, h]| c.resized(w, h));
     json!({

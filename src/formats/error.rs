@@ -1,4 +1,4 @@
-//! What every table of formats returns when something cannot be read or written.
+//! The error that every table of formats returns when something cannot be read or written.
 
 use std::error::Error;
 use std::fmt;
@@ -22,7 +22,7 @@ impl FormatError {
         }
     }
 
-    /// The same, with what was being done, most often the file's name, before it.
+    /// Puts `place` in front of the line: what was being done, most often the file's name.
     pub fn at(self, place: &impl fmt::Display) -> Self {
         Self {
             line: message::one_line(&format_args!("{place}: {}", self.line)),

@@ -23,15 +23,15 @@ pub enum InputError {
     Io {
         /// The file.
         path: String,
-        /// What the system said.
+        /// Error of the system.
         source: io::Error,
     },
     /// No regular file: reading it might never end.
     #[error("{path}: {found}, expected a regular file")]
     NotAFile {
-        /// What the user named.
+        /// Path as the user named it.
         path: String,
-        /// What it is.
+        /// Kind of the thing there.
         found: &'static str,
     },
     /// More than is read.
@@ -61,7 +61,7 @@ impl InputError {
     }
 }
 
-/// Everything in a file of at most `limit` bytes. A larger one is refused before it is read.
+/// Reads all of a file of at most `limit` bytes. A larger one is refused before it is read.
 pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, InputError> {
     let (file, size) = open(path, limit)?;
     let mut bytes = Vec::with_capacity(size as usize);
@@ -78,7 +78,7 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, InputError> {
     }
 }
 
-/// The same as text.
+/// Reads all of a file of at most `limit` bytes as UTF-8 text.
 pub fn read_text(path: &Path, limit: u64) -> Result<String, InputError> {
     String::from_utf8(read(path, limit)?).map_err(|error| InputError::NotText {
         path: shown(path),
@@ -134,7 +134,7 @@ fn shown(path: &Path) -> String {
     )
 }
 
-/// What a thing is that is no regular file.
+/// Kind of a thing that is no regular file; `None` for a regular file.
 fn kind(of: FileType) -> Option<&'static str> {
     if of.is_file() {
         return None;

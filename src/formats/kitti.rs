@@ -1,4 +1,4 @@
-//! Frames of KITTI (Geiger et al., "Vision meets Robotics", 2013), as reading and writing share them.
+//! Frames of KITTI (Geiger et al., "Vision meets Robotics", 2013), shared by reading and writing.
 //!
 //! The velodyne looks along the vehicle: x forward, y left, z up, so its axes are those of the ego frame here. A camera's
 //! frame is x right, y down, z forward; labels of objects are in that of the rectified reference camera.

@@ -1,4 +1,5 @@
-//! What reading and writing LAS share (ASPRS LAS 1.4 R15): classes, lengths of records, names of own fields.
+//! Definitions that reading and writing LAS share (ASPRS LAS 1.4 R15): classes, lengths of records, names of own
+//! fields.
 
 use scene::Class;
 
@@ -6,19 +7,19 @@ use scene::Class;
 pub const CLASS_FIELD: &str = "occ3d_class";
 /// Name of the extra bytes with the ring of the LiDAR.
 pub const RING_FIELD: &str = "ring";
-/// What the header names as the program that wrote the file: its points are in the ego frame.
+/// Name of the program that wrote the file, in the header: a file of this program has its points in the ego frame.
 pub const SOFTWARE: &str = "sceneloom";
 /// Classes that the standard has no number for are written as this and their number in Occ3D: 64 to 255 are for users.
 const FIRST_OF_USERS: u8 = 64;
 
-/// What a classification of the standard says.
+/// Meaning of a classification of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asprs {
     /// A class.
     Class(Class),
-    /// Nothing yet: never classified, unclassified, reserved.
+    /// No class yet: never classified, unclassified, reserved.
     Unclassified,
-    /// An echo of nothing.
+    /// Noise, an echo of no object.
     Noise,
     /// A number that users may give any meaning.
     OfUsers,
@@ -44,7 +45,7 @@ const CLASSES: [(u8, Class); 16] = [
     (19, Class::Manmade),          // overhead structure
 ];
 
-/// What a number of the standard says.
+/// The meaning of a number of the standard.
 pub fn of_asprs(number: u8) -> Asprs {
     match number {
         7 | 18 => Asprs::Noise,
@@ -56,8 +57,8 @@ pub fn of_asprs(number: u8) -> Asprs {
     }
 }
 
-/// The number of the standard for a class, `height_m` being how far the point is above the ground. Ground that is no road is
-/// 2; what has no number of its own is 64 and its number in Occ3D.
+/// The number of the standard for a class, with `height_m` the height of the point above the ground. Ground other than
+/// road is 2; a class without a number of the standard is 64 plus its number in Occ3D.
 pub fn asprs_of(class: Class, height_m: f64) -> u8 {
     match class {
         Class::DriveableSurface => 11,

@@ -49,7 +49,7 @@ mod xml_text;
 
 pub use error::FormatError;
 
-/// What a file of a format holds.
+/// Kind of content in a file of a format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Holds {
     /// All of a scene.

@@ -3,7 +3,7 @@
 /// Most bytes that one byte of LZF can stand for: three bytes copy 264.
 pub const MOST_PER_BYTE: usize = 88;
 
-/// What was compressed; `None` unless it is exactly `size` bytes. Memory grows with what comes out, not with `size`.
+/// Unpacks LZF; `None` unless that gives exactly `size` bytes. Memory grows with what comes out, not with `size`.
 pub fn decompress(bytes: &[u8], size: usize) -> Option<Vec<u8>> {
     let mut out = Vec::new();
     let mut rest = bytes;
@@ -21,7 +21,7 @@ pub fn decompress(bytes: &[u8], size: usize) -> Option<Vec<u8>> {
             }
             let back = ((control & 31) << 8) + usize::from(*rest.split_off_first()?) + 1;
             let from = out.len().checked_sub(back)?;
-            // It may run into what it writes.
+            // The copied range may overlap the bytes that it writes.
             for i in from..from + length + 2 {
                 out.push(out[i]);
             }

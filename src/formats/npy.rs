@@ -52,7 +52,7 @@ pub(crate) struct Table<'a> {
     /// Length of the second axis.
     pub columns: usize,
     kind: Kind,
-    /// Values of a column lie one after another, not those of a row.
+    /// True if the values of a column, not those of a row, lie one after another.
     by_column: bool,
     values: &'a [u8],
 }

@@ -11,7 +11,7 @@ pub struct Array<'a> {
     pub name: &'a str,
     /// Length of each axis, row-major.
     pub shape: &'a [usize],
-    /// As many values as the shape has places.
+    /// The values, as many as the shape has places.
     pub values: Values,
 }
 
@@ -53,14 +53,14 @@ pub fn npy(shape: &[usize], values: &[i32]) -> io::Result<Vec<u8>> {
     Ok(out)
 }
 
-/// The same of `<u2`.
+/// One array of whole numbers (`<u2`) as an `.npy` file. Errors as [`npy`] does.
 pub fn npy_u16(shape: &[usize], values: &[u16]) -> io::Result<Vec<u8>> {
     let mut out = header::<u16>(shape, values.len())?;
     out.extend_from_slice(cast_slice(values));
     Ok(out)
 }
 
-/// What comes before so many values as they lie in memory.
+/// The header that comes before so many values as they lie in memory. Errors if the shape has not as many places.
 fn header<T: AutoSerialize>(shape: &[usize], values: usize) -> io::Result<Vec<u8>> {
     if shape.iter().product::<usize>() != values {
         let what = format!("{values} values in an array of shape {shape:?}");

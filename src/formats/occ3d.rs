@@ -68,7 +68,7 @@ pub enum Occ3dError {
     Array {
         /// Its name.
         name: String,
-        /// What was found and what was expected.
+        /// The problem: what was found and what was expected.
         problem: String,
     },
 }
@@ -103,7 +103,7 @@ pub fn read(bytes: &[u8]) -> Result<Occ3dFrame, Occ3dError> {
     read_found(bytes).map(|found| found.frame)
 }
 
-/// The same, with what had to be assumed and what was left out.
+/// Reads a frame as [`read`] does, and says what had to be assumed and what was left out.
 pub fn read_found(bytes: &[u8]) -> Result<Found, Occ3dError> {
     let mut zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| Occ3dError::Archive(one_line(&e)))?;
     let found = arrays(&zip);
@@ -208,13 +208,13 @@ pub fn to_bytes(labels: &VoxelGrid) -> Vec<u8> {
     arrays_to_bytes(labels, [None, None], None)
 }
 
-/// The same with the masks that the frame has.
+/// A frame as an npz file: labels as [`to_bytes`] writes them, and the masks that the frame has.
 pub fn frame_to_bytes(frame: &Occ3dFrame) -> Vec<u8> {
     let masks = [&frame.lidar_observed, &frame.camera_observed];
     arrays_to_bytes(&frame.labels, masks.map(Option::as_deref), None)
 }
 
-/// The same with how it came to be: an array `recipe` of the bytes of a JSON text.
+/// A frame as [`frame_to_bytes`] writes it, and how it came to be: an array `recipe` of the bytes of a JSON text.
 pub fn frame_with_recipe_to_bytes(frame: &Occ3dFrame, recipe: &Recipe) -> Vec<u8> {
     let masks = [&frame.lidar_observed, &frame.camera_observed];
     arrays_to_bytes(&frame.labels, masks.map(Option::as_deref), Some(recipe))
@@ -250,7 +250,7 @@ enum Values {
 
 /// One array of the grid's shape, whatever its integer type.
 fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Values, Occ3dError> {
-    // What a parser says may be a drawing of several lines, and holds what the file holds.
+    // A parser's message may be a drawing of several lines, and may hold content of the file.
     let problem = |problem: String| Occ3dError::Array {
         name: quoted(name, 80),
         problem: shortened(&problem.split_whitespace().collect::<Vec<_>>().join(" "), 200),

@@ -1,5 +1,5 @@
-//! A folder that files are written into. Their names come of scenes: nothing outside the folder is reached, whatever a name
-//! holds and wherever a link in it leads.
+//! A folder that files are written into. Their names come from scenes, so no name and no link in the folder may lead to
+//! a file outside of it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -19,23 +19,23 @@ pub enum OutError {
     Name {
         /// The folder.
         folder: String,
-        /// What is wrong.
+        /// The problem with the name.
         problem: NotPlain,
     },
-    /// A link on the way leads out of the folder, or to nothing.
+    /// A link on the way leads out of the folder, or to a path that does not exist.
     #[error("{path}: a link that leads out of the folder or to nothing, expected a file or folder in it")]
     LeadsOut {
         /// The link.
         path: String,
     },
-    /// Something else has the name.
+    /// A thing of another kind has the name.
     #[error("{path}: found {found}, expected {expected}")]
     Taken {
-        /// What has it.
+        /// Path of that thing.
         path: String,
-        /// What it is.
+        /// Its kind.
         found: &'static str,
-        /// What may be there.
+        /// The kinds that may be there.
         expected: &'static str,
     },
     /// Two files of one name, on systems that do not look at the case of letters at least.
@@ -49,21 +49,21 @@ pub enum OutError {
     /// The file system refused.
     #[error("{what} {path}: {source}")]
     Io {
-        /// What was tried.
+        /// The action that was tried.
         what: &'static str,
         /// The file or folder.
         path: String,
-        /// What the system said.
+        /// Error of the system.
         source: io::Error,
     },
 }
 
-/// A folder and what was written into it.
+/// A folder, and the files written into it.
 #[derive(Debug)]
 pub struct OutFolder {
-    /// As the user named it.
+    /// Path as the user named it.
     named: PathBuf,
-    /// Without links.
+    /// Path without links.
     root: PathBuf,
     /// Where each file went, by its name without the case of letters.
     written: BTreeMap<String, PathBuf>,
@@ -86,7 +86,7 @@ impl OutFolder {
         &self.named
     }
 
-    /// Errors if a file of that name (with `/` between folders in this one) may not be written, and makes nothing.
+    /// Errors if a file of that name (with `/` between folders in this one) may not be written. Does not make the file.
     pub fn check(&self, name: &str) -> Result<(), OutError> {
         self.place(name).map(drop)
     }

@@ -4,9 +4,9 @@
 use glam::DVec3;
 use scene::{Frame, LidarSweep, draft};
 
-/// Shortens each ray that goes through the physical ground to where it meets it; what it met below becomes ground. Nothing
-/// changes in a sweep that is physical already. `origin_in_ego` is where the LiDAR is; points are in the ego frame of `frame`,
-/// whose other coordinates are in the world frame.
+/// Shortens each ray that goes through the physical ground to the point where it meets it; a return from below becomes
+/// one of the ground. A sweep that is physical already is not changed. `origin_in_ego` is where the LiDAR is; points
+/// are in the ego frame of `frame`, whose other coordinates are in the world frame.
 pub fn to_physical_ground(sweep: &mut LidarSweep, origin_in_ego: DVec3, frame: &Frame) {
     if sweep.physical {
         return;

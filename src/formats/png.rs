@@ -5,7 +5,7 @@ use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 /// Why a picture could not be encoded. One line each.
 #[derive(Debug, thiserror::Error)]
 pub enum PngError {
-    /// As many values as pixels are needed, and at least one of either.
+    /// The number of values is wrong: one for each pixel is needed, and at least one pixel.
     #[error("{found} values for {width} x {height} pixels, expected {expected}, and at least one")]
     Size {
         /// Pixels per row.
@@ -30,19 +30,19 @@ pub enum PngError {
     Encoder(#[from] png::EncodingError),
 }
 
-/// What goes into a picture beside its pixels.
+/// Content of a picture beside its pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Notes<'a> {
-    /// Text: a keyword of 1 to 79 Latin letters and digits, and what it says. Others are left out.
+    /// Text: a keyword of 1 to 79 Latin letters and digits, and its value. Other keywords are left out.
     pub text: &'a [(&'a str, &'a str)],
     /// A scene as a `.loom` file.
     pub scene: Option<&'a [u8]>,
 }
 
-/// What [`Notes`] a picture holds.
+/// The [`Notes`] in a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inside<'a> {
-    /// Keywords and what they say.
+    /// Keywords and their values.
     pub text: Vec<(String, String)>,
     /// A scene as a `.loom` file.
     pub scene: Option<&'a [u8]>,

@@ -28,13 +28,13 @@ pub struct Recipe {
     pub time_s: f64,
     /// Free text that describes the style.
     pub prompt: String,
-    /// What was typed to make the scene and to change it, in order.
+    /// Texts that were typed to make the scene and to change it, in order.
     pub words: Vec<String>,
     /// Fixes every draw.
     pub seed: u64,
     /// Light and air.
     pub conditions: Conditions,
-    /// What else the file was made with: knobs of a generation, a plan's variant.
+    /// Other parameters that the file was made with: knobs of a generation, a plan's variant.
     #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
     pub parameters: serde_json::Value,
     /// The scene as a `.loom` file, for pictures to carry; not in the text.
@@ -46,7 +46,7 @@ pub struct Recipe {
 const LARGEST_INSIDE: usize = 4 << 20;
 
 impl Recipe {
-    /// Of a scene as a whole, at the moment that it shows.
+    /// The recipe of a scene as a whole, at the moment that it shows.
     pub fn of(scene: &Scene) -> Self {
         let loom = loom::alone_to_bytes(scene).ok();
         let hash = loom.as_deref().map(hex_of).unwrap_or_default();
@@ -65,18 +65,18 @@ impl Recipe {
         }
     }
 
-    /// The same for files that do not carry the scene.
+    /// Takes the scene out, for files that do not carry it.
     pub fn without_scene(mut self) -> Self {
         self.loom = None;
         self
     }
 
-    /// As JSON on one line.
+    /// The recipe as JSON on one line.
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Calls `encode` with what a PNG says of it. Only pictures that are looked at carry the scene (`whole`).
+    /// Calls `encode` with the notes that a PNG gets of it. Only pictures for viewing carry the scene (`whole`).
     pub fn in_png<T>(&self, whole: bool, encode: impl FnOnce(&png::Notes<'_>) -> T) -> T {
         let (seed, json) = (self.seed.to_string(), self.to_json());
         let software = format!("{} {}", self.software, self.version);

@@ -22,7 +22,7 @@ pub(crate) const CELLS: usize = 256 * 256 * 32;
 /// Bytes of a file with a bit per cell.
 pub(crate) const BIT_BYTES: usize = CELLS / 8;
 
-/// Raw ids with their names (`config/semantic-kitti.yaml`) and what they become; `None` is free.
+/// Raw ids with their names (`config/semantic-kitti.yaml`) and classes; `None` is free.
 pub(crate) const RAW: [(u16, &str, Option<Class>); 34] = [
     (0, "unlabeled", None),
     (1, "outlier", Some(Class::Others)),
@@ -84,13 +84,13 @@ pub(crate) fn raw_id(class: Class) -> u16 {
     known.map_or(0, |(id, ..)| *id)
 }
 
-/// What a raw id becomes; the outer `None` is an id that is not known, the inner one is free.
+/// The class of a raw id. The outer `None` is an id that is not known, the inner one is free.
 pub(crate) fn class_of(raw: u16) -> Option<Option<Class>> {
     let at = RAW.binary_search_by_key(&raw, |(id, ..)| *id).ok()?;
     Some(RAW[at].2)
 }
 
-/// Points of nothing: reflections and dust.
+/// Label of points that belong to no object: reflections and dust.
 pub(crate) const OUTLIER: u16 = 1;
 
 /// The class of a point with that label; `None` for numbers that no label has, and for [`OUTLIER`]. A point without a label is

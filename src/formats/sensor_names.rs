@@ -1,20 +1,20 @@
-//! What sensors are called in files: names that folders and topics may have, and none twice.
+//! Names of sensors in files: names that folders and topics may have, none of them twice.
 
 use scene::SensorRig;
 use scene::plain_name::folded;
 
 use crate::export::OutFile;
 
-/// What the LiDAR is called.
+/// Name of the LiDAR.
 pub const LIDAR: &str = "LIDAR_TOP";
 
-/// Names of the rig's cameras in its order: letters, digits, `-` and `_`; what was not free gets a number.
+/// Names of the rig's cameras in its order: letters, digits, `-` and `_`; a name that is taken gets a number.
 pub fn cameras(rig: &SensorRig) -> Vec<String> {
     none_twice(rig.cameras.iter().map(|c| tidy(&c.name, "CAM")), &[LIDAR])
 }
 
-/// What the files of a rig's camera begin with: its name in letters and digits of any language, `-`, `_` and `.`; what another
-/// camera before it is called too gets a number.
+/// Beginning of the names of a camera's files: the camera's name in letters and digits of any language, `-`, `_` and
+/// `.`. It gets a number if a camera before it in the rig has the same name.
 pub fn of_file(rig: &SensorRig, camera: &str) -> String {
     let tidy = |name: &str| OutFile::new(name, Vec::new()).name;
     let place = rig.cameras.iter().position(|c| c.name == camera);

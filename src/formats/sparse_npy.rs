@@ -16,9 +16,9 @@ use crate::{FormatError, npz};
 /// A data set that keeps lists of voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Kind {
-    /// What was assumed when a file is read as one, for a person.
+    /// Assumption that is made when a file is read as this kind, for a person.
     pub assumed: &'static str,
-    /// Where its cells lie, in the LiDAR's frame.
+    /// Lattice of its cells, in the LiDAR's frame.
     pub lattice: Lattice,
     /// True for rows that begin with z, y, x, false for x, y, z.
     pub z_first: bool,
@@ -69,7 +69,7 @@ const UNI_SCENE: Kind = Kind {
 /// Lower corner of all but OpenOccupancy, m.
 const LOW_M: [f64; 3] = [-50.0, -50.0, -5.0];
 
-/// What a file may be, the coarsest of those with z last first.
+/// Kinds that a file may be of. Among those with z last, the coarsest comes first.
 pub(crate) const KINDS: [Kind; 4] = [OPEN_OCCUPANCY, SURROUND_OCC, SURROUND_OCC_FINE, UNI_SCENE];
 
 impl Kind {
@@ -95,7 +95,7 @@ impl Kind {
     }
 }
 
-/// A scene's voxels as such a file, sorted by the columns; where things are, not where Occ3D has them.
+/// A scene's voxels as such a file, sorted by the columns, at their true height instead of that of Occ3D.
 pub(crate) fn to_bytes(scene: &Scene, kind: &Kind) -> Result<Vec<u8>, FormatError> {
     let lidar = scene.rig.lidars.first();
     let lidar =

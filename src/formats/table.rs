@@ -1,4 +1,4 @@
-//! Parquet files of nested columns, from columns in memory. The same columns give the same bytes.
+//! Parquet files of nested columns, from columns in memory. Equal columns give equal bytes.
 
 use std::sync::Arc;
 
@@ -143,7 +143,7 @@ fn write_field(group: &mut Group<'_>, field: &Field) -> Result<()> {
         Values::Text(all) => column::<ByteArrayType>(group, &all.iter().map(bytes).collect::<Vec<_>>(), None),
         Values::Integer(all) => column::<Int64Type>(group, all, None),
         Values::Unsigned(all) => {
-            // The same bits; the type says that there is no sign.
+            // The bits are kept; the type says that there is no sign.
             column::<Int64Type>(
                 group,
                 &all.iter().map(|v| v.cast_signed()).collect::<Vec<_>>(),
@@ -176,7 +176,7 @@ struct Levels {
 }
 
 impl Levels {
-    /// No value in any of so many rows.
+    /// Levels of rows without any value.
     fn none(rows: usize) -> Self {
         Self {
             definition: vec![0; rows],

@@ -1,11 +1,12 @@
-//! What a path that is to be written leads to: a file, which is replaced whole, or what takes bytes as they come.
+//! Target of a path that is to be written: a file, which is replaced whole, or a stream, which takes bytes as they
+//! come.
 
 use std::fs::{self, File, FileType, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// As many links as systems follow.
+/// Most links that are followed, as many as systems follow.
 const MOST_LINKS: usize = 40;
 
 /// True once bytes of a file went to standard output.
@@ -14,17 +15,17 @@ static INTO_STDOUT: AtomicBool = AtomicBool::new(false);
 /// Where bytes go.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Target {
-    /// A file, or nothing yet. No link is left in its last name.
+    /// A file, which may not exist yet. No link is left in its last name.
     File(PathBuf),
     /// A pipe, or a device that takes bytes one after the other: `/dev/null`, a terminal.
     Stream(PathBuf),
-    /// Something that this process has open already: `/dev/stdout`, `/dev/fd/3`.
+    /// A file that this process has open already: `/dev/stdout`, `/dev/fd/3`.
     Open(u32, PathBuf),
 }
 
 impl Target {
-    /// Of a path. Errors for folders, for devices of blocks (a disk's contents would be gone), for sockets, and if links lead in
-    /// a circle.
+    /// The target of a path. Errors for folders, for block devices (a disk's contents would be lost), for sockets, and
+    /// if links lead in a circle.
     pub(crate) fn of(path: &Path) -> io::Result<Self> {
         let path = match followed(path)? {
             Self::File(path) => path,
@@ -43,7 +44,7 @@ impl Target {
         }
     }
 
-    /// Writes bytes into what is no file. Opening a pipe waits for its reader.
+    /// Writes bytes into a pipe or device. Opening a pipe waits for its reader.
     pub(crate) fn stream(number: Option<u32>, path: &Path, bytes: &[u8]) -> io::Result<()> {
         match number {
             Some(1) => {
@@ -53,7 +54,7 @@ impl Target {
                 out.flush()
             }
             Some(2) => io::stderr().lock().write_all(bytes),
-            // (what is open as a file keeps what it has)
+            // (a file that is open keeps its content)
             Some(_) => appended(OpenOptions::new().append(true).open(path)?, bytes),
             None => appended(OpenOptions::new().write(true).open(path)?, bytes),
         }
@@ -65,12 +66,12 @@ fn appended(mut to: File, bytes: &[u8]) -> io::Result<()> {
     to.flush()
 }
 
-/// True once a file was written to standard output: what is said to people must not go there too.
+/// True once a file was written to standard output: messages for people must not go there too.
 pub fn stdout_holds_a_file() -> bool {
     INTO_STDOUT.load(Ordering::Relaxed)
 }
 
-/// Follows links to the last name, which may be of nothing yet.
+/// Follows links to the last name, where no file may exist yet.
 fn followed(path: &Path) -> io::Result<Target> {
     let mut path = path.to_path_buf();
     for _ in 0..MOST_LINKS {
@@ -88,7 +89,7 @@ fn followed(path: &Path) -> io::Result<Target> {
     ))
 }
 
-/// The number of what this process has open under such a path.
+/// The number of the file descriptor that such a path names; `None` for other paths.
 fn descriptor(path: &Path) -> Option<u32> {
     let own = format!("/proc/{}/fd", std::process::id());
     let folder = path.parent()?.to_str()?;

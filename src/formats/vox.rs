@@ -5,8 +5,8 @@
 //! ego frame's, but for z: the lowest voxels of a map have z = 0. The colours are those of the classes, colour k of class
 //! k - 1, and their names are in a `NOTE`.
 //!
-//! The reader is our own: `dot_vox` 5.2 calls itself for every chunk within a chunk, so that a file of nothing but headers
-//! ends the program, and leaves out names.
+//! The reader is our own: `dot_vox` 5.2 leaves out names, and is recursive for every chunk within a chunk, so that a
+//! file of nested headers alone ends the program.
 
 mod place;
 mod read;
@@ -21,7 +21,8 @@ const LONGEST: usize = 256;
 /// Name of the uppermost node of a file that this program wrote: its models cover the whole map.
 const OWN_NAME: &str = "sceneloom";
 
-/// Middle of a model of so many voxels along an axis, as `MagicaVoxel` counts: the place of a model is that of its middle.
+/// Middle of a model of so many voxels along an axis, as `MagicaVoxel` counts: the place of a model is that of its
+/// middle.
 fn middle(size: i64) -> i64 {
     size / 2
 }

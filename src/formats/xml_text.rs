@@ -1,6 +1,6 @@
 //! Numbers and text as XML attributes.
 
-/// A number with at most nine decimals, none of them for show; 0 for one that is not finite.
+/// A number with at most nine decimals and without trailing zeros; 0 for one that is not finite.
 pub(crate) fn number(value: f64) -> String {
     if !value.is_finite() {
         return "0".into();
@@ -21,7 +21,7 @@ pub(crate) fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
-            // Characters that XML 1.0 has no place for, and those that readers turn into blanks.
+            // Characters that XML 1.0 does not allow, and characters that readers turn into blanks.
             c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push(' '),
             c => out.push(c),
         }

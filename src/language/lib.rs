@@ -17,13 +17,13 @@ const LARGEST_FILE: u64 = 4 << 20;
 pub struct Language {
     /// Its short name (ISO 639-1), that of its file.
     pub code: String,
-    /// What it calls itself.
+    /// Its name in the language itself.
     pub name: String,
     texts: HashMap<String, String>,
 }
 
 impl Language {
-    /// Reads a language from JSON; the text under `""` is what it calls itself.
+    /// Reads a language from JSON; the text under `""` is its name in the language itself.
     ///
     /// # Errors
     /// One line if it is no object of texts, or if a translation has other `{places}` than its English.
@@ -56,7 +56,7 @@ impl Language {
     }
 }
 
-/// What comes with the program: their codes and files.
+/// The languages that come with the program: their codes and files.
 const BUILT_IN: [(&str, &str); 3] = [
     ("de", include_str!("../../assets/languages/de.json")),
     ("ja", include_str!("../../assets/languages/ja.json")),
@@ -117,7 +117,7 @@ pub fn add_from(folder: &Path) -> Vec<String> {
         }
     }
     languages.sort_by(|a, b| a.code.cmp(&b.code));
-    // (nobody else sets it in between but another window of a test)
+    // (only another window of a test may set it in between)
     drop(LANGUAGES.set(languages));
     errors
 }
@@ -128,7 +128,7 @@ pub fn choose(code: &str) {
     CHOSEN.store(at.map_or(0, |at| at + 1), Ordering::Relaxed);
 }
 
-/// The language that is shown; none for English.
+/// The language that is shown; `None` for English.
 pub fn chosen() -> Option<&'static Language> {
     let at = CHOSEN.load(Ordering::Relaxed).checked_sub(1)?;
     all().get(at)
@@ -155,7 +155,7 @@ pub fn filled(text: &str, values: &[(&str, &dyn Display)]) -> String {
     out
 }
 
-/// The next `{name}`: what is before it, the name, what comes after it.
+/// The next `{name}`: the text before it, the name, and the text after it.
 fn next_place(text: &str) -> Option<(&str, &str, &str)> {
     let mut from = 0;
     loop {

@@ -1,11 +1,11 @@
-//! The gradient behind the scene, and the nothing that a part of the picture is drawn again upon.
+//! The gradient behind the scene, and the clearing of a part of the picture that is drawn again.
 
 use super::Background;
 use super::change::Change;
 use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
 use super::shared::PipelineSpec;
 
-/// Drawable of what is behind everything.
+/// Drawable of the background behind everything.
 #[derive(Debug, Default)]
 pub(super) struct Backdrop {
     eraser: Pipelines,
@@ -22,14 +22,14 @@ impl Drawable for Backdrop {
     }
 
     fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
-        // Makes all pixels, within the scissors, as if nothing had been drawn.
+        // Clears all pixels within the scissors, as if nothing had been drawn.
         let eraser = PipelineSpec {
             shader: "background",
             fragment: "fs_nothing",
             depth_compare: wgpu::CompareFunction::Always,
             ..PipelineSpec::OPAQUE
         };
-        // Covers what nothing else covered, at the far end of depth.
+        // Covers the pixels that nothing else covered, at the far end of depth.
         let gradient = PipelineSpec {
             shader: "background",
             depth_write: false,

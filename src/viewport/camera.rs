@@ -80,13 +80,13 @@ impl Default for ViewCamera {
     }
 }
 
-/// A whole map is looked at from so much farther away than where its corners are just seen.
+/// A whole map is looked at from this many times the distance at which its corners are just seen.
 const ROOM_AROUND: f64 = 1.05;
 /// Nearest visible distance in a perspective view, m.
 const NEAR_M: f64 = 0.1;
 /// Half of the depth that an orthographic view shows about its target at least, m.
 const ORTHO_HALF_DEPTH_M: f64 = 1000.0;
-/// What is under the pointer is zoomed to if it is nearer than this, m.
+/// Farthest hit under the pointer that zooming goes to, m.
 const FAR_ZOOM_M: f64 = 400.0;
 /// A map that is seen less steeply than this is seen from its edge, rad.
 const LEVEL_RAD: f64 = -0.17;
@@ -133,7 +133,7 @@ impl ViewCamera {
         }
     }
 
-    /// The same over a map: one from above shows all of it, the others look where the ego vehicle is.
+    /// A standard viewpoint over a map: the one from above shows all of it, the others look where the ego vehicle is.
     pub fn preset_over(preset: ViewPreset, extent: Extent) -> Self {
         let mut camera = Self::preset(preset);
         if preset == ViewPreset::Top {
@@ -176,7 +176,7 @@ impl ViewCamera {
         .sane()
     }
 
-    /// The same camera with every field finite and in its range; what is broken comes from the start view.
+    /// The camera with every field finite and in its range; a field that is not finite comes from the start view.
     pub fn sane(&self) -> Self {
         use std::f64::consts::{FRAC_PI_2, PI};
         let start = Self::preset(ViewPreset::Perspective);
@@ -196,7 +196,7 @@ impl ViewCamera {
         }
     }
 
-    /// Goes along with something that moves: where it was, and where it is.
+    /// Moves along with a thing whose pose was `before` and is `after`.
     pub fn go_along(&mut self, before: &Pose, after: &Pose) {
         let turned = |pose: &Pose| (pose.rotation * DVec3::X).truncate().to_angle();
         self.target_m = after.apply(before.inverse().apply(self.target_m));
@@ -405,7 +405,7 @@ fn aspect(size_px: [u32; 2]) -> f64 {
     f64::from(size_px[0].max(1)) / f64::from(size_px[1].max(1))
 }
 
-/// Vertical field of view, rad; what of it a flat picture can show.
+/// Vertical field of view, rad; for a wide lens the part of it that a flat picture can show.
 fn tall_rad(camera: &Camera) -> f64 {
     let pinhole = 2.0 * (f64::from(camera.height) / 2.0 / camera.focal_px[1]).atan();
     if camera.lens == Lens::Pinhole {

@@ -47,12 +47,12 @@ impl Part {
 /// How much of a picture differs from the one drawn last.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) enum Change {
-    /// Nothing.
+    /// No change.
     #[default]
     None,
     /// These parts of space, and a margin of so many pixels around them in the picture.
     Parts(Vec<(Part, f64)>),
-    /// Anything.
+    /// Any change: the whole picture is drawn.
     All,
 }
 

@@ -1,4 +1,4 @@
-//! What a drawable is, and the table of all of them.
+//! The trait of a drawable, and the table of all drawables.
 //!
 //! A new drawable is one file here with a type that implements [`Drawable`], one shader of the same name, and one line in
 //! [`all`].
@@ -26,14 +26,14 @@ pub(super) fn all() -> Vec<Box<dyn Drawable>> {
     ]
 }
 
-/// When something is drawn. A drawable may draw in several layers.
+/// Layer in which a thing is drawn. A drawable may draw in several layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Layer {
     /// First of all, if only a part of a picture is drawn again: clears that part.
     Erase,
     /// Opaque things.
     Opaque,
-    /// The background, where nothing opaque is.
+    /// The background, where no opaque thing is.
     Backdrop,
     /// The plane on the ground.
     Ground,
@@ -91,13 +91,13 @@ pub(super) struct View<'a> {
     pub part: bool,
 }
 
-/// Something that is drawn into the 3D view.
+/// A thing that is drawn into the 3D view.
 pub(super) trait Drawable: Debug + Send + Sync {
-    /// Its name, that of its file and of its shader.
+    /// Its name, which is that of its file and of its shader.
     fn name(&self) -> &'static str;
 
-    /// Takes over the scene and uploads what differs from the last one. Returns which part of the picture changes. What did
-    /// not change must cost no more than a comparison.
+    /// Takes over the scene and uploads the parts that differ from the last one. Returns which part of the picture
+    /// changes. Parts that did not change must cost no more than a comparison.
     fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change;
 
     /// Makes its pipelines for a number of samples per pixel, if they are not there yet.

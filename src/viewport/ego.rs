@@ -161,7 +161,7 @@ fn car(rig: &SensorRig, drop_m: f64) -> Vec<EgoVertex> {
 }
 
 impl Builder {
-    /// Puts what was built where the vehicle is.
+    /// Moves the built vehicle to where the vehicle is.
     fn place(&mut self, vehicle: &Pose) {
         if *vehicle == Pose::IDENTITY {
             return;

@@ -1,4 +1,4 @@
-//! What can go wrong when drawing without a window.
+//! Errors of drawing without a window.
 
 pub(super) use scene::message::one_line; // drivers say more
 
@@ -26,7 +26,7 @@ pub enum ViewportError {
         /// Largest side the device allows.
         max: u32,
     },
-    /// Supersampling outside of what is useful.
+    /// Supersampling outside of the useful range.
     #[error("supersampling is {0}, expected 1 to 8")]
     Supersample(u32),
     /// The device was lost or the picture could not be read back.

@@ -37,11 +37,11 @@ pub(super) struct Ground {
     made_from: Option<MadeFrom>,
 }
 
-/// What both are made from: grid, fingerprint of the cells, kind of plane, voxels shown.
+/// Sources of both textures: grid, fingerprint of the cells, kind of plane, voxels shown.
 type MadeFrom = (VoxelGrid, u64, LayoutPlane, bool);
 
 impl Ground {
-    /// Uploads the textures if they differ from the last ones; what is seen differently by that.
+    /// Uploads the textures if they differ from the last ones. Returns which part of the picture changes.
     fn update(&mut self, gpu: Gpu<'_>, bev: &[u32], grid: &VoxelGrid, options: &ViewOptions) -> Change {
         let extent = grid.extent();
         let markings = marking_texels(extent, bev);
@@ -62,7 +62,7 @@ impl Ground {
         seen
     }
 
-    /// The same where only some bricks of the grid have changed: markings do not depend on them.
+    /// Updates the plane where only some bricks of the grid have changed; markings do not depend on them.
     fn update_bricks(
         &mut self,
         gpu: Gpu<'_>,

@@ -15,10 +15,9 @@ impl Viewport {
 
     /// Draws a scene as RGBA8, sRGB, straight alpha, `width * height * 4` bytes, top row first.
     ///
-    /// `supersample` N draws N x N pictures, each shifted by a part of a pixel, and averages them
-    /// (colour weighted by alpha): as large as the device allows, whatever N is, and lines keep their
-    /// width. A transparent picture comes of [`super::Background::Transparent`]. What the window shows
-    /// stays as it is.
+    /// `supersample` N draws N x N pictures, each shifted by a part of a pixel, and averages them (colour weighted by
+    /// alpha). So N does not limit the size of the picture beyond the device's limit, and lines keep their width.
+    /// [`super::Background::Transparent`] gives a transparent picture. The picture in the window is not changed.
     pub fn render_to_image(
         &mut self,
         device: &wgpu::Device,

@@ -21,7 +21,7 @@ const SUN_RAYS: usize = 8;
 const SKY_RAYS: usize = 24;
 const SKY_REACH: f64 = 9.0;
 
-/// What a drawn voxel itself counts for where its neighbours' light is interpolated.
+/// Sky light of a drawn voxel itself, 0 to 1, where light is interpolated between it and its neighbours.
 const SKY_IN_SOLID: f64 = 0.30;
 
 /// Sky and sun, 0 to 255, of every cell in a rectangle of columns.
@@ -42,7 +42,7 @@ struct Step {
     dz: u32,
 }
 
-/// The same in a grid: how far its column lies in [`Solidity::padded`].
+/// A step of a ray in a grid: how far its column lies from the start in [`Solidity::padded`], and bins up.
 #[derive(Clone, Copy, Debug)]
 struct Offset {
     offset: isize,
@@ -158,7 +158,7 @@ fn cell(around: [&Column; 5], z: usize) -> [u8; 2] {
     [byte(SKY_IN_SOLID), byte(if n > 0.0 { sum / n } else { 0.0 })]
 }
 
-/// Where the steps of rays lie in columns of so many a row.
+/// Offsets of the steps of rays in columns, `stride` apart along x.
 fn offsets(rays: &[Vec<Step>], stride: usize) -> Vec<Vec<Offset>> {
     let offset = |&Step { aside: [dx, dy], dz }: &Step| Offset {
         offset: dx * stride as isize + dy,
@@ -167,7 +167,7 @@ fn offsets(rays: &[Vec<Step>], stride: usize) -> Vec<Vec<Offset>> {
     rays.iter().map(|ray| ray.iter().map(offset).collect()).collect()
 }
 
-/// Of each bin, how many rays reach the end unblocked.
+/// Counts, for each bin, the rays that reach the end unblocked.
 fn free_counts(columns: &[u16], rays: &[Vec<Offset>], at: usize) -> [u8; Extent::NZ] {
     // Sixteen counters side by side, one bit of each per word: adding a ray is a carry through five words.
     let mut counters = [0u16; 5];

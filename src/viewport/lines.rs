@@ -21,7 +21,7 @@ pub(super) struct LineVertex {
 const _: () = assert!(size_of::<LineVertex>() == 32);
 
 impl LineVertex {
-    /// Both ends, ego frame, m, and the width in points.
+    /// The two ends, ego frame, m, and the width in points.
     pub fn line(&self) -> ([DVec3; 2], f64) {
         let at = |p: [f32; 3]| DVec3::from_array(p.map(f64::from));
         ([at(self.from_m), at(self.to_m)], f64::from(self.width_pt))
@@ -57,7 +57,7 @@ impl LineList {
     }
 }
 
-/// Drawable of lines: those of the first list show through what hides them, faintly.
+/// Drawable of lines: those of the first list show faintly through the things that hide them.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     in_sight: Pipelines,
@@ -67,7 +67,7 @@ pub(super) struct Lines {
     plain: VertexBuffer,
 }
 
-/// The pipeline of what is in sight (`covered` false) or behind something (true).
+/// The pipeline of lines in sight (`covered` false) or behind things (true).
 fn spec(covered: bool) -> PipelineSpec<'static> {
     const ATTRIBUTES: [wgpu::VertexAttribute; 4] = wgpu::vertex_attr_array![
         0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4, 3 => Float32

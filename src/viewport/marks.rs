@@ -1,4 +1,4 @@
-//! What is drawn over the voxels as lines and fills: boxes, frusta, the metre grid, brush cells.
+//! Marks that are drawn over the voxels as lines and fills: boxes, frusta, the metre grid, brush cells.
 
 use std::collections::HashSet;
 
@@ -16,7 +16,7 @@ use scene::{Camera, Extent, Optics, SceneBox, SensorRig};
 /// All marks of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Marks {
-    /// Lines that show through what hides them.
+    /// Lines that show through the things that hide them.
     pub see_through: LineList,
     /// Other lines.
     pub plain: LineList,
@@ -30,7 +30,7 @@ const FRUSTUM: [u8; 3] = [122, 196, 255];
 const SHADOW_SPREAD: f64 = 1.5;
 
 impl Marks {
-    /// Of a scene, under its options.
+    /// The marks of a scene, under its options.
     pub fn of(scene: &ViewScene<'_>) -> Self {
         let mut marks = Self::default();
         let (options, extent) = (scene.options, scene.grid.extent());
@@ -133,7 +133,7 @@ impl Marks {
         let optics = Optics::new(camera);
         let [cx, cy] = camera.center_px;
         let at = |u: f64, v: f64| {
-            // Where the lens sees nothing, the frustum ends nearer to its middle.
+            // The frustum ends nearer to its middle where the lens sees nothing.
             let towards = |share: f64| optics.direction(cx + (u - cx) * share, cy + (v - cy) * share);
             let ways = (0..20).map(|i| towards(1.0 - f64::from(i) / 20.0));
             let way = ways.into_iter().find(|d| *d != DVec3::ZERO).unwrap_or(DVec3::Z);
@@ -233,8 +233,8 @@ impl Marks {
     }
 }
 
-/// What is in one of two lists of rectangles (four vertices each) and not at the same place, from the front or from the
-/// back, in the other.
+/// Rectangles (four vertices each) of two lists, without those that both have at the same place, counted from the front
+/// or from the back.
 pub(super) fn differing<V: Copy + PartialEq>(a: &[V], b: &[V]) -> Vec<V> {
     let whole = |vertices: usize| vertices / 4 * 4;
     let same = whole(a.iter().zip(b).take_while(|(a, b)| a == b).count());
@@ -248,7 +248,7 @@ pub(super) fn differing<V: Copy + PartialEq>(a: &[V], b: &[V]) -> Vec<V> {
     [&a[..a.len() - same], &b[..b.len() - same]].concat()
 }
 
-/// What some points and what is drawn around them, up to so many pixels wide, change of a picture.
+/// The change of a picture by some points and what is drawn around them, up to `around_px` pixels wide.
 pub(super) fn marked(points_m: impl Iterator<Item = DVec3>, around_px: f64) -> Change {
     let mut points_m = points_m.peekable();
     if points_m.peek().is_none() {

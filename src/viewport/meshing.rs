@@ -24,7 +24,7 @@ impl Solidity {
     /// Empty columns on each side of the grid.
     pub const MARGIN: usize = 16;
 
-    /// Of a grid that holds nothing.
+    /// The solidity of a grid that holds nothing.
     pub fn empty(extent: Extent) -> Self {
         let [w, h] = [extent.nx(), extent.ny()].map(|n| n + 2 * Self::MARGIN);
         Self {
@@ -33,7 +33,7 @@ impl Solidity {
         }
     }
 
-    /// Of a whole grid; see [`Visible`].
+    /// The solidity of a whole grid; see [`Visible`].
     pub fn of(grid: &VoxelGrid, visible: Visible) -> Self {
         let mut solid = Self::empty(grid.extent());
         for (brick, voxels) in grid.bricks().iter().enumerate() {
@@ -47,7 +47,7 @@ impl Solidity {
         self.extent
     }
 
-    /// From a column to the one beside it along x, in [`Solidity::padded`].
+    /// Distance from a column to the one beside it along x, in [`Solidity::padded`].
     #[inline]
     pub fn stride(&self) -> usize {
         self.extent.ny() + 2 * Self::MARGIN
@@ -105,7 +105,7 @@ pub fn join(a: Option<ColumnBox>, b: Option<ColumnBox>) -> Option<ColumnBox> {
     Some((low, high))
 }
 
-/// What is shown of a grid.
+/// The visible part of a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Visible {
     /// Bit c hides class c.
@@ -115,7 +115,7 @@ pub struct Visible {
 }
 
 impl Visible {
-    /// Everything that is not free.
+    /// All voxels that are not free.
     pub const ALL: Visible = Visible {
         hidden_classes: 0,
         below_clip: u16::MAX,

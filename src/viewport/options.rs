@@ -1,9 +1,9 @@
-//! What one picture shows, and how.
+//! Content and options of one picture.
 
 use super::GROUND_TOP_M;
 use scene::{BoxId, LidarSweep, SceneBox, SensorRig, VoxelGrid};
 
-/// What is behind the scene.
+/// Background behind the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
     /// Vertical gradient, sRGB.
@@ -13,7 +13,7 @@ pub enum Background {
         /// At the lower edge.
         bottom: [u8; 3],
     },
-    /// Nothing: alpha 0. Fog is off.
+    /// No background: alpha 0. Fog is off.
     Transparent,
 }
 
@@ -41,7 +41,7 @@ pub enum LayoutPlane {
     Always,
 }
 
-/// What is shown and how.
+/// Options of a picture: what is shown and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewOptions {
     /// Show the occupancy.
@@ -64,9 +64,9 @@ pub struct ViewOptions {
     pub boxes: bool,
     /// A colour of its own for each box, by its number, in place of its class's.
     pub by_track: bool,
-    /// How much lower than they are boxes, ego vehicle and cameras are drawn, m. The voxels' ground lies 0.6 m below the
-    /// physical one ([`GROUND_TOP_M`]), so with this things stand on the drawn road. Code that picks boxes in the view adds
-    /// it to the ray's z first. 0 draws them where they are.
+    /// How much lower than their height boxes, ego vehicle and cameras are drawn, m. The voxels' ground lies 0.6 m
+    /// below the physical one ([`GROUND_TOP_M`]), so things that are lowered by that stand on the drawn road. Code that
+    /// picks boxes in the view adds this to the ray's z first. 0 draws them at their height.
     pub drop_m: f64,
     /// LiDAR returns.
     pub lidar: bool,
@@ -78,7 +78,7 @@ pub struct ViewOptions {
     pub frusta: bool,
     /// Lines on the ground every 10 m, and axes.
     pub grid_lines: bool,
-    /// What is behind.
+    /// The background behind the scene.
     pub background: Background,
     /// Samples per pixel: 1, or 4 for smooth edges; other values mean 1.
     pub samples: u32,
@@ -130,7 +130,7 @@ pub struct BrushCells<'a> {
     pub color: [u8; 3],
 }
 
-/// All that one picture shows, borrowed.
+/// Content of one picture, borrowed.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewScene<'a> {
     /// Occupancy.
@@ -149,7 +149,7 @@ pub struct ViewScene<'a> {
     pub lidar: Option<LidarView<'a>>,
     /// Sensors and ego vehicle.
     pub rig: &'a SensorRig,
-    /// What is shown.
+    /// Options: what is shown and how.
     pub options: &'a ViewOptions,
 }
 

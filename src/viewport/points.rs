@@ -21,7 +21,7 @@ struct PointVertex {
 
 const _: () = assert!(size_of::<PointVertex>() == 16);
 
-/// What the colour of a LiDAR return tells.
+/// Meaning of the colour of a LiDAR return.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LidarColorMode {
     /// Distance from the sensor: near is warm, far is cool; the scale ends at 50 m.
@@ -81,7 +81,7 @@ fn ramp(t: f32) -> [u8; 4] {
     [mix(0), mix(1), mix(2), 255]
 }
 
-/// Edge of a square of the ground, m, and squares along a side; the outermost hold what is beyond them too.
+/// Edge of a square of the ground, m, and squares along a side; the outermost also hold the returns beyond them.
 const SQUARE_M: f32 = 8.0;
 const SQUARES: usize = 16;
 
@@ -140,8 +140,8 @@ impl Drawable for Points {
             .build(samples, || spec.build(gpu.device, gpu.shared, samples));
     }
 
-    /// Draws the squares in view. What `clip` maps beyond -1 or 1 is not: it leaves room for the discs, see
-    /// [`Points::reach_px`].
+    /// Draws the squares in view. A square beyond -1 or 1 in the space of `clip` is out of view: `clip` leaves room for
+    /// the discs, see [`Points::reach_px`].
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
         if layer != Layer::Opaque || !self.pipelines.set(pass, view) {
             return;
@@ -175,16 +175,16 @@ fn square_of([x, y, _]: [f32; 3]) -> usize {
 }
 
 impl Points {
-    /// How far a disc of `point_px` may reach from the point, px: the triangle around it is twice as large as it is, and
-    /// nearby it is twice as large as was asked for.
+    /// How far a disc of `point_px` may reach from the point, px: the triangle around a disc is twice as large as the
+    /// disc, and a disc nearby is twice as large as `point_px`.
     pub fn reach_px(point_px: f64) -> f64 {
         4.0 * point_px + 2.0
     }
 
-    /// Uploads the returns; a return without a colour is white, a non-finite one is left out. What is seen differently
-    /// by that, with discs of `point_px`.
+    /// Uploads the returns; a return without a colour is white, a non-finite one is left out. Returns which part of the
+    /// picture changes, with discs of `point_px`.
     fn write(&mut self, gpu: Gpu<'_>, sweep: &LidarSweep, colors: &[[u8; 4]], point_px: f64) -> Change {
-        // The ground is drawn where the labels have it; so is what was measured on the physical one.
+        // The ground is drawn where the labels have it, so returns on the physical ground are moved with it.
         let lift_m = if sweep.physical {
             super::GROUND_TOP_M as f32
         } else {

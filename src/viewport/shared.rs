@@ -1,4 +1,4 @@
-//! What every drawable shares on the device: uniforms, scene textures, one index buffer, pipelines.
+//! Resources that all drawables share on the device: uniforms, scene textures, one index buffer, pipelines.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -41,7 +41,7 @@ const FOG_OVER_M: f64 = 80.0;
 pub const FRAME_UNIFORM_BYTES: usize = size_of::<FrameUniforms>();
 
 impl FrameUniforms {
-    /// Of one picture of a map; `jitter_px` shifts it by parts of a pixel.
+    /// The uniforms of one picture of a map; `jitter_px` shifts it by parts of a pixel.
     pub fn new(
         camera: &ViewCamera,
         options: &ViewOptions,
@@ -127,7 +127,7 @@ pub(super) struct Shared {
     of_map: OfMap,
 }
 
-/// What is as large as the map.
+/// Resources as large as the map.
 #[derive(Debug)]
 struct OfMap {
     extent: Extent,
@@ -209,7 +209,7 @@ impl Shared {
         );
     }
 
-    /// Both as RGBA8, sRGB, straight alpha, `[y][x]` of the map.
+    /// Uploads both textures as RGBA8, sRGB, straight alpha, `[y][x]` of the map.
     pub fn write_layout(&self, queue: &wgpu::Queue, markings: &[[u8; 4]], plane: &[[u8; 4]]) {
         let OfMap { extent, .. } = self.of_map;
         for (texture, texels) in [(&self.of_map.markings, markings), (&self.of_map.layout, plane)] {
@@ -493,7 +493,7 @@ impl VertexBuffer {
         self.draw_quads_as(pass, shared, quads, 0);
     }
 
-    /// The same, as an instance of this number.
+    /// Draws rectangles as [`Self::draw_quads`] does, as an instance of this number.
     pub fn draw_quads_as(
         &self,
         pass: &mut wgpu::RenderPass<'_>,

@@ -51,12 +51,12 @@ impl Target {
         }
     }
 
-    /// True if what was drawn is kept, colour and depth: one sample a pixel.
+    /// True if the last drawing is kept, colour and depth: with one sample a pixel.
     pub fn keeps(&self) -> bool {
         self.multisampled.is_none()
     }
 
-    /// Starts a pass that clears both, or goes on with what is kept.
+    /// Starts a pass that clears colour and depth, or continues on the kept ones.
     pub fn begin<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, go_on: bool) -> wgpu::RenderPass<'e> {
         let go_on = go_on && self.keeps();
         let (view, resolve_target) = match &self.multisampled {

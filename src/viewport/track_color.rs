@@ -1,4 +1,4 @@
-//! A colour for each object that moves, by its number: the same at every moment and in every view.
+//! A colour for each moving object, by its number, equal at every moment and in every view.
 
 use scene::BoxId;
 

@@ -22,9 +22,9 @@ const _: () = assert!(size_of::<UiVertex>() == 20);
 pub struct UiMesh {
     /// Left, top, width, height, pixels, inside the target.
     pub scissor: [u32; 4],
-    /// Of the frame's indices.
+    /// Range of the frame's indices.
     pub indices: std::ops::Range<u32>,
-    /// What is added to them.
+    /// Number that is added to each index.
     pub base_vertex: i32,
 }
 
@@ -44,7 +44,7 @@ pub struct UiPainter {
     canvas: Option<Canvas>,
 }
 
-/// What the window shows; the target that it hands over for a frame does not keep the last one.
+/// The picture that the window shows, kept here because the target of a frame does not keep the last one.
 #[derive(Debug)]
 struct Canvas {
     size: [u32; 2],
@@ -72,7 +72,7 @@ fn uniform(size: u64) -> wgpu::BindingType {
     }
 }
 
-/// What the shader binds: the uniforms of the window, and a texture as egui's renderer binds it.
+/// Layouts of what the shader binds: the uniforms of the window, and a texture as egui's renderer binds it.
 struct Layouts {
     screen: wgpu::BindGroupLayout,
     texture: wgpu::BindGroupLayout,
@@ -183,8 +183,8 @@ fn pipelines(
 }
 
 impl UiPainter {
-    /// For a target of that format, which must not be sRGB-converting. Textures come as bind groups of egui's renderer:
-    /// the layout here is the same entry by entry.
+    /// For a target of that format, which must not be sRGB-converting. Textures come as bind groups of egui's renderer,
+    /// so the layout here equals its layout entry by entry.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let layouts = Layouts::new(device);
         let [wipe, copy, pipeline] = pipelines(device, format, &layouts);
@@ -240,7 +240,7 @@ impl UiPainter {
         queue.write_buffer(&self.indices, 0, indices);
     }
 
-    /// Makes the picture as large as the window, pixels; true if it is a new one, of which nothing is drawn.
+    /// Makes the picture as large as the window, pixels; true if it is a new one that is still empty.
     pub fn fit(&mut self, device: &wgpu::Device, size: [u32; 2]) -> bool {
         let size = size.map(|s| s.max(1));
         if self.canvas.as_ref().is_some_and(|c| c.size == size) {
@@ -276,8 +276,8 @@ impl UiPainter {
         true
     }
 
-    /// Draws some rectangles of the picture again, pixels: `parts` says what of the frame uploaded last lies in one, each
-    /// with its texture.
+    /// Draws some rectangles of the picture again, pixels. `parts` gives the meshes of the last uploaded frame in a
+    /// rectangle, each with its texture.
     pub fn draw<'t>(
         &self,
         device: &wgpu::Device,

@@ -1,4 +1,4 @@
-//! The 3D view: the picture drawn last, and what it was drawn from.
+//! The 3D view: the last picture, and the state that it was drawn from.
 
 use std::hash::{DefaultHasher, Hasher as _};
 
@@ -180,7 +180,7 @@ impl Viewport {
         }
     }
 
-    /// Draws all of a picture, or only what lies in a rectangle of it.
+    /// Draws all of a picture, or only a rectangle of it.
     fn draw(
         &self,
         device: &wgpu::Device,

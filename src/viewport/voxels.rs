@@ -18,7 +18,7 @@ use scene::{Extent, VoxelGrid};
 /// A vertex is one word; see [`BrickMesh::vertices`].
 const STRIDE: usize = 4;
 
-/// Light is baked in squares of so many columns: what that takes is bounded, whatever the map's size.
+/// Light is baked in squares of so many columns, so that the cost of one is bounded whatever the map's size.
 const TILE: usize = 256;
 
 /// How far the picture of a voxel reaches beyond its projection, px.
@@ -35,7 +35,7 @@ pub(super) struct Voxels {
     bricks: Vec<BrickBuffer>,
 }
 
-/// What is shown, as last uploaded.
+/// The voxels that are shown, as last uploaded.
 #[derive(Debug)]
 struct Held {
     grid: VoxelGrid, // holding it keeps the addresses of its bricks unique
@@ -49,7 +49,7 @@ struct BrickBuffer {
     quads: [std::ops::Range<u32>; 6],
 }
 
-/// What is shown under these options.
+/// The visible part of a grid under these options.
 pub(super) fn visible(options: &ViewOptions) -> Visible {
     if !options.voxels {
         return Visible {
@@ -93,8 +93,8 @@ impl Drawable for Voxels {
             .build(samples, || spec.build(gpu.device, gpu.shared, samples));
     }
 
-    /// Draws the bricks in view, nearest first, and of each only the sides that face the eye. What `clip` maps beyond -1
-    /// or 1 is out of view.
+    /// Draws the bricks in view, nearest first, and of each only the sides that face the eye. A brick beyond -1 or 1 in
+    /// the space of `clip` is out of view.
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
         if layer != Layer::Opaque || !self.pipelines.set(pass, view) {
             return;
@@ -127,7 +127,7 @@ impl Held {
         }
     }
 
-    /// Takes over a grid of the same extent: which bricks are to be meshed again, and the columns whose shape changed.
+    /// Takes over a grid of the same extent. Returns the bricks to mesh again, and the columns whose shape changed.
     fn take(
         &mut self,
         grid: &VoxelGrid,
@@ -174,7 +174,7 @@ impl Voxels {
             .resize_with(self.held.grid.bricks().len(), BrickBuffer::default);
     }
 
-    /// Takes over a grid; what of it is seen differently now.
+    /// Takes over a grid. Returns which part of the picture changes.
     fn update(&mut self, gpu: Gpu<'_>, grid: &VoxelGrid, visible: Visible) -> Change {
         let resized = grid.extent() != self.held.grid.extent();
         if resized {

@@ -1,4 +1,4 @@
-//! What a format that is written is made of, and what it may ask for.
+//! Exporters: the description of a format that is written, and the products that it may ask for.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -12,20 +12,21 @@ use crate::{FormatError, Holds};
 pub struct Exporter {
     /// Name on the command line.
     pub id: &'static str,
-    /// What it holds, for a person.
+    /// Title, for a person: what the format holds.
     pub title: &'static str,
     /// Name of the file where only a folder is given; `None` for formats that fill a folder.
     pub file_name: Option<&'static str>,
-    /// What a file holds.
+    /// Kinds of content in a file.
     pub holds: &'static [Holds],
-    /// What of that does not come back when the format is read again, for a person; empty if all of it does.
+    /// Parts of that content that do not come back when the format is read again, for a person; empty if all of it
+    /// does.
     pub lost: &'static str,
     /// How much of time it holds.
     pub span: Span,
-    /// What must be made of the scene first; the dialog shows the options for it.
+    /// Products that must be made of the scene first; the dialog shows the options for them.
     pub needs: &'static [Product],
-    /// The files. Of a moment: the scene stands still and is in the ego frame. Of a clip: the scene is whole and in the world
-    /// frame. Errors in one line; nothing is written by then.
+    /// Makes the files. With [`Span::Moment`] the scene stands still and is in the ego frame; with [`Span::Clip`] it is
+    /// whole and in the world frame. Errors in one line; nothing is written by then.
     pub write: fn(&Scene, &mut dyn Products) -> Result<Vec<OutFile>, FormatError>,
 }
 
@@ -50,7 +51,7 @@ pub enum Span {
     Clip,
 }
 
-/// What sensors, networks or the graphics card make of a scene.
+/// Data that sensors, networks or the graphics card make of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Product {
     /// How often sensors see each box.
@@ -74,8 +75,8 @@ pub enum Product {
 /// Makes the products of one scene when a format asks for them. Errors in one line: the rig lacks the sensor, a network or a
 /// device is missing, or the export was cancelled.
 pub trait Products {
-    /// Another moment of the clip: what is made from now on is of that one, in its ego frame. Errors once the export was
-    /// cancelled.
+    /// Goes to another moment of the clip: products that are made from now on are of that moment, in its ego frame.
+    /// Errors once the export was cancelled.
     fn show(&mut self, time_s: f64) -> Result<(), FormatError>;
     /// How often sensors see each box.
     fn seen(&mut self) -> Result<Seen, FormatError>;
@@ -93,8 +94,9 @@ pub trait Products {
         &mut self,
         take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError>;
-    /// A picture of every camera and the truth about it, made of the same hits, in the order of the rig; each is taken before the
-    /// next is made. Poses and boxes are in the ego frame. Flow leads to the clip's next frame, if there is one.
+    /// A picture of every camera and the truth about it, made of the same hits, in the order of the rig; each is taken
+    /// before the next is made. Poses and boxes are in the ego frame. Flow leads to the clip's next frame, if there is
+    /// one.
     fn truth(
         &mut self,
         take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
@@ -136,7 +138,7 @@ impl Observed {
 /// A picture to be written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Who took it: a camera of the rig; empty for the 3D view.
+    /// The camera of the rig that took it; empty for the 3D view.
     pub camera: String,
     /// Pixels per row.
     pub width: usize,
@@ -151,7 +153,7 @@ pub struct Picture {
 pub struct OutFile {
     /// Its path in a folder: names of letters, digits and `-_.` with `/` between them.
     pub name: String,
-    /// What goes into it.
+    /// Content of the file.
     pub bytes: Vec<u8>,
 }
 
@@ -171,7 +173,7 @@ impl OutFile {
         }
     }
 
-    /// The same in a folder of the export's folder.
+    /// Puts the file into a folder within the export's folder.
     pub(crate) fn within(self, folder: &str) -> Self {
         let tidy = |part: &str| match part {
             "." | ".." => "_".to_owned(),

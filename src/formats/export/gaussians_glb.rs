@@ -31,11 +31,11 @@ const FLOAT: u32 = 5126;
 const UNSIGNED_BYTE: u32 = 5121;
 const ARRAY_BUFFER: u32 = 34962;
 
-/// GLB 2.0, y up: our (x, y, z) is (x, z, -y) there. Each box is a node with a mesh of one primitive of mode POINTS, and so is each
-/// class of what belongs to no box, and the sky. Attributes besides those of the extension: `COLOR_0` for viewers that do not
-/// know it (linear, as glTF wants it), `_CLASS` (as in truth maps) and `_STRENGTH` (of a LiDAR's echo, 0 to 255). Node `extras`
-/// name class and instance, those of the scene the recipe and all classes. Errors where there is no Gaussian, or more than 4 GiB
-/// of them: a GLB holds no more.
+/// GLB 2.0, y up: our (x, y, z) is (x, z, -y) there. Each box is a node with a mesh of one primitive of mode POINTS; so
+/// is each class of the Gaussians that belong to no box, and so is the sky. Attributes besides those of the extension:
+/// `COLOR_0` for viewers that do not know it (linear, as glTF wants it), `_CLASS` (as in truth maps) and `_STRENGTH`
+/// (of a LiDAR's echo, 0 to 255). `extras` of a node name class and instance; those of the scene hold the recipe and
+/// all classes. Errors if there is no Gaussian, or if there are more than 4 GiB of them, the most that a GLB holds.
 pub fn to_bytes(scene: &GaussianScene, recipe: &Recipe) -> Result<Vec<u8>, FormatError> {
     let mut parts: Vec<&SceneGaussian> = scene.gaussians.iter().collect();
     if parts.is_empty() {

@@ -95,8 +95,8 @@ fn told(scene: &Scene) -> Told {
     }
 }
 
-/// The voxels of each box, and all others: a box has those of its class in its footprint, and around it those that are in no
-/// other's.
+/// Takes the voxels of each box apart from all others. A box has the voxels of its class in its footprint, and those in
+/// the margin around it that are in no other box's footprint.
 fn apart(frame: &Frame) -> (VoxelGrid, BTreeMap<BoxId, ObjectVoxels>) {
     let extent = frame.extent();
     let mut owners: BTreeMap<(usize, Class), BoxId> = BTreeMap::new();

@@ -11,7 +11,7 @@ use super::{Exporter, OutFile, Product, Products, Span};
 use crate::las::{CLASS_FIELD, RING_FIELD, SOFTWARE, asprs_of, record_length};
 use crate::{FormatError, Holds};
 
-/// As it is; see [`to_bytes`].
+/// LAS without compression; see [`to_bytes`].
 pub const EXPORTER: Exporter = Exporter {
     id: "las",
     title: "LiDAR: LAS 1.4 for GIS, ego frame, with ASPRS and Occ3D class, intensity, ring, time",
@@ -23,7 +23,7 @@ pub const EXPORTER: Exporter = Exporter {
     write: |scene, products| write(scene, products, "lidar.las", false),
 };
 
-/// Compressed; see [`to_bytes`].
+/// LAZ: LAS with compression; see [`to_bytes`].
 pub const PACKED: Exporter = Exporter {
     id: "laz",
     title: "LiDAR: LAZ, the same as LAS compressed",
@@ -184,7 +184,7 @@ fn descriptions() -> Vec<u8> {
     out
 }
 
-/// Text with zeros after it; what is too long is cut.
+/// Text with zeros after it; text that is too long is cut.
 fn padded<const N: usize>(text: &str) -> [u8; N] {
     let mut out = [0; N];
     let length = text.len().min(N - 1);

@@ -68,7 +68,7 @@ pub fn all() -> &'static [&'static Exporter] {
     TABLE
 }
 
-/// What *all* writes: every format but Gaussians, which take a minute and more.
+/// The formats that *all* writes: every format but Gaussians, which take a minute and more.
 pub fn usual() -> Vec<&'static Exporter> {
     let is_slow = |f: &&'static Exporter| f.needs.contains(&Product::Gaussians);
     all().iter().copied().filter(|f| !is_slow(f)).collect()

@@ -16,7 +16,7 @@ pub const EXPORTER: Exporter = Exporter {
     span: Span::Moment,
     needs: &[Product::Observed],
     write: |scene, products| {
-        // A map of another extent is cut to what the format holds.
+        // A map of another extent is cut to the window of the format.
         let frame = scene.frame();
         voxels::check(frame)?;
         let labels = frame.occupancy.crop(Extent::WINDOW);
@@ -35,8 +35,8 @@ pub const EXPORTER: Exporter = Exporter {
     },
 };
 
-/// Per column of the window a bit for each voxel that holds something, or of which the data set that the frame is from does
-/// not say that nothing observed it: free means unknown there, whatever rays pass it now.
+/// A bit for each voxel per column of the window, set if its content is known: the voxel is not free, or the frame's
+/// data set does not say that nothing observed it. In other voxels free means unknown, whatever rays pass them now.
 fn known(frame: &Frame) -> Vec<u16> {
     let unobserved = frame.inferred.unobserved.as_ref();
     let unobserved = unobserved.map(|u| u.crop(Extent::WINDOW));
@@ -53,7 +53,7 @@ fn known(frame: &Frame) -> Vec<u16> {
     Extent::WINDOW.all_columns().map(word).collect()
 }
 
-/// A flag per voxel `[x][y][z]` from a word per column; only what is known counts.
+/// A flag per voxel `[x][y][z]` from a word per column; a voxel that is not known is not set.
 fn mask(words: &[u16], known: &[u16]) -> Vec<bool> {
     let both = words.iter().zip(known).map(|(word, known)| word & known);
     both.flat_map(|word| (0..Extent::NZ).map(move |z| word >> z & 1 == 1))

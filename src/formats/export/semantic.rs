@@ -40,7 +40,7 @@ pub const EXPORTER: Exporter = Exporter {
     },
 };
 
-/// Label of the class "others", which shares render id 0 with nothing at all.
+/// Label of the class "others", which shares render id 0 with pixels that show nothing.
 const OTHERS: u8 = RENDER_IDS as u8;
 
 /// Labels of a map: render ids, and [`OTHERS`] where a surface of that class is.

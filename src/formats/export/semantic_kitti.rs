@@ -1,4 +1,4 @@
-//! Occupancy as the voxels of SemanticKITTI: what is there, and what one scan sees of it.
+//! Occupancy as the voxels of SemanticKITTI: the labels, and which voxels one scan sees.
 
 use glam::DVec3;
 use scene::solid::fill::SMEAR;
@@ -23,7 +23,7 @@ pub const EXPORTER: Exporter = Exporter {
     write,
 };
 
-/// A scan's points that are exact lie on the faces of voxels; so far along the ray they lie in them, m.
+/// Points of an exact sweep lie on the faces of voxels; moved by this along the ray they lie inside, m.
 const INTO_M: f64 = 0.02;
 
 fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, FormatError> {
@@ -56,8 +56,8 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
     ])
 }
 
-/// True at a point of the map of which the scene knows what is there: not beyond its edge, and not where a data set's masks
-/// say that nothing observed it.
+/// True at a point of the map whose content the scene knows: within its edge, and not where a data set's masks say that
+/// nothing observed it.
 fn is_known(frame: &Frame, p_in_ego: DVec3) -> bool {
     frame.extent().voxel_at(p_in_ego).is_some_and(|[x, y, z]| {
         let unobserved = frame.inferred.unobserved.as_ref();
@@ -78,8 +78,8 @@ fn is_seen(physical: &Physical, observed: &Observed, p_in_ego: DVec3) -> bool {
     word.is_some_and(|word| u32::from(*word) >> bin & 1 == 1)
 }
 
-/// The cells in which a sweep has points. An exact sweep met the ground where Occ3D has it: its points there are raised, and
-/// only those count that lie in something.
+/// The cells in which a sweep has points. An exact sweep met the ground where Occ3D has it: its points there are
+/// raised, and only points in a labelled cell count.
 fn scan(sweep: &LidarSweep, labels: &[u16], pose: &Pose) -> Vec<bool> {
     let mut cells = vec![false; CELLS];
     for point in &sweep.points {

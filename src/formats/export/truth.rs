@@ -75,7 +75,7 @@ pub fn of_camera(
     Ok(files)
 }
 
-/// As the view *Normals* shows them: right red, up green, towards the camera blue; grey where there is none.
+/// Colour of a normal as in the view *Normals*: right red, up green, towards the camera blue; grey where there is none.
 fn normal_rgba([x, y, z]: [f32; 3]) -> [u8; 4] {
     let [r, g, b] = [x, -y, -z].map(|v| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 255.0).round() as u8);
     [r, g, b, 255]
@@ -108,7 +108,7 @@ fn arrays(truth: &CameraTruth) -> std::io::Result<Vec<u8>> {
     npz::to_bytes(&arrays)
 }
 
-/// What one camera sees of the boxes.
+/// The boxes that one camera sees, as JSON.
 pub fn boxes(truth: &CameraTruth) -> Value {
     json!({
         "camera": truth.camera.name,

@@ -23,9 +23,9 @@ pub(crate) struct PicturePlaces<'a>(Numbers<'a>);
 
 /// Indices of corners, or simply their order.
 pub(crate) enum Indices<'a> {
-    /// As listed.
+    /// The indices that the file lists.
     Listed(Numbers<'a>),
-    /// The corners in their order; how many there are.
+    /// No list: the corners in their order, so many of them.
     InOrder(u64),
 }
 
@@ -41,7 +41,7 @@ pub(crate) struct Numbers<'a> {
 }
 
 impl<'a> Positions<'a> {
-    /// From an accessor. Errors in one line where it is none of positions, or not within its buffer.
+    /// From an accessor. Errors in one line if it holds no positions, or does not lie within its buffer.
     pub(crate) fn new(root: &Root, buffers: &'a Buffers<'_>, index: usize) -> Result<Self, FormatError> {
         let accessor = get(&root.accessors, index, "accessor")?;
         let numbers = Numbers::new(root, buffers, accessor, index)?;
@@ -97,7 +97,7 @@ impl<'a> Positions<'a> {
         self.numbers.count
     }
 
-    /// One of them; `None` if there are not so many.
+    /// The position of a corner; `None` beyond the last one.
     pub(crate) fn get(&self, i: u64) -> Option<DVec3> {
         match self.replaced.get(&i) {
             Some(replaced) if i < self.numbers.count => Some(*replaced),
@@ -107,7 +107,8 @@ impl<'a> Positions<'a> {
 }
 
 impl<'a> PicturePlaces<'a> {
-    /// From an accessor. Errors in one line where it is none of two numbers each, or not within its buffer.
+    /// From an accessor. Errors in one line if it does not hold two numbers for each corner, or does not lie within its
+    /// buffer.
     pub(crate) fn new(root: &Root, buffers: &'a Buffers<'_>, index: usize) -> Result<Self, FormatError> {
         let accessor = get(&root.accessors, index, "accessor")?;
         let numbers = Numbers::new(root, buffers, accessor, index)?;
@@ -119,7 +120,7 @@ impl<'a> PicturePlaces<'a> {
         }
     }
 
-    /// One of them; `None` if there are not so many.
+    /// The place of a corner; `None` beyond the last one.
     pub(crate) fn get(&self, i: u64) -> Option<DVec2> {
         let [x, y] = self.0.parts(i)?;
         Some(DVec2::new(x, y))

@@ -1,4 +1,4 @@
-//! Which class and paint a thing has by what it is called: `Car_01`, `SM_TrafficCone`, `vehicle-truck-yellow`, `roadAsphalt`.
+//! Class and paint of a thing by its name: `Car_01`, `SM_TrafficCone`, `vehicle-truck-yellow`, `roadAsphalt`.
 
 use scene::{Class, Paint};
 
@@ -159,7 +159,7 @@ const SEVERAL: [&str; 9] = [
     "objects",
 ];
 
-/// What a name says.
+/// Meaning of a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Said {
     /// The class, if a word tells it.
@@ -170,7 +170,7 @@ pub(crate) struct Said {
     pub(crate) nothing: bool,
 }
 
-/// What a name says. Names of our own classes count as they are.
+/// Reads the meaning of a name. Names of the program's own classes are taken literally.
 pub(crate) fn said(name: &str) -> Said {
     let words = words(name);
     let has = |word: &str| words.iter().any(|w| w == word);

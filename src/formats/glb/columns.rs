@@ -1,4 +1,4 @@
-//! Foreign meshes to voxels: surfaces of what stands still, and columns of things, in the convention of the labels.
+//! Foreign meshes to voxels: surfaces of still parts, and columns of things, in the convention of the labels.
 
 use glam::DVec3;
 use scene::raster::box_cells;
@@ -8,7 +8,7 @@ use scene::{Class, Extent, SceneBox, VoxelGrid};
 use super::surface::Surface;
 use crate::FormatError;
 
-/// The surfaces of what stands still, as they are measured; ground apart.
+/// The surfaces of still parts at their measured height; ground apart.
 pub(crate) struct Statics {
     surface: Surface,
     stands: VoxelGrid,
@@ -55,7 +55,8 @@ impl Statics {
         touched
     }
 
-    /// Puts all into a grid in the convention of the labels: ground two bins lower, what stands on it reaching down to it.
+    /// Puts all into a grid in the convention of the labels: ground two bins lower, and things on it reaching down to
+    /// it.
     pub(crate) fn finish(self, grid: &mut VoxelGrid) -> Result<(), FormatError> {
         self.surface.finish()?;
         for [x, y] in grid.extent().all_columns() {
@@ -96,12 +97,12 @@ pub(crate) struct Heights {
     /// First column, and how many along x and y.
     from: [usize; 2],
     size: [usize; 2],
-    /// Along y first; `NEG_INFINITY` where nothing was found.
+    /// `[x][y]` from the first column on; `NEG_INFINITY` where nothing was found.
     top: Vec<f64>,
 }
 
 impl Heights {
-    /// Nothing yet of a thing with this box.
+    /// The heights of a thing with this box, none found yet.
     pub(crate) fn new(extent: Extent, b: &SceneBox) -> Self {
         let reach = DVec3::new(1.0, 1.0, 0.0) * (b.size_m.truncate().length() / 2.0);
         let [low, high] = [-reach, reach].map(|r| extent.to_voxel_units(b.center_m + r));
@@ -131,8 +132,8 @@ impl Heights {
         });
     }
 
-    /// Fills the columns of the box from the ground to what was found there. As in the draft of a box, a voxel counts once a
-    /// sixth of it is filled.
+    /// Fills the columns of the box from the ground to the height that was found there. A voxel counts once a sixth of
+    /// it is filled, as in the draft of a box.
     pub(crate) fn fill(self, b: &SceneBox, grid: &mut VoxelGrid) -> Result<(), FormatError> {
         self.surface.finish()?;
         let extent = grid.extent();

@@ -10,7 +10,7 @@ const BIN: &[u8; 4] = b"BIN\0";
 const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
 
-/// What a GLB file holds.
+/// The chunks of a GLB file.
 pub(crate) struct Chunks<'a> {
     /// The document, as UTF-8.
     pub(crate) json: &'a [u8],

@@ -40,14 +40,14 @@ const HARMLESS: [&str; 8] = [
 
 /// A document that was read, and the nodes of its scene.
 pub(crate) struct Document<'a> {
-    /// As in the file.
+    /// The JSON document as in the file.
     pub(crate) root: Root,
     /// Every node that the scene shows, parents before their children.
     pub(crate) nodes: Vec<Node>,
     /// Name of the scene; empty without one.
     pub(crate) scene_name: String,
     buffers: Vec<Cow<'a, [u8]>>,
-    /// What is beside it is read from here.
+    /// The file itself; other files beside it are read through this.
     source: &'a Source<'a>,
 }
 
@@ -65,14 +65,14 @@ pub(crate) struct Node {
     pub(crate) extras: Option<String>,
 }
 
-/// What was left out while triangles were read.
+/// Parts that were left out while triangles were read, counted by kind.
 #[derive(Default)]
 pub(crate) struct LeftOut {
     counts: BTreeMap<&'static str, usize>,
 }
 
 impl LeftOut {
-    /// Counts one of a kind.
+    /// Adds `n` to the count of a kind.
     pub(crate) fn add(&mut self, what: &'static str, n: usize) {
         if n > 0 {
             *self.counts.entry(what).or_default() += n;
@@ -148,7 +148,8 @@ impl<'a> Document<'a> {
         Ok(())
     }
 
-    /// Where the corners of a primitive are in the pictures of that set; `None` where it does not say so.
+    /// Places of a primitive's corners in the pictures of that set; `None` if the primitive has no such set or it
+    /// cannot be read.
     pub(crate) fn picture_places(&self, primitive: &Primitive, set: u32) -> Option<PicturePlaces<'_>> {
         let semantic = Checked::Valid(Semantic::TexCoords(set));
         let accessor = primitive.attributes.get(&semantic)?;
@@ -334,7 +335,8 @@ fn percent_decoded(uri: &str) -> String {
     String::from_utf8_lossy(&out).into_owned()
 }
 
-/// The nodes of the scene, parents first, and the scene's name. Without a scene all nodes that are nobody's children.
+/// The nodes of the scene, parents first, and the scene's name. Without a scene it begins at all nodes that are no
+/// node's child.
 fn nodes(root: &Root) -> Result<(Vec<Node>, String), FormatError> {
     let shown = match (root.scene, root.scenes.len()) {
         (Some(scene), _) => Some(get(&root.scenes, scene.value(), "scene")?),
@@ -396,7 +398,7 @@ fn local(node: &JsonNode) -> DAffine3 {
     let turn = node
         .rotation
         .map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
-    // A quaternion of no length turns nothing.
+    // A quaternion of no length is taken as no rotation.
     let turn = match turn.length() > 1e-6 && turn.is_finite() {
         true => turn.normalize(),
         false => DQuat::IDENTITY,

@@ -1,7 +1,9 @@
-//! Meshes of other programs: a whole scene, whose things are told by their names, or a single model, which becomes one box.
+//! Meshes of other programs: a whole scene, whose things are told by their names, or a single model, which becomes one
+//! box.
 //!
-//! A scene keeps its axes as the programs write them that have z up themselves: x stays x, -z becomes y, y becomes z. The
-//! ground is taken to be near z = 0 and is put where the labels have it, two voxels lower; what stands on it reaches down to it.
+//! The axes of a scene are turned as programs with z up do when they write glTF: x stays x, -z becomes y, y becomes z.
+//! The ground is taken to be near z = 0 and is put where the labels have it, two voxels lower; things on it reach down
+//! to it.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,10 +25,10 @@ use crate::import::Loaded;
 const MODEL_M: f64 = 25.0;
 /// Most columns of a foreign map along a side: 819 m.
 const MOST_SIDE: i32 = 2048;
-/// Something without a telling name is ground if it is lower than the first and longer than the second, m.
+/// A thing without a telling name is ground if it is lower than the first and longer than the second, m.
 const FLAT_M: f64 = 0.5;
 const LONG_M: f64 = 5.0;
-/// And manmade if it is larger than this, m.
+/// A thing without a telling name that is no ground is manmade if its longest side is longer than this, m.
 const LARGE_M: f64 = 2.5;
 
 /// The corners of a box along the axes; empty if the first is above the second.
@@ -36,7 +38,7 @@ pub(super) struct Bounds {
     pub(super) high: DVec3,
 }
 
-/// What is known of a node before its voxels are made.
+/// Facts about a node before its voxels are made.
 pub(super) struct About {
     pub(super) said: Said,
     /// Around its own mesh, and around all below it.
@@ -178,7 +180,7 @@ fn model(
     }
 }
 
-/// Class of something without a telling name.
+/// Class of a thing without a telling name.
 fn by_extent(high: &DVec3, low: &DVec3) -> Class {
     let size = *high - *low;
     let long = size.x.max(size.y);
@@ -276,8 +278,8 @@ fn map(
     })
 }
 
-/// Class of a part of what stands still: by its node's name, its material, its mesh and what is around it. `None` where none
-/// of them tells.
+/// Class of a still part: by its node's name, its material, its mesh, or the names around it. `None` if none of them
+/// tells a class.
 pub(super) fn static_class(
     document: &Document<'_>,
     abouts: &[About],
@@ -307,7 +309,8 @@ pub(super) fn each_triangle(
     Ok(())
 }
 
-/// The extent of a map around all that is shown, and the move that brings that onto it, m: none if the origin is within it and
+/// The extent of a map around everything that is shown, and the shift that brings it onto that map, m. Along the ground
+/// the shift is zero if the origin is within it or all of it lies within 400 m of the origin; upwards it is zero if
 /// part of it is at the height of the map.
 fn extent(all: &Bounds) -> (Extent, DVec3) {
     let middle = (all.low + all.high) / 2.0;

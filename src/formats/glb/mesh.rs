@@ -1,7 +1,7 @@
 //! Voxels to meshes: the faces that lie between a voxel and another class, merged to rectangles (greedy meshing).
 //!
-//! A face between two voxels of one mesh is left out, every other one is there, also where it touches another mesh: so each
-//! mesh is a closed surface by itself, and what it holds can be read off it again after it was moved.
+//! A face between two voxels of one mesh is left out. Every other face is there, also where it touches another mesh, so
+//! each mesh is a closed surface by itself. The voxels in it can be told from it again after it was moved.
 
 use std::collections::{BTreeMap, HashMap};
 

@@ -1,4 +1,4 @@
-//! glTF 2.0 and its container GLB: what reading and writing share.
+//! glTF 2.0 and its container GLB: code that reading and writing share.
 //!
 //! A file of ours holds a node with extras of ours (`SceneExtras`), under it a node for each class with the mesh of its voxels, and a
 //! node for each box with the mesh of the voxels that are the box's own. glTF has y up: that node turns
@@ -49,7 +49,7 @@ pub(crate) struct SceneExtras {
     pub(crate) recipe: serde_json::Value,
 }
 
-/// What a file of ours says of its scene. Unknown keys are passed over.
+/// Description of the scene in a file that this program wrote. Unknown keys are passed over.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Told {
     pub(crate) version: u32,
@@ -109,7 +109,7 @@ pub(crate) struct BoxExtras {
 }
 
 impl BoxExtras {
-    /// Of a box, and whether it has voxels of its own.
+    /// The extras of a box; `has_voxels` says whether it has voxels of its own.
     pub(crate) fn of(b: &SceneBox, has_voxels: bool) -> Self {
         Self {
             class: b.class,
@@ -124,7 +124,7 @@ impl BoxExtras {
         }
     }
 
-    /// The box that they tell.
+    /// The box that the extras describe.
     pub(crate) fn scene_box(&self) -> SceneBox {
         SceneBox {
             id: self.id,

@@ -13,7 +13,8 @@ const LOOSE: f64 = 1.1;
 const LONGEST: f64 = 2.5;
 /// A thing may always be so long, m.
 const SHORT_M: f64 = 3.0;
-/// A class is told by size where no side is more than so many times the usual one, or less than that part of it.
+/// A class is told by the size if no side is longer than its usual one times this, or shorter than its usual one
+/// divided by this.
 const ALIKE: f64 = 1.6;
 
 /// Points of a thing, as far as its box needs them.
@@ -30,7 +31,7 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// Of a thing whose node lies so.
+    /// The outline of a thing whose node lies as `world_from_node` says; without points yet.
     pub(crate) fn new(world_from_node: &DAffine3) -> Self {
         let linear = world_from_node.matrix3;
         let level = |axis: DVec3| axis.truncate().try_normalize();
@@ -83,7 +84,8 @@ impl Outline {
             true => sides,
             false => [sides[1], sides[0]],
         };
-        // Whether the longer or the shorter side is the length; of what is usually as long as wide, the standard's front is.
+        // Whether the longer or the shorter side is the length. A class that is usually as long as wide keeps the front
+        // of the standard.
         let swap = class
             .typical_size_m()
             .is_some_and(|[length, width, _]| match length.total_cmp(&width) {
@@ -112,7 +114,7 @@ impl Outline {
     }
 }
 
-/// True if something so long (m, the longer side seen from above) may be one thing of a class.
+/// True if a thing so long (m, the longer side seen from above) may be a single thing of a class.
 pub(crate) fn may_be_one(class: Class, long_m: f64) -> bool {
     let usual = class.typical_size_m().map(|[length, width, _]| length.max(width));
     usual.is_some_and(|usual| long_m <= (LONGEST * usual).max(SHORT_M))

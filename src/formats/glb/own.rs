@@ -1,4 +1,5 @@
-//! Scenes of ours: voxels from their meshes as these lie now, so that what was moved or cut elsewhere comes back as it is seen.
+//! Scenes of this program: voxels come from the meshes as they lie now, so that parts moved or cut elsewhere come back
+//! as they are seen.
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,14 +18,14 @@ use super::{BoxExtras, CLASS_MAP, ClassExtras, SceneExtras, VERSION, class_words
 use crate::FormatError;
 use crate::import::Loaded;
 
-/// Within this a node is where its extras say: it was not moved. m, and the same for parts of a unit vector.
+/// A node within this of where its extras say was not moved: m, and the same for parts of a unit vector.
 const STILL_M: f64 = 2e-3;
 const STILL: f64 = 1e-4;
 
 /// Farthest column of a map from the origin: 400 km.
 const FARTHEST: u32 = 1_000_000;
 
-/// What a node is, by its own extras or those around it.
+/// Role of a node, by its own extras or those of a node around it.
 enum Role {
     /// Voxels of a class.
     Class(Class),
@@ -32,7 +33,8 @@ enum Role {
     Box(Box<BoxExtras>),
 }
 
-/// What a document says of its scene, if it is one of ours. Errors if it is, and newer or otherwise not readable.
+/// The extras that describe the scene of a document; `None` if this program did not write it. Errors if they are of a
+/// newer version, of other classes or otherwise not readable.
 pub(crate) fn extras(document: &Document<'_>) -> Result<Option<SceneExtras>, FormatError> {
     for node in &document.nodes {
         let Some(text) = node
@@ -89,7 +91,7 @@ pub(crate) fn scene(
     let cost = |extent, corners| Solid::cost(extent, corners).max(Surface::cost(extent, corners));
     work::check(document, cost, extent, shown)?;
     let mut occupancy = VoxelGrid::over(extent);
-    // What stands still first: a box that was moved into it is seen in front of it.
+    // Still parts first: a box that was moved into them then shows in front.
     for boxes in [false, true] {
         for (i, node) in document.nodes.iter().enumerate() {
             match role_of(document, &roles, i) {
@@ -137,7 +139,7 @@ fn parsed<T: DeserializeOwned>(node: &Node) -> Option<T> {
     serde_json::from_str(node.extras.as_deref()?).ok()
 }
 
-/// What each node says that it is.
+/// The role that each node has by its own extras. Counts boxes whose extras are not readable.
 fn roles(document: &Document<'_>, left_out: &mut LeftOut) -> Vec<Option<Role>> {
     let mut role = |node: &Node| {
         let text = node.extras.as_deref()?;
@@ -152,7 +154,7 @@ fn roles(document: &Document<'_>, left_out: &mut LeftOut) -> Vec<Option<Role>> {
     document.nodes.iter().map(&mut role).collect()
 }
 
-/// What a node is: what it says, or the nearest one around it.
+/// The role of a node: its own, or that of the nearest node around it that has one.
 fn role_of<'a>(document: &Document<'_>, roles: &'a [Option<Role>], node: usize) -> Option<&'a Role> {
     let around = std::iter::successors(Some(node), |i| document.nodes[*i].parent);
     around.into_iter().find_map(|i| roles[i].as_ref())
@@ -186,7 +188,7 @@ fn add_solid(
     Ok(())
 }
 
-/// Adds the surface of a mesh that is not from us: something was added to the scene elsewhere.
+/// Adds the surface of a mesh that this program did not write: a part that was added to the scene elsewhere.
 fn add_surface(
     document: &Document<'_>,
     node: &Node,

@@ -44,7 +44,7 @@ struct Coat<'a> {
 }
 
 impl<'a> Coats<'a> {
-    /// Of a document.
+    /// The coats of a document; none of its pictures is read yet.
     pub(crate) fn new(document: &'a Document<'a>) -> Self {
         Self {
             document,
@@ -85,7 +85,7 @@ impl<'a> Coats<'a> {
         })
     }
 
-    /// The colour of a primitive; `None` where its material says none, or is seen through.
+    /// The colour of a primitive; `None` if its material has none, or can be seen through.
     fn coat(&mut self, primitive: &Primitive) -> Option<Coat<'_>> {
         let document = self.document;
         let material: &Material = document.root.materials.get(primitive.material?.value())?;
@@ -96,7 +96,7 @@ impl<'a> Coats<'a> {
         let [r, g, b, _] = metal.base_color_factor.0.map(f64::from);
         let factor = DVec3::new(r, g, b);
         let Some(info) = &metal.base_color_texture else {
-            // White is what a material is that says nothing.
+            // White is the default of a material without a colour.
             return (factor != DVec3::ONE).then_some(Coat {
                 factor,
                 picture: None,
@@ -117,7 +117,7 @@ impl<'a> Coats<'a> {
 }
 
 impl Coat<'_> {
-    /// Linear shares in the middle of the triangle of those corners.
+    /// Linear shares in the middle of the triangle between those corners.
     fn at(&self, corners: [u64; 3]) -> Option<DVec3> {
         let Some((picture, places, info)) = &self.picture else {
             return Some(self.factor);
@@ -142,7 +142,7 @@ fn transform(info: &texture::Info) -> Option<&gltf::json::extensions::texture::T
     info.extensions.as_ref()?.texture_transform.as_ref()
 }
 
-/// A PNG or JPEG picture of bounded size; `None` if it is none.
+/// A PNG or JPEG picture of bounded size; `None` if the bytes are no such picture.
 fn decoded(bytes: &[u8]) -> Option<RgbImage> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok()?;
     let mut limits = Limits::default();

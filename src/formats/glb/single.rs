@@ -19,7 +19,7 @@ use super::work;
 use crate::FormatError;
 use crate::import::Loaded;
 
-/// A model around the origin, where the ego vehicle is, is put so far ahead, m.
+/// A model around the origin, where the ego vehicle is, is moved ahead by this, m.
 const AHEAD_M: f64 = 8.0;
 
 /// A single model on open ground.

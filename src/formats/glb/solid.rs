@@ -40,7 +40,7 @@ impl Crossing {
 const ON_BORDER: f32 = 1e-3;
 
 impl Solid {
-    /// Nothing yet.
+    /// A solid on a map, without triangles yet.
     pub(crate) fn new(extent: Extent) -> Self {
         Self {
             extent,

@@ -7,7 +7,7 @@ use scene::Extent;
 use super::work::{MOST_WORK, RIM};
 use crate::FormatError;
 
-/// Surfaces are moved up by so much, in voxels: one that lies on the border of two voxels belongs to the upper one alone.
+/// Surfaces are moved up by this, in voxels, so that one on the border of two voxels belongs to the upper one alone.
 const NUDGE: f64 = 1e-4;
 
 /// Passes triangles on column by column, as long as that takes a bearable time.
@@ -16,7 +16,7 @@ pub(crate) struct Surface {
     visits: u64,
 }
 
-/// A corner of what is left of a triangle; at most seven after four cuts.
+/// The corners of a triangle after cuts; at most seven after four cuts.
 struct Corners {
     list: [DVec3; 8],
     count: usize,
@@ -28,7 +28,7 @@ impl Surface {
         Self { extent, visits: 0 }
     }
 
-    /// What [`visit`](Self::visit) will cost for a triangle (m), told without doing it: as many units as columns that the
+    /// Cost of [`visit`](Self::visit) for a triangle (m), told without doing it: one unit for each column that the
     /// triangle covers wholly, and [`RIM`] for each along its rim.
     pub(crate) fn cost(extent: Extent, corners: [DVec3; 3]) -> u64 {
         let corners = corners.map(|p| extent.to_voxel_units(p));

@@ -1,4 +1,4 @@
-//! What a document costs to turn into voxels, told from its triangles before any voxel is made.
+//! Cost of turning a document into voxels, told from its triangles before any voxel is made.
 
 use glam::DVec3;
 use scene::Extent;

@@ -46,7 +46,7 @@ struct Beside {
     other: i64,
     is_left: bool,
     same_way: bool,
-    /// What the bound says of its paint.
+    /// Whether the bound is painted, if the file says so.
     paint: Option<bool>,
 }
 
@@ -76,7 +76,7 @@ fn map(bytes: &[u8], name: &str) -> Result<LaneletMap> {
                 let id = out.boxes.len() as u32 + 1;
                 out.boxes.extend(obstacle(node, id, &mut out.skipped)?);
             }
-            // They say nothing that a layout shows.
+            // These hold nothing that a layout shows.
             "location" | "scenarioTags" | "intersection" => {}
             other => count(&mut out.skipped, shown(other, 40)),
         }
@@ -102,7 +102,7 @@ pub(super) fn point(node: Node<'_, '_>) -> Result<DVec3> {
     Ok(DVec3::new(coordinate("x")?, coordinate("y")?, coordinate("z")?))
 }
 
-/// The points of a bound, and what it says of its paint.
+/// The points of a bound, and whether it is painted, if the file says so.
 fn bound(node: Node<'_, '_>, side: &'static str, points: &mut usize) -> Result<(Vec<DVec3>, Option<bool>)> {
     let bound = child(node, side).ok_or_else(|| bad(node, side, "one element", "none"))?;
     let line = named(bound, "point").map(point).collect::<Result<Vec<_>>>()?;
@@ -163,7 +163,7 @@ fn lanelet(
     Ok(())
 }
 
-/// What a lanelet is for, by its types.
+/// The use of a lanelet, by its types.
 fn use_of(node: Node<'_, '_>, skipped: &mut Skipped) -> Use {
     let kinds = named(node, "laneletType").filter_map(|n| n.text());
     let kinds: BTreeSet<&str> = kinds.map(str::trim).collect();

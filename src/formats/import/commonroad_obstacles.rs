@@ -8,7 +8,7 @@ use crate::opendrive::Skipped;
 use crate::opendrive::xml::{Result, child, count, shown};
 use scene::{BoxId, Class, SceneBox};
 
-/// The box of an obstacle, on the ground at 0; counted in `skipped` if it is none that a scene has.
+/// The box of an obstacle, on the ground at 0. An obstacle that a scene cannot have is counted in `skipped`.
 pub(super) fn obstacle(node: Node<'_, '_>, id: u32, skipped: &mut Skipped) -> Result<Option<SceneBox>> {
     let kind = child(node, "type")
         .and_then(|n| n.text())

@@ -1,5 +1,5 @@
-//! Formats that are not read, told by their first bytes: what a file is, and what to make of it that is read. One table; whoever
-//! opens a file by its content ([`super::format_of`]) asks it where no format that is read claims the file.
+//! Formats that are not read, recognised by their first bytes: what a file is, and what readable format to make of it.
+//! One table; [`super::format_of`] consults it when no format that is read claims the file.
 
 use std::path::Path;
 
@@ -7,18 +7,18 @@ use crate::FormatError;
 
 /// A format that is not read.
 struct Foreign {
-    /// What it is, with its article.
+    /// Name of the format, with its article.
     what: &'static str,
-    /// What to do instead.
+    /// Advice on what to do instead.
     instead: &'static str,
     /// True for the first bytes of such a file.
     is: fn(&Head<'_>) -> bool,
 }
 
-/// What a file is told by.
+/// The parts of a file that tell its format.
 struct Head<'a> {
     bytes: &'a [u8],
-    /// The same as text, from the first character that is no space on.
+    /// The bytes as text, from the first character on that is neither space nor byte order mark.
     text: &'a str,
     /// In small letters; empty without one.
     extension: &'a str,
@@ -327,7 +327,8 @@ const TABLE: &[Foreign] = &[
     },
 ];
 
-/// What a file is that no format claims: an error in one line, without the file's name. `None` if nobody knows it.
+/// Names the kind of a file that no format claims: an error in one line, without the file's name. `None` for an unknown
+/// kind.
 pub(super) fn told(path: &Path, head: &[u8]) -> Option<FormatError> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let text = String::from_utf8_lossy(head);
@@ -378,7 +379,8 @@ fn is_rows_of_numbers(text: &str) -> bool {
     rows > 0 && rows + 2 >= whole.len()
 }
 
-/// True if what begins with `<` is an element and none that is read: those are claimed by their names.
+/// True if a text that begins with `<` is an element of a format that is not read; the others are claimed by their
+/// names.
 fn is_element(text: &str) -> bool {
     let name = text.trim_start_matches("<?").trim_start_matches('<');
     name.starts_with(|c: char| c.is_alphabetic() || c == '!' || c == '_')

@@ -1,4 +1,4 @@
-//! What a format that is read is made of, and what several readers share.
+//! Importers: the description of a format that is read, and code that several readers share.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub struct Importer {
     pub title: &'static str,
     /// Extensions without the dot, in small letters.
     pub extensions: &'static [&'static str],
-    /// What a file holds.
+    /// Kinds of content in a file.
     pub holds: &'static [Holds],
     /// Largest file that is read, bytes.
     pub largest: u64,
@@ -35,19 +35,19 @@ pub struct Importer {
 
 /// A file to be read.
 pub struct Source<'a> {
-    /// Everything in it.
+    /// Content of the file.
     pub bytes: &'a [u8],
     /// Name of the scene to be made.
     pub name: &'a str,
     /// Where the file is, for formats of several files; `None` for bytes alone.
     pub path: Option<&'a Path>,
-    /// How far a point cloud is lifted, m; `None`: as its ground asks.
+    /// Height by which a point cloud is lifted, m; `None` to take it from the ground.
     pub lift_m: Option<f64>,
 }
 
 impl Source<'_> {
-    /// Everything in a file beside this one: `relative` is a path from this file's folder, with `/` between names. Errors if
-    /// it has more than `limit` bytes, is not there or cannot be read.
+    /// Reads a file beside this one: `relative` is a path from this file's folder, with `/` between names. Errors as
+    /// [`Source::place`] does, and if the file has more than `limit` bytes, is not there or cannot be read.
     pub fn beside(&self, relative: &str, limit: u64) -> Result<Vec<u8>, FormatError> {
         let path = self.place(relative)?;
         input::read(&path, limit).map_err(FormatError::new)
@@ -67,7 +67,7 @@ impl Source<'_> {
     }
 }
 
-/// What a file held.
+/// Content that was read from a file.
 #[derive(Debug)]
 pub enum Content {
     /// A scene.
@@ -83,16 +83,16 @@ pub enum Content {
 pub struct Loaded {
     /// The scene.
     pub scene: Scene,
-    /// What of it is a guess, for a person: `layout`, `boxes`, `background`.
+    /// Guessed parts of the scene, for a person: `layout`, `boxes`, `background`.
     pub inferred: &'static [&'static str],
-    /// What the file holds and the scene does not, counted by kind.
+    /// Parts of the file that the scene does not have, counted by kind.
     pub skipped: BTreeMap<String, usize>,
-    /// What was done that nobody asked for, a line each, for a person.
+    /// Notes on changes that were made without being asked for, a line each, for a person.
     pub notes: Vec<String>,
 }
 
-/// A scene from labels: their voxels as they are; layout, boxes and background are inferred, of a larger map in the networks'
-/// window.
+/// A scene from labels: the voxels are kept, layout, boxes and background are inferred. On a larger map they are
+/// inferred in the networks' window only.
 pub(crate) fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobserved>) -> Scene {
     let window = labels.crop(Extent::WINDOW);
     let (layout, boxes) = (infer::layout(&window), infer::boxes(&window));
@@ -114,7 +114,7 @@ pub(crate) fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobser
     scene
 }
 
-/// Everything that [`labelled`] guesses.
+/// The parts of a scene that [`labelled`] guesses.
 pub(crate) const GUESSED: [&str; 3] = ["layout", "boxes", "background"];
 
 /// True for a zip archive whose first entry's name ends in this.

@@ -1,9 +1,9 @@
 //! Scans of KITTI and SemanticKITTI: x, y, z and remission as f32, no header; with labels if they are beside it.
 //!
-//! A scan `velodyne/000123.bin` has its labels in `labels/000123.label` (u32: below the class, above the instance). Points are
-//! in the sensor's frame: x forward, y left, z up. Where `calib.txt` beside the folder says where the sensor is in the ego
-//! frame (`Tr_ego_to_velo`, as this program writes it) it is put there; else it is taken to be where the LiDAR of the default
-//! rig is, and that is told. See `cloud` for what becomes of points with and without labels.
+//! A scan `velodyne/000123.bin` has its labels in `labels/000123.label` (u32: below the class, above the instance).
+//! Points are in the sensor's frame: x forward, y left, z up. The pose of the sensor in the ego frame is that of
+//! `calib.txt` beside the folder (`Tr_ego_to_velo`, as this program writes it); without it, that of the LiDAR of the
+//! default rig, and a note says so. See `cloud` for the use of points with and without labels.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -81,8 +81,8 @@ pub fn in_words() -> String {
     all().iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// The format of a file: by its first bytes, and by its extension where those say nothing. Errors say what a file is that is not
-/// read.
+/// The format of a file: by its first bytes, or by its extension where they are not telling. Errors name the kind of a
+/// file that is not read.
 pub fn format_of(path: &Path) -> Result<&'static Importer, FormatError> {
     let head = input::head(path, HEAD).map_err(FormatError::new)?;
     recognised(path, &head).map_err(|e| e.at(&path.display()))
@@ -122,8 +122,8 @@ pub fn read(path: &Path) -> Result<(&'static Importer, Content), FormatError> {
 /// Farthest that a cloud is lifted, m.
 pub const FARTHEST_LIFT_M: f64 = 10_000.0;
 
-/// The same; a point cloud is lifted by so many metres instead of as its ground asks. Errors also if the file is no point cloud,
-/// and for more than [`FARTHEST_LIFT_M`].
+/// Reads a file as [`read`] does, but lifts a point cloud by `lift_m` metres instead of by the height of its ground.
+/// Errors also if a lift is given for a file that is no point cloud, and for more than [`FARTHEST_LIFT_M`].
 pub fn read_lifted(path: &Path, lift_m: Option<f64>) -> Result<(&'static Importer, Content), FormatError> {
     let (importer, path) = match path.is_dir() {
         true => of_folder(path)?,
@@ -200,8 +200,8 @@ fn read_file(importer: &Importer, path: &Path, lift_m: Option<f64>) -> Result<Co
     (importer.read)(&source).map_err(|e| e.at(&path.display()))
 }
 
-/// What a scene from this file is called: as the file, or as its folder where data sets name the folder after the frame and
-/// the file `labels`.
+/// Name of a scene from this file: that of the file, or of its folder where data sets name the folder after the frame
+/// and the file `labels`. `import` for a path without a name.
 pub fn scene_name(path: &Path) -> String {
     let stem = path.file_stem().map(|s| s.to_string_lossy());
     let folder = path

@@ -1,9 +1,10 @@
 //! Scans of nuScenes (`.pcd.bin`): x, y, z, intensity and ring as f32, no header; with labels if they are beside it.
 //!
 //! A scan `NAME.pcd.bin` has its labels in `NAME_lidarseg.bin`, or in the only file in its folder whose name ends in
-//! `_lidarseg.bin`: one byte a point, one of the 32 classes of nuScenes-lidarseg, or one of the 16 of its challenge (those of
-//! Occ3D) if none is above 16. Points are in the frame of the sensor, which is taken to be where the LiDAR of the default rig,
-//! that of nuScenes, is; that is told. See `cloud` for what becomes of points with and without labels.
+//! `_lidarseg.bin`: one byte a point, one of the 32 classes of nuScenes-lidarseg, or one of the 16 of its challenge
+//! (those of Occ3D) if none is above 16. Points are in the frame of the sensor. Its pose is taken to be that of the
+//! LiDAR of the default rig, the one of nuScenes, and a note says so. See `cloud` for the use of points with and
+//! without labels.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -29,7 +30,7 @@ pub const IMPORTER: Importer = Importer {
     sample: tests::sample,
 };
 
-/// What the name of a file of labels ends in.
+/// Ending of the names of label files.
 const LABELS: &str = "_lidarseg.bin";
 
 /// Classes of nuScenes-lidarseg in their order, as Occ3D has them; none for noise and the own vehicle.
@@ -68,7 +69,7 @@ const CLASSES: [Option<Class>; 32] = [
     None,                             // own vehicle
 ];
 
-/// Reads such a file, whatever it is called.
+/// Reads such a file under any name.
 pub(super) fn read(source: &Source<'_>) -> Result<Content, FormatError> {
     let points = Columns::NuScenes.read(source.bytes)?;
     let labels = match labels_name(source.path) {

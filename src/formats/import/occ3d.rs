@@ -1,4 +1,4 @@
-//! Occ3D labels: their voxels as they are, and what they do not carry inferred.
+//! Occ3D labels: their voxels are kept, and the parts that they do not carry are inferred.
 
 use std::collections::BTreeMap;
 

@@ -1,9 +1,9 @@
 //! Point clouds (PCL's PCD, ascii, binary and compressed): a cloud becomes the occupancy of a scene.
 //!
-//! Read are `x`, `y`, `z` in metres, taken as the ego frame (x forward, y left, z up, ground near z = 0), and a field `label`,
-//! `labels`, `class` or `semantic` with the classes' numbers (Occ3D, 0 to 16). See `cloud` for what becomes of points
-//! with and without labels. Other fields, a viewpoint, points that are not finite or lie beside the map are left out and
-//! counted.
+//! The fields `x`, `y`, `z` are read, in metres, taken as the ego frame (x forward, y left, z up, ground near z = 0),
+//! and a field `label`, `labels`, `class` or `semantic` with the classes' numbers (Occ3D, 0 to 16). See `cloud` for the
+//! use of points with and without labels. Other fields, a viewpoint, points that are not finite or lie beside the map
+//! are left out and counted.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -46,11 +46,11 @@ pub enum PcdError {
     /// A line of the header.
     #[error("header, {key}: {found}, expected {expected}")]
     Header {
-        /// What the line is about.
+        /// Keyword of the line.
         key: &'static str,
-        /// What it says.
+        /// The value that was found.
         found: String,
-        /// What would do.
+        /// The value that was expected.
         expected: String,
     },
     /// The file holds less than its header says.
@@ -68,18 +68,18 @@ pub enum PcdError {
         point: usize,
         /// Which field.
         field: String,
-        /// What is there.
+        /// The text in its place.
         found: String,
     },
     /// Compressed points that cannot be unpacked.
     #[error("binary_compressed: {found}, expected {expected}")]
     Packed {
-        /// What is there.
+        /// The sizes that were found.
         found: String,
-        /// What would do.
+        /// The sizes that were expected.
         expected: String,
     },
-    /// Nothing would be left.
+    /// No point would be left.
     #[error(transparent)]
     Nothing(#[from] NothingOnTheMap),
 }
@@ -283,7 +283,7 @@ impl Header {
         Ok(())
     }
 
-    /// What `DATA binary_compressed` holds: two sizes, then the fields packed together.
+    /// Unpacks `DATA binary_compressed`: two sizes, then the fields packed together.
     fn unpacked(&self, body: &[u8], stride: usize) -> Result<Vec<u8>, PcdError> {
         let packed = |found: String, expected: String| PcdError::Packed { found, expected };
         let size = |at: usize| {

@@ -1,4 +1,4 @@
-//! A picture that the program wrote: the scene inside it, or what it was made with.
+//! A picture that the program wrote: reads the scene inside it, or the recipe that it was made with.
 
 use super::{Content, Importer, Loaded};
 use crate::recipe::{NAME, Recipe};

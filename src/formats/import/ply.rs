@@ -1,9 +1,9 @@
 //! Point clouds as PLY (ascii, binary little and big endian): a cloud becomes the occupancy of a scene.
 //!
-//! Read are the properties `x`, `y`, `z` of the element `vertex`, in metres, taken as the ego frame (x forward, y left, z up,
-//! ground near z = 0), and a property of `LABELS` with the classes' numbers (Occ3D, 0 to 16). See `cloud` for what
-//! becomes of points with and without labels. Other properties and elements are left out and counted, lists too. A file of 3D
-//! Gaussians (`f_dc_0`, `scale_0`) is read as the points in their middles.
+//! The properties `x`, `y`, `z` of the element `vertex` are read, in metres, taken as the ego frame (x forward, y left,
+//! z up, ground near z = 0), and a property of `LABELS` with the classes' numbers (Occ3D, 0 to 16). See `cloud` for the
+//! use of points with and without labels. Other properties and elements are left out and counted, lists too. A file of
+//! 3D Gaussians (`f_dc_0`, `scale_0`) is read as the points in their middles.
 
 use std::collections::BTreeMap;
 
@@ -41,9 +41,9 @@ pub enum PlyError {
     Header {
         /// Which line, from 1.
         line: usize,
-        /// What it says.
+        /// Text of the line.
         found: String,
-        /// What would do.
+        /// The text that was expected.
         expected: &'static str,
     },
     /// The header has no such property of points.
@@ -68,10 +68,10 @@ pub enum PlyError {
         at: usize,
         /// Which property.
         property: String,
-        /// What is there.
+        /// The value that was found.
         found: String,
     },
-    /// Nothing would be left.
+    /// No point would be left.
     #[error(transparent)]
     Nothing(#[from] NothingOnTheMap),
 }
@@ -182,7 +182,7 @@ impl Number {
 struct Property {
     name: String,
     number: Number,
-    /// Of a list: the type of its length.
+    /// Type of the length, for a list; `None` for a single value.
     length: Option<Number>,
 }
 
@@ -193,7 +193,7 @@ struct Element {
 }
 
 impl Element {
-    /// Bytes of one in a binary file; `None` if it has lists.
+    /// Bytes of one element in a binary file; `None` if it has lists.
     fn size(&self) -> Option<usize> {
         let sizes = self.properties.iter().map(|p| match p.length {
             Some(_) => None,
@@ -293,7 +293,7 @@ impl Header {
     }
 }
 
-/// What comes after the header, read from the front.
+/// The bytes after the header, read from the front.
 struct Body<'a> {
     rest: &'a [u8],
     encoding: Encoding,
@@ -304,7 +304,7 @@ impl<'a> Body<'a> {
         Self { rest, encoding }
     }
 
-    /// Reads all of an element and gives the wanted properties of each; none of them is a list.
+    /// Reads all of an element and gives the wanted properties of each entry; none of these may be a list.
     fn pass(
         &mut self,
         element: &Element,

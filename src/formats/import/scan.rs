@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::Source;
 use crate::FormatError;
 
-/// What the columns after x, y, z are.
+/// Kind of the columns after x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Columns {
     /// KITTI: remission, 0 to 1.
@@ -16,12 +16,12 @@ pub(super) enum Columns {
     NuScenes,
 }
 
-/// Farthest that a LiDAR sees, m, and nearest: what is nearer is no return.
+/// Farthest and nearest distance that a LiDAR sees, m: nearer places are no returns.
 const FAR_M: f32 = 10_000.0;
 const NEAR_M: f32 = 0.1;
 /// Points in a head are nearer than this, m.
 const HEAD_FAR_M: f32 = 500.0;
-/// Share of the places that must be sound, or the file is something else. Slots where nothing came back say nothing.
+/// Share of the places that must be sound, or the file is of another kind. Slots without a return do not count.
 const LEAST_SOUND: f64 = 0.9;
 /// Strongest echo, and most rings.
 const STRONGEST: f32 = 255.0;
@@ -111,12 +111,12 @@ impl Columns {
     }
 }
 
-/// What a place of three numbers says.
+/// Meaning of a place of three numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Slot {
-    /// Something is there.
+    /// A return.
     Return,
-    /// Nothing came back: the place is not finite, or the sensor's own but for rounding.
+    /// No return: the place is not finite, or the sensor's own but for rounding.
     Empty,
     /// No place of a LiDAR's return: too far, or so small that it is no number of a sensor.
     Wild,

@@ -1,4 +1,4 @@
-//! Voxels of SemanticKITTI: the labels, and beside them what no scan saw.
+//! Voxels of SemanticKITTI: the labels, and beside them the voxels that no scan saw.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -80,7 +80,8 @@ pub(crate) fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>
     Ok((voxels.lowered(), skipped))
 }
 
-/// The file of the same frame with another ending: a bit per cell. Errors if it is there and of another size.
+/// The file of the same frame with another ending: a bit per cell. `None` if it is not there; errors if it is of
+/// another size.
 fn beside(source: &Source<'_>, extension: &str) -> Result<Option<Vec<u8>>, String> {
     let name = source.path.map(|path| path.with_extension(extension));
     let name = name.as_deref().and_then(Path::file_name).and_then(|n| n.to_str());
@@ -94,7 +95,7 @@ fn beside(source: &Source<'_>, extension: &str) -> Result<Option<Vec<u8>>, Strin
     }
 }
 
-/// What no scan saw: a voxel is observed if one of the cells with their middle in it is valid.
+/// The voxels that no scan saw: a voxel is observed if one of the cells with their middle in it is valid.
 fn mask(extent: Extent, invalid: &[u8]) -> Option<Unobserved> {
     let rig = SensorRig::default();
     let pose = ego_from_cells(rig.lidars.first()?);

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Lanelet, Use};
 use crate::opendrive::{Junction, RoadEnd};
 
-/// Junctions and what lies before and behind every lanelet.
+/// Junctions, and the neighbours before and behind every lanelet.
 pub(super) struct Junctions {
     pub junctions: Vec<Junction>,
     /// Id of the junction of each lanelet in one.
@@ -15,7 +15,7 @@ pub(super) struct Junctions {
 }
 
 impl Junctions {
-    /// What lies before the start of a lanelet and beyond its end.
+    /// Neighbours of a lanelet: before its start, and beyond its end.
     pub fn ends(&self, id: i64) -> [Option<RoadEnd>; 2] {
         [&self.before, &self.behind].map(|ends| ends.get(&id).cloned())
     }
@@ -41,7 +41,7 @@ pub(super) fn find(lanelets: &[Lanelet]) -> Junctions {
     }
     // The least id of the lanelets that a lanelet is joined with.
     let mut joined: BTreeMap<i64, i64> = BTreeMap::new();
-    // Those on the way to it are joined with it at once, so that no chain is gone along twice.
+    // Every lanelet on the way is joined with the last one directly, so that no chain is walked twice.
     fn root(joined: &mut BTreeMap<i64, i64>, id: i64) -> i64 {
         let mut top = id;
         while let Some(up) = joined.get(&top).filter(|up| **up != top) {

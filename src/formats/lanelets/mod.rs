@@ -1,5 +1,6 @@
-//! Lanelets, the roads of Lanelet2 and CommonRoad: pieces of lane between a left and a right bound. Each becomes a road of one lane in
-//! an OpenDRIVE network, so that everything which reads such a network (a place on it, heights, junctions) reads these maps too.
+//! Lanelets, the roads of Lanelet2 and CommonRoad: pieces of lane between a left and a right bound. Each becomes a road
+//! of one lane in an OpenDRIVE network, so that all code which reads such a network (a place on it, heights, junctions)
+//! reads these maps too.
 
 mod junctions;
 mod road;
@@ -17,7 +18,7 @@ use scene::{Polyline, PolylineKind, SceneBox};
 /// Points of all bounds together, at most; a city has about a million.
 pub(crate) const MOST_POINTS: usize = 4_000_000;
 
-/// What a lanelet is for.
+/// Use of a lanelet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Use {
     /// Motor traffic.
@@ -28,7 +29,7 @@ pub(crate) enum Use {
     Ground(Ground),
     /// People who cross a road.
     Crossing,
-    /// Nothing that a scene shows.
+    /// No use that a scene shows.
     Nothing,
 }
 
@@ -46,7 +47,7 @@ pub(crate) struct Lanelet {
     pub successors: Vec<i64>,
 }
 
-/// Whose bound a painted line is.
+/// A bound between two lanelets, painted or not.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Between {
     /// Ids of the lanelets on its two sides.
@@ -68,7 +69,7 @@ pub(crate) struct LaneletMap {
     pub stop_lines: Vec<Vec<DVec2>>,
     /// Outlines of ground without lanelets.
     pub areas: Vec<(Ground, Vec<DVec2>)>,
-    /// What stands on the roads or drives there, on ground at 0.
+    /// Boxes that stand on the roads or drive there, on ground at 0.
     pub boxes: Vec<SceneBox>,
     /// Where the file says that the ego vehicle begins: place in m, heading in rad.
     pub start: Option<(DVec2, f64)>,

@@ -32,7 +32,8 @@ fn longest_m(lanelet: &Lanelet) -> f64 {
     length_m(left).max(length_m(right))
 }
 
-/// What is too much of lanelets that become roads, in one line, told before any work is done for them.
+/// Names the first lanelet that is too long to become a road, or with which all are too long together, in one line.
+/// Told before any work is done for them.
 pub(super) fn problem<'a>(lanelets: impl Iterator<Item = &'a Lanelet>) -> Option<String> {
     let mut stations_in_all = 0.0;
     for lanelet in lanelets {
@@ -174,7 +175,7 @@ fn meets(bound: &[DVec3], i: usize, base: DVec2, across: DVec2) -> Option<f64> {
     Some((p - base).dot(across))
 }
 
-/// Straight pieces from value to value; those on one line with the pieces around them are one.
+/// Straight pieces from value to value; neighbouring pieces on one line are joined.
 fn pieces(s_m: &[f64], values: &[f64]) -> Cubics {
     const NEAR: f64 = 1e-3;
     let mut out: Vec<CubicPiece> = Vec::new();

@@ -8,9 +8,9 @@ const AXIS_M: f64 = 6_378_137.0;
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Scale on the central meridian.
 const SCALE: f64 = 0.9996;
-/// Of the central meridian, m.
+/// Easting of the central meridian, m.
 const EASTING_M: f64 = 500_000.0;
-/// Of the equator on the southern half, m.
+/// Northing of the equator on the southern half of the earth, m.
 const SOUTH_M: f64 = 10_000_000.0;
 
 /// A zone: its central meridian, and which half of the earth.
@@ -22,8 +22,8 @@ pub(crate) struct Zone {
 }
 
 impl Zone {
-    /// The zone of a place, degrees; the exceptions of Norway and Svalbard are left aside. `None` beyond 84 degrees and for what is no
-    /// place.
+    /// The zone of a place, degrees; the exceptions of Norway and Svalbard are left aside. `None` beyond 84 degrees of
+    /// latitude, beyond 180 of longitude, and for numbers that are not finite.
     pub fn of(latitude_deg: f64, longitude_deg: f64) -> Option<Self> {
         let sound = (-84.0..=84.0).contains(&latitude_deg) && (-180.0..=180.0).contains(&longitude_deg);
         sound.then(|| Self {

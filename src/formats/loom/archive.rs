@@ -47,7 +47,7 @@ impl Writer {
     fn entry(&mut self, entry: &str, bytes: &[u8], method: CompressionMethod) -> Result<(), ProjectError> {
         self.unpacked += bytes.len() as u64;
         within("the size of the unpacked project", self.unpacked, MAX_UNPACKED)?;
-        // Nothing of the machine or the moment may enter the bytes.
+        // The bytes must not depend on the machine or the moment.
         let options = SimpleFileOptions::default()
             .compression_method(method)
             .compression_level((method == CompressionMethod::Deflated).then_some(6))
@@ -85,7 +85,7 @@ impl Writer {
     }
 }
 
-/// Reads entries by name and keeps account of those nobody asked for.
+/// Reads entries by name and keeps a list of those that were not read.
 pub(super) struct Reader<R> {
     zip: ZipArchive<R>,
     unread: BTreeSet<String>,
@@ -122,8 +122,8 @@ impl<R: Read + Seek> Reader<R> {
         self.unread.contains(entry)
     }
 
-    /// Everything in an entry, unpacked, if that is at most `limit` bytes. The size the zip declares
-    /// is checked first, but memory grows only with what is really there.
+    /// Reads all of an entry, unpacked, if that is at most `limit` bytes. The size that the zip declares is checked
+    /// first, but memory grows only with the bytes that are really there.
     pub(super) fn bytes(&mut self, entry: &str, limit: u64) -> Result<Vec<u8>, ProjectError> {
         self.unread.remove(entry);
         if let Some(bytes) = self.made.remove(entry) {
@@ -154,7 +154,7 @@ impl<R: Read + Seek> Reader<R> {
         self.made.insert(entry.to_owned(), bytes);
     }
 
-    /// Everything in an entry of known size.
+    /// Reads all of an entry of known size: `count` units of `unit_bytes` bytes.
     pub(super) fn exactly(
         &mut self,
         entry: &str,

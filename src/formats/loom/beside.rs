@@ -1,4 +1,4 @@
-//! `kept.json` and the versions beside it: what a project keeps that is no part of its scene.
+//! `kept.json` and the versions beside it: the parts of a project that do not belong to its scene.
 
 use std::io::{Read, Seek};
 use std::sync::Arc;
@@ -71,7 +71,7 @@ pub(super) fn write(out: &mut Writer, kept: &Kept) -> Result<(), ProjectError> {
     Ok(())
 }
 
-/// What is kept; versions are not opened.
+/// Reads the kept versions and typed texts; the versions are not opened.
 pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<Kept, ProjectError> {
     if !file.has(KEPT) {
         return Ok(Kept::default());

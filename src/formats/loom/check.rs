@@ -1,4 +1,4 @@
-//! What a project may not hold, whether it comes from a file or goes into one.
+//! Checks of a project's content, whether it comes from a file or goes into one.
 
 use glam::DVec2;
 

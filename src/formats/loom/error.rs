@@ -9,12 +9,12 @@ use crate::input::InputError;
 /// Why a project could not be read or written. One line each; nothing was written, nothing opened.
 #[derive(Debug, thiserror::Error)]
 pub enum ProjectError {
-    /// What went wrong with which file.
+    /// A problem with a certain file.
     #[error("{}: {problem}", path.display())]
     InFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         problem: Box<ProjectError>,
     },
     /// The file was not read: there is none, it is no regular file, or too large.
@@ -29,7 +29,7 @@ pub enum ProjectError {
     /// Made by another program or for another purpose.
     #[error("manifest.json: format is {found:?}, expected {FORMAT:?}")]
     Format {
-        /// What the manifest says.
+        /// The format that the manifest names.
         found: String,
     },
     /// Made by a newer version of sceneloom, or one that never was.
@@ -37,16 +37,16 @@ pub enum ProjectError {
         "manifest.json: version is {found}, expected {VERSION}; open it with the sceneloom that wrote it"
     )]
     Version {
-        /// What the manifest says.
+        /// The version that the manifest names.
         found: u64,
     },
-    /// Something that belongs to the scene is not there.
+    /// An entry that belongs to the scene is missing.
     #[error("entry {entry:?} is missing")]
     MissingEntry {
         /// Name within the zip.
         entry: String,
     },
-    /// Something that does not belong to the scene is there.
+    /// An entry that does not belong to the scene is there.
     #[error("entry {entry:?} is not known")]
     UnknownEntry {
         /// Name within the zip.
@@ -57,7 +57,7 @@ pub enum ProjectError {
     Damaged {
         /// Name within the zip.
         entry: String,
-        /// What the zip reader said.
+        /// Message of the zip reader.
         detail: String,
     },
     /// JSON that is not as it must be: syntax, an unknown key, a missing one, a wrong type.
@@ -89,7 +89,7 @@ pub enum ProjectError {
         cell: String,
         /// Its value.
         found: u32,
-        /// What would do.
+        /// The values that are accepted.
         expected: &'static str,
     },
     /// A number, box or line that is not sound.
@@ -98,7 +98,7 @@ pub enum ProjectError {
     /// More than is read or written, so that no file can fill the memory.
     #[error("{what} is {found}, expected at most {limit}")]
     TooLarge {
-        /// What is large.
+        /// The size or number that is too large.
         what: String,
         /// How large.
         found: u64,

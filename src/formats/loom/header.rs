@@ -34,7 +34,7 @@ pub(super) struct SceneHeader {
     pub(super) clip: Option<ClipHeader>,
 }
 
-/// What moves, but for the voxels.
+/// The moving parts of a scene, but for their voxels.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ClipHeader {
@@ -66,7 +66,7 @@ pub(super) struct TrackHeader {
 }
 
 impl ClipHeader {
-    /// Of a clip; none of one that is as a scene of one moment.
+    /// The header of a clip; `None` for the default clip, that of a scene of one moment.
     fn of(clip: &Clip) -> Option<Self> {
         let track = |t: &Track| TrackHeader {
             made: t.made,
@@ -134,7 +134,7 @@ impl ExtentHeader {
     }
 }
 
-/// What of an imported frame is a guess.
+/// The guessed parts of an imported frame.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(super) struct InferredHeader {
@@ -155,7 +155,7 @@ impl InferredHeader {
     }
 }
 
-/// What is left out, or false, is as on the canvas.
+/// Header of the frame's source. A part that is left out, or false, is as on the canvas.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SourceHeader {
@@ -189,7 +189,7 @@ fn is_zero(number: &f64) -> bool {
 }
 
 impl SceneHeader {
-    /// Of a scene.
+    /// The header of a scene.
     pub(super) fn of(scene: &Scene) -> Self {
         Self {
             name: scene.name.clone(),

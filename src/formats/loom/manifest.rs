@@ -1,4 +1,4 @@
-//! `manifest.json`: what a project file is and of which version.
+//! `manifest.json`: format and version of a project file.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use super::archive::parse;
 use super::migrate::Migration;
 use super::{FORMAT, MANIFEST, ProjectError, VERSION};
 
-/// As it is written.
+/// The manifest as it is written.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Manifest {
@@ -20,7 +20,7 @@ pub(super) struct Manifest {
 }
 
 impl Manifest {
-    /// Of the version that is written.
+    /// The manifest of the version that is written.
     pub(super) fn present() -> Self {
         Self {
             format: FORMAT.into(),

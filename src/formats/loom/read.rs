@@ -164,7 +164,7 @@ fn read_canvas<R: Read + Seek>(file: &mut Reader<R>, header: FrameHeader) -> Res
             Some(list) => unique(list)?,
             None => boxes.clone(),
         },
-        // Bricks in which the two agree stay one memory: "what changed" compares pointers.
+        // Bricks that are equal in both are shared in memory: the test for changes compares pointers.
         occupancy: match source.occupancy {
             true => file.occupancy(&name("source_occupancy.u8"), &occupancy)?,
             false => occupancy.clone(),

@@ -9,7 +9,7 @@ use super::header::{SceneHeader, entry_name, track_entry};
 use super::manifest::Manifest;
 use super::{ProjectError, SCENE};
 
-/// The scene as the bytes of a project file, with what it keeps.
+/// The bytes of a project file: the scene, and the versions and texts kept with it.
 pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
     let mut out = written(scene)?;
     beside::write(&mut out, &scene.kept)?;

@@ -3,14 +3,14 @@
 
 use scene::{BoxName, Class};
 
-/// What a category is in a scene.
+/// Meaning of a category in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Means {
     /// Points of it are left out.
     Nothing,
     /// A class.
     Class(Class),
-    /// A class, and what a box of it is called.
+    /// A class, and the name of a box of it.
     Named(Class, &'static str),
 }
 
@@ -62,7 +62,7 @@ pub const ALL: [(&str, Means); 32] = [
 /// Index of `static.other`, which points of the class "others" get.
 const STATIC_OTHER: u8 = 29;
 
-/// What a category of that name is; `None` for a name that is not in the list.
+/// The meaning of the category of that name; `None` for a name that is not in the list.
 pub fn meaning(name: &str) -> Option<Means> {
     ALL.iter()
         .find(|(known, _)| *known == name)
@@ -78,7 +78,7 @@ pub fn of_points(class: Class) -> u8 {
     }
 }
 
-/// The category of a box: that of its name if there is one of its class, else that of its class.
+/// The category of a box: that of its name, if a category of its class has that name, else that of its class.
 pub fn of_box(class: Class, name: &BoxName) -> u8 {
     let named = |(_, means): &(&str, Means)| match means {
         Named(of, called) => *of == class && called.eq_ignore_ascii_case(name.as_str()),

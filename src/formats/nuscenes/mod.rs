@@ -1,4 +1,4 @@
-//! nuScenes tables (nutonomy/nuscenes-devkit, `docs/schema_nuscenes.md`), what reading and writing share.
+//! nuScenes tables (nutonomy/nuscenes-devkit, `docs/schema_nuscenes.md`): definitions that reading and writing share.
 //!
 //! A folder holds `v1.0-*/` with one JSON array per table, and the files that `sample_data` names. Tokens are 32 hexadecimal
 //! digits; quaternions are w, x, y, z; sizes are width, length, height; annotations and ego poses are in the global frame,

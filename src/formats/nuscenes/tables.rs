@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What an object or a point is.
+/// Category of an object or a point.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Category {
     /// Key.
@@ -103,10 +103,10 @@ pub struct SceneRow {
     /// `scene-0061`.
     #[serde(default)]
     pub name: String,
-    /// What happens, in words.
+    /// Description of what happens.
     #[serde(default)]
     pub description: String,
-    /// Not in the schema: what the scene is called. Only in folders that Sceneloom wrote.
+    /// Not in the schema: the title of the scene. Only in folders that Sceneloom wrote.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
 }
@@ -116,7 +116,7 @@ pub struct SceneRow {
 pub struct Sample {
     /// Key.
     pub token: String,
-    /// When, µs.
+    /// Time, µs.
     pub timestamp: i64,
     /// Its scene.
     pub scene_token: String,
@@ -128,7 +128,7 @@ pub struct Sample {
     pub next: String,
 }
 
-/// What one sensor measured once.
+/// One measurement of a sensor.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SampleData {
     /// Key.
@@ -139,25 +139,25 @@ pub struct SampleData {
     pub ego_pose_token: String,
     /// Where the sensor is on it.
     pub calibrated_sensor_token: String,
-    /// When, µs.
+    /// Time, µs.
     pub timestamp: i64,
     /// `pcd` or `jpg`.
     #[serde(default)]
     pub fileformat: String,
-    /// True for what belongs to a key frame.
+    /// True for a measurement of a key frame.
     pub is_key_frame: bool,
-    /// Rows of a picture, else 0.
+    /// Rows of a picture; 0 for other files.
     #[serde(default)]
     pub height: u32,
-    /// Pixels per row of a picture, else 0.
+    /// Pixels per row of a picture; 0 for other files.
     #[serde(default)]
     pub width: u32,
     /// File, from the folder of the data set on.
     pub filename: String,
-    /// The same sensor's one before.
+    /// Previous measurement of the same sensor.
     #[serde(default)]
     pub prev: String,
-    /// The same sensor's next one.
+    /// Next measurement of the same sensor.
     #[serde(default)]
     pub next: String,
 }
@@ -167,7 +167,7 @@ pub struct SampleData {
 pub struct EgoPose {
     /// Key.
     pub token: String,
-    /// When, µs.
+    /// Time, µs.
     #[serde(default)]
     pub timestamp: i64,
     /// w, x, y, z.
@@ -192,13 +192,13 @@ pub struct Sensor {
 pub struct CalibratedSensor {
     /// Key.
     pub token: String,
-    /// What it is.
+    /// Its kind of sensor.
     pub sensor_token: String,
     /// In the ego frame, m.
     pub translation: [f64; 3],
     /// w, x, y, z.
     pub rotation: [f64; 4],
-    /// 3 x 3, pixels; empty for what is no camera.
+    /// 3 x 3, pixels; empty for a sensor that is no camera.
     #[serde(default)]
     pub camera_intrinsic: Vec<[f64; 3]>,
 }
@@ -208,7 +208,7 @@ pub struct CalibratedSensor {
 pub struct Instance {
     /// Key.
     pub token: String,
-    /// What it is.
+    /// Its category.
     pub category_token: String,
     /// In how many key frames it is.
     #[serde(default)]
@@ -233,7 +233,7 @@ pub struct SampleAnnotation {
     /// How much of it the cameras see.
     #[serde(default)]
     pub visibility_token: String,
-    /// What it does.
+    /// States of the object, such as parked.
     #[serde(default)]
     pub attribute_tokens: Vec<String>,
     /// Centre in the global frame, m.
@@ -242,10 +242,10 @@ pub struct SampleAnnotation {
     pub size: [f64; 3],
     /// w, x, y, z.
     pub rotation: [f64; 4],
-    /// The same object's box before.
+    /// Previous box of the same object.
     #[serde(default)]
     pub prev: String,
-    /// The same object's next box.
+    /// Next box of the same object.
     #[serde(default)]
     pub next: String,
     /// LiDAR returns.

@@ -1,4 +1,4 @@
-//! Keys of rows: 32 hexadecimal digits, the same for the same scene.
+//! Keys of rows: 32 hexadecimal digits, equal for equal scenes.
 
 use scene::Scene;
 use scene::draw::hash;
@@ -10,7 +10,7 @@ pub struct Tokens {
 }
 
 impl Tokens {
-    /// Of this scene.
+    /// The tokens of a scene.
     pub fn of(scene: &Scene) -> Self {
         Self {
             base: hash(scene.seed ^ of_text(&scene.name)),

@@ -55,12 +55,12 @@ const WAYMO: [Class; 15] = [
     Class::Sidewalk,
 ];
 
-/// Free in files of Occ3D-Waymo, and in what its loaders make of them.
+/// Labels of free in files of Occ3D-Waymo, and in the arrays that its loaders make of them.
 const WAYMO_FREE: [u8; 2] = [23, 15];
 
 impl Numbering {
-    /// That of an array `semantics` with so many voxels of each label: free is by far the most frequent one, so a file without
-    /// 17 in which more than half is 16 is openocc's.
+    /// The numbering of an array `semantics` with so many voxels of each label. Free is by far the most frequent label,
+    /// so a file without 17 in which more than half of the voxels are 16 is openocc's.
     pub(super) fn of_histogram(counts: &[usize; 256]) -> Self {
         let free = usize::from(Class::FREE);
         match counts[free] == 0 && 2 * counts[free - 1] > Window::VOXELS {
@@ -69,7 +69,7 @@ impl Numbering {
         }
     }
 
-    /// The class that a label of the file means; `None` if it means none.
+    /// The class that a label of the file stands for; `None` for a label without a class.
     pub fn class(self, label: u8) -> Option<Class> {
         let at = usize::from(label);
         match self {
@@ -89,7 +89,7 @@ impl Numbering {
         }
     }
 
-    /// What was assumed of the file's labels, for a person; `None` for the usual ones.
+    /// Note on what was assumed of the file's labels, for a person; `None` for the usual ones.
     pub fn note(self) -> Option<&'static str> {
         match self {
             Self::Occ3d => None,

@@ -1,5 +1,5 @@
-//! What an XML file may cost: counted in one pass before the parser sees it, because the parser compares each attribute
-//! of an element with those before it, and copies the namespaces of the elements around each.
+//! Bounds on the cost of an XML file: counted in one pass before the parser sees it, because the parser compares each
+//! attribute of an element with those before it, and copies the namespaces of the elements around each.
 
 use super::xml::{OpenDriveError, Result, shown};
 
@@ -12,7 +12,8 @@ pub const MOST_NESTED: usize = 200;
 /// Declarations of namespaces in a file; the standard has one.
 pub const MOST_NAMESPACES: usize = 64;
 
-/// Errors on the first element that goes beyond a bound. What is not well formed is left to the parser: it stops there.
+/// Errors on the first element that goes beyond a bound. Text that is not well formed is left to the parser, which
+/// stops there.
 pub(super) fn check(text: &str) -> Result<()> {
     let bytes = text.as_bytes();
     let mut found = Count::default();
@@ -80,7 +81,7 @@ struct Tag {
     attributes: usize,
     namespaces: usize,
     closed: bool,
-    /// Where its `>` stands; none in a file that is cut short.
+    /// Place of its `>`; `None` in a file that is cut short.
     end: Option<usize>,
 }
 

@@ -1,13 +1,13 @@
-//! What it costs to draw on a map, in the units of a budget: nothing to speak of for what roads have, much for what was made to be
-//! slow.
+//! Costs of drawing on a map, in the units of a budget: next to nothing for what roads have, much for what was made to
+//! be slow.
 
 use glam::DVec2;
 
 use scene::{Extent, Polyline, PolylineKind};
 
-/// To go along an outline or a line of so many points on every row of a map.
+/// Cost of going along an outline or a line of so many points on every row of a map.
 pub(super) fn of_scan(extent: Extent, points: usize) -> usize {
-    /// As many as strips of lane and crossings have.
+    /// Points of a strip of lane or of a crossing; only those beyond are counted.
     const FEW: usize = 16;
     points
         .saturating_sub(FEW)
@@ -15,7 +15,7 @@ pub(super) fn of_scan(extent: Extent, points: usize) -> usize {
         / 256
 }
 
-/// To draw a line.
+/// Cost of drawing a line.
 pub(super) fn of_line(extent: Extent, line: &Polyline) -> usize {
     let scan = of_scan(extent, line.points_m.len());
     match line.kind {

@@ -22,7 +22,7 @@ pub struct SurfaceProfile {
     pub superelevation: Cubics,
     /// Fall from the reference line outward over `s` on the left side, rad (OpenDRIVE 1.4).
     pub crossfall_left: Cubics,
-    /// The same on the right side.
+    /// Fall from the reference line outward over `s` on the right side, rad (OpenDRIVE 1.4).
     pub crossfall_right: Cubics,
 }
 
@@ -76,7 +76,7 @@ impl SurfaceProfile {
 /// One record of the height of a lane; it holds until the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaneHeight {
-    /// Where it begins, from the start of the section, m.
+    /// Start of the record, from the start of the section, m.
     pub s_m: f64,
     /// Height of the lane's inner edge above the surface of the road, m.
     pub inner_m: f64,
@@ -132,7 +132,7 @@ pub(super) fn edge_heights_m(
         .collect()
 }
 
-/// What is left of the height of a lane without its kerb, m.
+/// The part of a lane's height that exceeds a kerb, m.
 fn beyond_kerb(height_m: f64) -> f64 {
     height_m.signum() * (height_m.abs() - KERB_M).max(0.0)
 }

@@ -67,7 +67,7 @@ pub struct Geometry {
     knots: Knots,
 }
 
-/// What is computed once so that a point anywhere on the record costs the same.
+/// Values that are computed once, so that a point anywhere on the record takes the same time.
 #[derive(Clone, Debug, PartialEq)]
 enum Knots {
     None,
@@ -155,7 +155,7 @@ impl Geometry {
         })
     }
 
-    /// The same record at another place of its road.
+    /// Moves the record to another place of its road.
     pub(super) fn at_s(mut self, s_m: f64) -> Self {
         self.s_m = s_m;
         self

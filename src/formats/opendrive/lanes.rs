@@ -12,7 +12,7 @@ const MAX_WIDTH_M: f64 = 1000.0;
 /// One cubic that holds from `s_m` on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CubicPiece {
-    /// Where it begins, m.
+    /// Start of the piece, m.
     pub s_m: f64,
     /// a, b, c, d over the distance from `s_m`.
     pub k: [f64; 4],
@@ -47,7 +47,7 @@ impl Cubics {
     }
 }
 
-/// What a lane is for; the names of OpenDRIVE 1.4 to 1.8, grouped by what they mean for a layout.
+/// Use of a lane; the names of OpenDRIVE 1.4 to 1.8, grouped by what they mean for a layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum LaneKind {
     /// driving, entry, exit, onRamp, offRamp, connectingRamp, slipLane, mwyEntry, mwyExit, bus, taxi, HOV.
@@ -70,7 +70,7 @@ pub enum LaneKind {
     Edge,
     /// median.
     Median,
-    /// none, and whatever is not known.
+    /// none, and every unknown type.
     None,
 }
 
@@ -101,7 +101,7 @@ impl LaneKind {
         matches!(self, Self::Driving | Self::Bidirectional)
     }
 
-    /// What it is called where it is drivable although no traffic flows on it: `shoulder`. `None` for other kinds.
+    /// Name of a kind that is drivable although no traffic flows on it, such as `shoulder`. `None` for other kinds.
     pub fn beside_traffic(self) -> Option<&'static str> {
         Some(match self {
             Self::Shoulder => "shoulder",
@@ -112,7 +112,7 @@ impl LaneKind {
         })
     }
 
-    /// The ground of an area of this kind that lies by itself; `None` where it is of no layer.
+    /// The ground of an area of this kind that belongs to no road; `None` if the kind is in no layer.
     pub fn ground_alone(self) -> Option<Ground> {
         match self {
             Self::Parking => Some(Ground::Carpark),
@@ -156,7 +156,7 @@ pub enum Extent {
 pub struct Mark {
     /// Start, m.
     pub s_m: f64,
-    /// What is painted.
+    /// The paint.
     pub style: MarkStyle,
     /// True if yellow; any other colour counts as white.
     pub yellow: bool,
@@ -165,7 +165,7 @@ pub struct Mark {
 /// The paint of a road mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkStyle {
-    /// Nothing: the types none, curb and grass.
+    /// No paint: the types none, curb and grass.
     None,
     /// One or two unbroken lines.
     Solid,
@@ -180,7 +180,7 @@ pub enum MarkStyle {
 pub struct Lane {
     /// Positive left of the centre, negative right.
     pub id: i32,
-    /// What it is for.
+    /// Its use.
     pub kind: LaneKind,
     /// Direction of its traffic, if its kind has any.
     pub travel: Travel,
@@ -216,7 +216,7 @@ pub struct LaneSection {
     pub center_marks: Vec<Mark>,
 }
 
-/// What the ground of a lane is in a layout.
+/// Ground of a lane in a layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     /// Drivable area.
@@ -225,7 +225,7 @@ pub enum Ground {
     Carpark,
     /// Walkway.
     Walkway,
-    /// Neither; stated so by the file (median, border, none).
+    /// Neither, and the file says so (median, border, none).
     Other,
 }
 
@@ -280,7 +280,7 @@ impl LaneSection {
         outward(&self.right, -1.0, out);
     }
 
-    /// True if the edge with this index carries a painted mark at `s_m`; `None` if the file says nothing.
+    /// True if the edge with this index carries a painted mark at `s_m`; `None` if the file gives no mark.
     pub fn painted(&self, border: usize, s_m: f64) -> Option<bool> {
         let center = self.center_index();
         let (marks, origin) = match border.cmp(&center) {
@@ -327,9 +327,9 @@ impl LaneSection {
         all
     }
 
-    /// The ground of each lane, left to right, in the sense of the nuScenes map: everything paved that
-    /// is connected to a traffic lane is drivable; a bicycle lane behind a kerb belongs to the walkway,
-    /// a shoulder behind one to nobody; an edge strip touching a walkway is part of it.
+    /// The ground of each lane, left to right, in the sense of the nuScenes map: all paved lanes that are connected to
+    /// a traffic lane are drivable. A bicycle lane behind a kerb belongs to the walkway, a shoulder behind a kerb to no
+    /// layer. A narrow edge strip that touches a walkway is part of it.
     pub fn grounds(&self) -> Vec<Ground> {
         let lanes: Vec<&Lane> = self.lanes_left_to_right().collect();
         let widths: Vec<f64> = self

@@ -72,7 +72,7 @@ impl MapCut {
     }
 }
 
-/// A layout and what went into it.
+/// A layout, and facts about the roads that went into it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayoutImport {
     /// Ego at the origin, x forward.
@@ -88,21 +88,22 @@ pub struct LayoutImport {
     /// Columns that are drivable although no traffic lane lies there, by the kind of lane: `shoulder`, `stop`,
     /// `restricted`, `biking`. The nuScenes map counts them as drivable; a road's own rules do not.
     pub drivable_beside_traffic: BTreeMap<String, usize>,
-    /// What the file puts beside the road, and roads that cross above the ground, in the ego frame.
+    /// Scenery that the file puts beside the road, and roads that cross above the ground, in the ego frame.
     pub background: Background,
     /// How many of these things are bridges.
     pub bridge_count: usize,
-    /// What the file says to stand or drive on the roads of the map, in the ego frame.
+    /// Boxes that stand or drive on the roads of the map, by the file, in the ego frame.
     pub boxes: BTreeMap<BoxId, SceneBox>,
     /// True if the layout is the one that Sceneloom wrote the file from, to the last cell, and not made of the roads.
     pub is_own: bool,
-    /// What the file holds and the import does not, counted by kind.
+    /// Parts of the file that the import does not have, counted by kind.
     pub skipped: Skipped,
     in_junction: Vec<bool>, // columns
 }
 
 impl LayoutImport {
-    /// The layout without the lanes that lead through junctions: nobody waits there, so traffic is seeded on the others.
+    /// The layout without the lanes that lead through junctions: traffic is seeded on the other lanes, as vehicles do
+    /// not wait there.
     pub fn without_lanes_of_junctions(&self) -> BevLayout {
         let extent = self.layout.extent();
         let stays = |line: &&Polyline| {
@@ -140,7 +141,7 @@ impl RoadNetwork {
         self.to_layout_over(Extent::WINDOW, at_m, heading_rad)
     }
 
-    /// The same over a map of another extent.
+    /// The layout that [`Self::to_layout`] makes, over a map of another extent.
     pub fn to_layout_over(&self, extent: Extent, at_m: DVec2, heading_rad: f64) -> LayoutImport {
         let window = MapCut {
             at_m,
@@ -284,7 +285,7 @@ impl Canvas {
         self.budget = self
             .budget
             .saturating_sub(cost::of_scan(extent, area_in_ego.len()));
-        // What is left out is counted with the roads beyond the budget.
+        // An area that is left out is counted with the roads beyond the budget.
         if self.budget == 0 {
             return false;
         }
@@ -454,7 +455,7 @@ impl Canvas {
         }
     }
 
-    /// What lies on the ground besides the roads.
+    /// Draws the lines and areas on the ground that belong to no road.
     fn drawn(&mut self, drawn: &Drawn) {
         let to_ego = |canvas: &Self, points: &[DVec2]| -> Vec<DVec2> {
             points.iter().map(|p| canvas.to_ego(*p)).collect()
@@ -484,7 +485,7 @@ impl Canvas {
         }
     }
 
-    /// What stands beside the roads; on the finished layout.
+    /// Forms of the scenery beside the roads; the layout must be finished.
     fn things(&mut self, network: &RoadNetwork, skipped: &mut Skipped) -> Vec<Form> {
         let mut things = Things {
             window: self.window,

@@ -1,5 +1,5 @@
-//! Which roads lie on the ground, and how high it is under them. Where two roads cross at different heights one of them
-//! is the ground: the ego's own road if it takes part, else the lower one.
+//! Tells which roads lie on the ground, and how high it is under them. Where two roads cross at different heights one
+//! of them is the ground: the ego vehicle's own road if it is one of them, else the lower one.
 
 use std::collections::HashMap;
 
@@ -13,9 +13,9 @@ use super::{Road, RoadEnd, RoadNetwork};
 use scene::Window;
 use scene::raster::polygon_cells;
 
-/// Surfaces further apart than this are a bridge and what is below it, m.
+/// Two surfaces farther apart than this are a bridge and the road below it, m.
 const CLEARANCE_M: f64 = 3.0;
-/// A bridge reaches this far beyond what it crosses, m.
+/// A bridge reaches this far beyond the road that it crosses, m.
 const ABUTMENT_M: f64 = 3.0;
 /// Two bridges of one road that are closer together are one, m.
 const JOIN_M: f64 = 15.0;
@@ -69,7 +69,7 @@ impl Cover {
 }
 
 impl Levels {
-    /// Of the roads around the ego; `None` if every road of the file is flat.
+    /// Levels of the roads around the ego vehicle; `None` if every road of the file is flat.
     pub fn survey(network: &RoadNetwork, window: &MapCut) -> Option<Self> {
         if network.roads.iter().all(is_flat) {
             return None;
@@ -219,7 +219,7 @@ impl Patch {
     }
 }
 
-/// Where roads cross at different heights: what is not on the ground.
+/// Stretches of roads that are not on the ground, where roads cross at different heights.
 fn stretches(network: &RoadNetwork, window: &MapCut, covers: &[Vec<Cover>]) -> Vec<Stretch> {
     let ego = EgoRoad::find(network, window, covers);
     let mut out = Vec::new();
@@ -241,7 +241,7 @@ fn stretches(network: &RoadNetwork, window: &MapCut, covers: &[Vec<Cover>]) -> V
     out
 }
 
-/// Joins what overlaps or nearly does.
+/// Joins stretches that overlap or nearly do.
 fn merge(stretches: &mut Vec<Stretch>) {
     stretches.sort_by(|a, b| {
         let kind = |s: &Stretch| (s.road, s.off == Off::Hidden);
@@ -257,7 +257,7 @@ fn merge(stretches: &mut Vec<Stretch>) {
     });
 }
 
-/// The road that the ego stands on, and those that continue it.
+/// The road that the ego vehicle stands on, and the roads that continue it.
 struct EgoRoad {
     height_m: f64,
     is_own: Vec<bool>,

@@ -15,7 +15,7 @@ const DRIVABLE_M: f64 = 1.5;
 const APART_M: f64 = 0.6;
 /// Ways along a road that differ by less are one place, m.
 const SAME_PLACE_M: f64 = 1e-6;
-/// What a line may jump from one section to the next and still be the same, m.
+/// Largest jump from one section to the next within one line, m.
 const JUMP_M: f64 = 0.3;
 /// A dropped vertex lies within this of the line that is kept, m.
 const THIN_M: f64 = 0.02;
@@ -30,7 +30,7 @@ pub(super) struct Track {
     against_line: bool,
 }
 
-/// What decides about lines and stays the same over a section.
+/// Facts about lines that hold over a whole section.
 pub(super) struct SectionLines<'a> {
     pub section: &'a LaneSection,
     pub grounds: &'a [Ground],
@@ -105,7 +105,8 @@ impl SectionLines<'_> {
         tracks
     }
 
-    /// Between two lane edges with opposite traffic: the edges of what is not paved, else the two themselves.
+    /// The edges of the unpaved lanes between two lane edges with opposite traffic; the two edges themselves if all is
+    /// paved.
     fn median_edges(&self, left: usize, right: usize) -> [usize; 2] {
         let mut unpaved =
             (left..right).filter(|i| matches!(self.grounds[*i], Ground::Other | Ground::Walkway));

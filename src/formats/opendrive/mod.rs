@@ -51,13 +51,13 @@ pub struct RoadNetwork {
     pub roads: Vec<Road>,
     /// May be empty.
     pub junctions: Vec<Junction>,
-    /// What the file holds and this reader does not understand or model, counted by kind.
+    /// Parts of the file that this reader does not understand or model, counted by kind.
     pub skipped: Skipped,
     /// The layout that the roads were made of, where Sceneloom wrote the file.
     pub own: Option<Arc<OwnLayout>>,
-    /// What lies on the ground besides the roads; empty for OpenDRIVE.
+    /// Lines and areas on the ground besides the roads; empty for OpenDRIVE.
     pub drawn: Drawn,
-    /// What the file says to stand or drive on the roads, in its frame, on ground at 0; empty for OpenDRIVE.
+    /// Boxes that stand or drive on the roads, by the file, in its frame, on ground at 0; empty for OpenDRIVE.
     pub boxes: Vec<SceneBox>,
     /// Where the file says that the ego vehicle begins: place in m and heading in rad, in the file's frame.
     pub start: Option<(DVec2, f64)>,
@@ -82,11 +82,11 @@ pub struct Road {
     pub junction: Option<String>,
     /// True for left-hand traffic.
     pub left_hand: bool,
-    /// What lies before its start.
+    /// Neighbour before its start.
     pub predecessor: Option<RoadEnd>,
-    /// What lies beyond its end.
+    /// Neighbour beyond its end.
     pub successor: Option<RoadEnd>,
-    /// Speed limits of all its lanes, mm/s, each from an s in m on, in order; none where none is given.
+    /// Speed limits of all its lanes, mm/s, each from an s in m on, in order; `None` for a part without a limit.
     pub limits: Vec<(f64, Option<u32>)>,
     /// Plan view.
     pub reference: ReferenceLine,
@@ -96,11 +96,11 @@ pub struct Road {
     pub lane_offset: Cubics,
     /// In order, without gaps.
     pub sections: Vec<LaneSection>,
-    /// Crossings, parking spaces, stop lines, and what stands beside the road.
+    /// Crossings, parking spaces, stop lines, and objects that stand beside the road.
     pub objects: Vec<RoadObject>,
 }
 
-/// What a road ends at.
+/// Neighbour at an end of a road.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RoadEnd {
     /// The road with this id.

@@ -1,4 +1,4 @@
-//! What lies on the road or stands beside it, and its outlines in the file's frame.
+//! Objects on the road or beside it, and their outlines in the file's frame.
 
 use glam::DVec2;
 
@@ -21,7 +21,7 @@ pub enum ObjectKind {
     },
     /// Ground of the kind of lane that its outline names.
     Area(Ground),
-    /// Something that stands beside the road.
+    /// An object that stands beside the road.
     Standing(Standing),
 }
 
@@ -55,10 +55,10 @@ pub struct Repeat {
     pub lift_m: Option<[f64; 2]>,
 }
 
-/// A crossing, a parking space, a stop line, or what stands beside the road.
+/// A crossing, a parking space, a stop line, an area, or an object that stands beside the road.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoadObject {
-    /// What it is.
+    /// Its kind.
     pub kind: ObjectKind,
     /// Position along the road, m.
     pub s_m: f64,
@@ -74,7 +74,7 @@ pub struct RoadObject {
     pub radius_m: f64,
     /// Height of its foot above the road, m.
     pub lift_m: f64,
-    /// Width of its last marking, m: what an outline of two corners means as an area.
+    /// Width of its last marking, m: an outline of two corners is a line of this width.
     pub line_width_m: Option<f64>,
     /// Outlines; empty if the object is its length by its width.
     pub outlines: Vec<Corners>,
@@ -130,7 +130,7 @@ impl RoadObject {
         }
     }
 
-    /// The corners of a copy's outlines, m, in the file's frame: as they are given, else its length by its width.
+    /// The corners of a copy's outlines, m, in the file's frame; those of its length by its width without outlines.
     pub(super) fn areas_m(&self, reference: &ReferenceLine, copy: &Copy) -> Vec<Vec<DVec2>> {
         let base = reference.at(copy.s_m);
         let origin = base.offset(copy.t_m);
@@ -155,8 +155,8 @@ impl RoadObject {
         areas
     }
 
-    /// Visits the outline of every copy, m, in the file's frame. `budget` goes down by one for each
-    /// corner; at zero the rest of a row is left out and counted, as is what has no area.
+    /// Visits the outline of every copy, m, in the file's frame. `budget` goes down by one for each corner; at zero the
+    /// rest of a row is left out. Left-out copies and outlines without an area are counted.
     pub(super) fn outlines_m(
         &self,
         reference: &ReferenceLine,

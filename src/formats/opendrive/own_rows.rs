@@ -3,8 +3,8 @@
 //! `<userData code="sceneloom" value="layout 1">` holds `<extent from="-100 -100" columns="200 200" roads="..."/>`, then
 //! `<cells rows="2">3*40 0*160</cells>` (map layers as bits, run by run along y, for so many columns along x), `<heights>` of the
 //! same form (m; only where the ground is not flat) and `<line kind="lane_center">x y x y</line>`, with
-//! `kind="speed_limit" mm_per_s="13889"` for limits. `roads` is a check sum of the
-//! text from the first `<road ` up to the rows: where another program has changed a road, the rows count no more.
+//! `kind="speed_limit" mm_per_s="13889"` for limits. `roads` is a check sum of the text from the first `<road ` up to
+//! the rows: the rows are ignored if another program has changed a road.
 
 use std::fmt::Write as _;
 
@@ -169,7 +169,7 @@ fn pack<T: std::fmt::Display>(
     }
 }
 
-/// The rows of one name; they cover the extent and nothing else.
+/// The rows of one name; together they cover exactly the extent.
 fn packed<T>(
     node: Node<'_, '_>,
     name: &'static str,

@@ -139,7 +139,8 @@ fn limits(road: Node<'_, '_>, skipped: &mut Skipped) -> Result<Vec<(f64, Option<
     }
 }
 
-/// The limit of a `<speed>` element, mm/s; none for "no limit" and "undefined". What cannot be read is counted.
+/// The limit of a `<speed>` element, mm/s; `None` for "no limit" and "undefined". A value that cannot be read is
+/// counted.
 fn speed_mm_per_s(node: Node<'_, '_>, skipped: &mut Skipped) -> Option<u32> {
     let max = node.attribute("max").unwrap_or_default().trim();
     let mps = match node.attribute("unit").map(str::trim) {
@@ -251,8 +252,8 @@ fn geometry(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Geometry> {
     make(shape)
 }
 
-/// Readers disagree on the range of p where none is given; the speed at the start tells: about 1 if p is an
-/// arc length, about the length of the record if p runs from 0 to 1.
+/// True if p runs from 0 to 1. Readers disagree on the range of p where none is given, but the speed at the start tells
+/// it: about 1 if p is an arc length, about the length of the record if p runs from 0 to 1.
 fn looks_normalized(speed: f64, length: f64) -> bool {
     (speed / length).ln().abs() < speed.ln().abs()
 }

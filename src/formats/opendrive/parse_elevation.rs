@@ -1,4 +1,4 @@
-//! From XML to the height of a road's surface. What a profile does that no road can do is counted.
+//! From XML to the height of a road's surface. Profiles that no road can have are counted.
 
 use roxmltree::Node;
 
@@ -11,7 +11,7 @@ use super::xml::{
 
 /// Two records that meet with a larger difference leave a step, m.
 const JUMP_M: f64 = 0.2;
-/// The same for tilts, rad.
+/// Two records of tilt that meet with a larger difference leave a step, rad.
 const JUMP_RAD: f64 = 0.05;
 
 /// The profiles of a road that is `end_s_m` long.

@@ -1,5 +1,5 @@
-//! From XML to what lies on the road: crossings, parking spaces, stop lines, and to what stands beside
-//! it. Everything else is counted.
+//! From XML to objects: crossings, parking spaces and stop lines on the road, and objects that stand beside it. All
+//! other objects are counted.
 
 use roxmltree::Node;
 
@@ -54,7 +54,7 @@ fn names(node: Node<'_, '_>) -> [String; 3] {
     ["type", "subtype", "name"].map(|f| plain(node.attribute(f)))
 }
 
-/// What an object is that stands beside the road.
+/// Kind of an object that stands beside the road; `None` if it is not known or does not stand there.
 fn standing(node: Node<'_, '_>) -> Option<Standing> {
     let [kind, subtype, name] = names(node);
     Standing::from_names(&kind, &subtype, &name)
@@ -105,7 +105,7 @@ fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject
     ];
     count_others(node, &known, skipped);
     let mut corners = Vec::new();
-    // Sizes upward matter only for what stands.
+    // Heights matter only for objects that stand.
     let stands = matches!(kind, ObjectKind::Standing(_));
     let upward = |node, field| {
         if stands {

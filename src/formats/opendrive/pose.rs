@@ -95,9 +95,10 @@ impl RoadNetwork {
         [low, high]
     }
 
-    /// The same in another frame.
+    /// Corners of the rectangle around all reference lines in another frame, m; both zero if there is no road. `frame`
+    /// takes a point of the file's frame to the other.
     pub fn bounds_from(&self, frame: impl Fn(DVec2) -> DVec2) -> (DVec2, DVec2) {
-        // A curve bends out of the chord between two of its points by less than the margin that anybody adds.
+        // A curve leaves the chord between two of its points by less than the margin that callers add.
         const STEPS: usize = 64;
         let points = self.roads.iter().flat_map(|road| {
             let length_m = road.length_m();

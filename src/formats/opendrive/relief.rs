@@ -35,16 +35,17 @@ pub(super) fn over(extent: Extent, known_m: &[Option<f64>]) -> (Relief, f64) {
         let m = if m.abs() < TINY_M { 0.0 } else { m };
         m.clamp(f64::from(-Relief::LIMIT_M), f64::from(Relief::LIMIT_M)) as f32
     };
-    // All finite and cut: nothing that is refused.
+    // All heights are finite and within the limit, so none is refused.
     let relief = Relief::from_heights(extent, heights.iter().map(cut).collect()).unwrap_or_default();
     (relief, ego)
 }
 
-/// Lowest and highest ground of a map, m: voxels hold no ground below, and little above has room for what stands on it.
+/// Lowest and highest ground of a map, m: voxels hold no lower ground, and leave too little room for things on higher
+/// ground.
 const SHOWN_M: [f64; 2] = [-0.4, 3.2];
 
-/// The relief of a map with its hills so low that voxels can show them; slopes near the ego vehicle's height stay nearly as they
-/// are. `None` if they can as it is.
+/// The relief of a map with its hills lowered so far that voxels can show them; slopes near the ego vehicle's height
+/// stay nearly as they are. `None` if voxels can show the relief as it is.
 pub(super) fn levelled(relief: &Relief) -> Option<Relief> {
     let (extent, heights_m) = (relief.extent()?, relief.heights_m()?);
     let shown = |m: &f32| (SHOWN_M[0]..=SHOWN_M[1]).contains(&f64::from(*m));

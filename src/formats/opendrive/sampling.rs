@@ -11,8 +11,8 @@ const STEP_M: f64 = 0.5;
 /// Shortest step along the reference line, m: where a curve is so tight that this is too long, it is not a road.
 const SHORTEST_M: f64 = 0.01;
 
-/// Work that one call may do: cross-sections times lanes, grid cells, corners. Thirty times what the densest
-/// window of a large town map takes; only a file made to be slow ever reaches it.
+/// Work that one call may do: cross-sections times lanes, grid cells, corners. It is thirty times the work for the
+/// densest window of a large town map; only a file made to be slow ever reaches it.
 pub(super) const BUDGET: usize = 1_000_000;
 
 /// The edges of all lanes at one place of a road.
@@ -88,7 +88,7 @@ fn reach_m(road: &Road, section: &LaneSection) -> f64 {
         .chain(starts)
         .map(|s| lane_offset(road, s, s).abs())
         .fold(0.0, f64::max);
-    // The widest places are found by sampling: a margin for what lies between the samples.
+    // The widest places are found by sampling, with a margin for places between the samples.
     1.1 * (most + section.reach_m()) + 1.0
 }
 
@@ -99,7 +99,7 @@ fn inside<'a, T>(list: &'a [T], section: &LaneSection, s_m: impl Fn(&T) -> f64) 
     &list[from..to.max(from)]
 }
 
-/// Visits consecutive steps `(from, to)` of one section, skipping what cannot come within `radius_m` of
+/// Visits consecutive steps `(from, to)` of one section, skipping steps that cannot come within `radius_m` of
 /// `center_m`. A visit that returns a radius sets it anew, so that a search may shrink it. Stops at a budget of 0.
 pub(super) fn walk(
     road: &Road,

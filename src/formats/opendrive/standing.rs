@@ -1,8 +1,8 @@
-//! What the objects of a file that stand beside the road are, by the names that files give them.
+//! Kinds of objects that stand beside the road, by the names that files give them.
 
 use scene::background::{LineKind, PostKind, TreeKind};
 
-/// Something that stands beside the road.
+/// Kind of an object that stands beside the road.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standing {
     /// A building.
@@ -11,9 +11,9 @@ pub enum Standing {
     Tree(TreeKind),
     /// An area of shrubs; a hedge where it runs along a line.
     Shrubs,
-    /// Something along a line.
+    /// A thing along a line, such as a fence.
     Line(LineKind),
-    /// Something small.
+    /// A small thing, such as a pole.
     Post(PostKind),
     /// Any other thing of some size.
     Obstacle,
@@ -34,8 +34,8 @@ impl Standing {
         }
     }
 
-    /// From `type`, `subtype` and `name`, each in lower-case letters only; `None` for what is not known or does not
-    /// stand beside roads. The name counts only where there is no type.
+    /// From `type`, `subtype` and `name`, each in lower-case letters only; `None` for an object that is not known or
+    /// does not stand beside roads. The name counts only where there is no type.
     pub fn from_names(kind: &str, subtype: &str, name: &str) -> Option<Self> {
         let kind = match kind {
             "" | "none" => name,

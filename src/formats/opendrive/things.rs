@@ -12,11 +12,11 @@ use scene::{BevLayer, BevLayout, Form};
 
 /// Things of one window, at most.
 const MOST_THINGS: usize = 4000;
-/// What begins higher above the road than this hangs or lies on something, m.
+/// A thing that begins higher above the road than this hangs or lies on something, m.
 const HANGS_M: f64 = 1.0;
-/// A signal that begins higher above the road than this and stands on it hangs from something, m.
+/// A signal at a place on the road that begins higher above it than this hangs from something, m.
 const OVERHEAD_M: f64 = 2.5;
-/// A step along something that runs with the road, m.
+/// Step along an object that runs with the road, m.
 const STEP_M: f64 = 2.0;
 /// Posts closer than this are one, m.
 const ONE_PLACE_M: f64 = 0.5;
@@ -183,7 +183,8 @@ fn shares_place(form: &Form, post: &Post) -> bool {
     }
 }
 
-/// A line of these sizes; what is not given is as usual for its kind. A barrier too high or wide for a rail is a wall.
+/// A line of these sizes; a size that is not given is the usual one of its kind. A barrier too high or wide for a rail
+/// is a wall.
 fn line(kind: LineKind, points_m: Vec<DVec2>, height_m: f64, width_m: f64) -> Line {
     let kind = match kind {
         LineKind::GuardRail if height_m > 1.3 || width_m > 0.8 => LineKind::Wall,
@@ -197,7 +198,7 @@ fn line(kind: LineKind, points_m: Vec<DVec2>, height_m: f64, width_m: f64) -> Li
     }
 }
 
-/// The forms of one copy in the ego frame; none if its size tells nothing.
+/// The forms of one copy in the ego frame; none if it has no usable size.
 fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, window: MapCut) -> Vec<Form> {
     let base = road.reference.at(copy.s_m);
     let position_m = window.to_ego(base.offset(copy.t_m));
@@ -310,7 +311,8 @@ fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, wind
     }
 }
 
-/// A wall, fence or rail: along the longer side of a slim outline, around a wide one, else its length along its heading.
+/// A wall, fence or rail: along the longer side of a slim outline, around a wide one; without an outline along its
+/// heading, as long as it is.
 fn lines(road: &Road, object: &RoadObject, kind: LineKind, copy: &Copy, window: MapCut) -> Vec<Form> {
     let mut out = Vec::new();
     for area in object.areas_m(&road.reference, copy) {

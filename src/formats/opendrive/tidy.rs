@@ -18,8 +18,7 @@ const AROUND: [(i64, i64); 9] = [
 /// A larger island in a junction is meant, cells (9.6 m2).
 const LARGEST_HOLE: usize = 60;
 
-/// Morphological closing by one cell. Cells that are `named` by a lane of the file (a median, a kerb) stay
-/// what they are.
+/// Morphological closing by one cell. Cells that are `named` by a lane of the file (a median, a kerb) are not changed.
 pub(super) fn close_gaps(extent: Extent, drivable: &mut [bool], named: &[bool]) {
     let grown: Vec<bool> = (0..drivable.len())
         .map(|i| neighbours(extent, i, &AROUND).flatten().any(|n| drivable[n]))

@@ -1,4 +1,4 @@
-//! Reading attributes with a place to name in the error, and the count of what is not understood.
+//! Reading attributes with a place to name in the error, and counting elements that are not understood.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ pub enum OpenDriveError {
     /// The bytes are not well-formed XML.
     #[error("not an XML file: {detail}")]
     NotXml {
-        /// What the XML reader said, with line and column.
+        /// Message of the XML reader, with line and column.
         detail: String,
     },
     /// XML of another kind.
@@ -30,7 +30,7 @@ pub enum OpenDriveError {
         place: String,
         /// The bound.
         limit: usize,
-        /// What is counted.
+        /// Name of what is counted.
         what: &'static str,
     },
     /// An element or attribute is missing or holds something unusable.
@@ -40,16 +40,16 @@ pub enum OpenDriveError {
         place: String,
         /// Attribute or child element.
         field: String,
-        /// What would have been right.
+        /// The value that was expected.
         expected: String,
-        /// What is there.
+        /// The value that was found.
         found: String,
     },
 }
 
 pub(crate) type Result<T> = std::result::Result<T, OpenDriveError>;
 
-/// What was not understood or is not modelled, counted by kind.
+/// Numbers, by kind, of things that were not understood or are not modelled.
 pub type Skipped = BTreeMap<String, usize>;
 
 /// The text of a file: UTF-8, UTF-16 with a byte order mark, or Latin-1 where the header says so.

@@ -1,4 +1,4 @@
-//! Who takes part: the ego vehicle, every box that stands, every track.
+//! Participants: the ego vehicle, every box that stands, every track.
 
 use std::fmt::Write as _;
 
@@ -15,22 +15,23 @@ const BASE_SHARE: f64 = 0.6;
 /// Name of the ego vehicle.
 pub(super) const EGO: &str = "Ego";
 
-/// Somebody or something of the scenario.
+/// A participant of the scenario.
 pub(super) struct Actor {
     /// Unique in the file; letters, digits and `_`.
     pub name: String,
     pub who: Who,
     pub class: Class,
-    /// What it is called, for a person.
+    /// Name for a person.
     pub called: String,
     /// Length, width, height, m.
     pub size_m: DVec3,
-    /// From its reference point to the middle of its box, along its heading, to its left and up, m. The reference point of a vehicle
-    /// is its rear axle on the ground, of all else the middle of its box on the ground.
+    /// From its reference point to the middle of its box, along its heading, to its left and up, m. The reference point
+    /// of a vehicle is its rear axle on the ground; that of any other participant is the middle of its box on the
+    /// ground.
     pub center_m: DVec3,
 }
 
-/// What of the scene it is.
+/// The ego vehicle or the box of the scene that a participant is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Who {
     Ego,
@@ -80,7 +81,7 @@ fn actor(b: &SceneBox, who: Who) -> Actor {
     }
 }
 
-/// True for what the standard has as a vehicle: two-wheelers too.
+/// True for classes that are vehicles in the standard, two-wheelers included.
 fn is_vehicle(class: Class) -> bool {
     class.is_vehicle() || matches!(class, Class::Motorcycle | Class::Bicycle)
 }

@@ -1,5 +1,6 @@
-//! Writes OpenSCENARIO XML 1.3 (ASAM): what stands and moves as entities, one trajectory for each track and for the ego vehicle,
-//! time of day and weather. The roads are a file beside it, see `opendrive::write`. All poses are in the world frame.
+//! Writes OpenSCENARIO XML 1.3 (ASAM): standing and moving participants as entities, one trajectory for each track and
+//! for the ego vehicle, time of day and weather. The roads are a file beside it, see `opendrive::write`. All poses are
+//! in the world frame.
 
 mod entities;
 mod environment;
@@ -16,7 +17,7 @@ pub const MAP: &str = "map.xodr";
 /// Poses of all trajectories together, at most: about half a gigabyte of text.
 pub const MOST_POSES: usize = 4_000_000;
 
-/// The date in every file: the same scene gives the same bytes.
+/// The date in every file, always the same, so that a scene always gives the same bytes.
 const DATE: &str = "2026-01-01T00:00:00";
 
 /// The bytes of a scenario. Errors if there are too many poses in it.

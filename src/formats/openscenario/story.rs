@@ -11,7 +11,7 @@ use scene::{Clip, Scene, SceneBox};
 /// A scene that stands still is played for this long, s: its boxes have speeds to begin with.
 const STILL_S: f64 = 10.0;
 
-/// Where the reference point of somebody is.
+/// Pose of a participant's reference point.
 #[derive(Clone, Copy, PartialEq)]
 struct Place {
     at_m: DVec3,
@@ -19,7 +19,7 @@ struct Place {
     turn_rad: [f64; 3],
 }
 
-/// Somebody's place at a time, and the speed along the heading, m/s; `None` while it is not there.
+/// Place of a participant at a time, and its speed along the heading, m/s; `None` while it is not there.
 fn place(scene: &Scene, actor: &Actor, time_s: f64) -> Option<(Place, f64)> {
     let (clip, canvas) = (scene.clip(), scene.canvas());
     let relief = &canvas.layout.relief;
@@ -70,8 +70,8 @@ impl Place {
     }
 }
 
-/// The frames of a clip at which somebody is there, with the places: at the ends, and between them where it is not where it is
-/// before and behind.
+/// The frames of a clip at which a participant is there, with its places. Between the first and the last, a frame is
+/// left out if the place is the same before and behind it.
 fn trajectory(scene: &Scene, actor: &Actor) -> Vec<(f64, Place, f64)> {
     let clip = scene.clip();
     let all = (0..clip.frames()).filter_map(|frame| {
@@ -105,7 +105,7 @@ pub(super) fn init(out: &mut String, scene: &Scene, actors: &[Actor]) {
             true => trajectory(scene, actor).first().copied(),
             false => place(scene, actor, 0.0).map(|(place, speed)| (0.0, place, speed)),
         };
-        // Somebody who is at no frame of the clip is nowhere.
+        // A participant that is at no frame of the clip gets no place.
         let Some((time_s, place, speed_mps)) = first else {
             continue;
         };
@@ -126,7 +126,7 @@ pub(super) fn init(out: &mut String, scene: &Scene, actors: &[Actor]) {
     }
 }
 
-/// An action that shows or hides somebody.
+/// An action that shows or hides a participant.
 fn shown(is_there: bool) -> String {
     format!("<VisibilityAction graphics=\"{is_there}\" sensors=\"{is_there}\" traffic=\"{is_there}\"/>")
 }

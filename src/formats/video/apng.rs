@@ -8,7 +8,7 @@ use png::{BitDepth, ColorType, Writer};
 use super::Encoder;
 use crate::error::FormatError;
 
-/// What the encoder has written, which it does not give back itself.
+/// Bytes that the encoder has written; it does not give them back itself.
 #[derive(Clone, Default)]
 struct Written(Arc<Mutex<Vec<u8>>>);
 

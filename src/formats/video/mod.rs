@@ -8,14 +8,14 @@ use std::path::Path;
 
 use crate::error::FormatError;
 
-/// What a file of moving pictures is.
+/// Format of a file of moving pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VideoKind {
     /// 256 colours a frame; every browser and mail program shows it.
     Gif,
     /// All colours, no loss; browsers show it.
     Apng,
-    /// H.264; small, and what players and slides take.
+    /// H.264; small, and accepted by players and slides.
     Mp4,
 }
 
@@ -51,7 +51,7 @@ trait Encoder: Send {
     fn finish(self: Box<Self>) -> Result<Vec<u8>, FormatError>;
 }
 
-/// A file of moving pictures that is being made. The same frames give the same bytes.
+/// A file of moving pictures that is being made. Equal frames give equal bytes.
 pub struct VideoWriter {
     size: [u32; 2],
     encoder: Box<dyn Encoder>,

@@ -16,7 +16,7 @@ const MOST_VOXELS: usize = 1 << 26;
 const MOST_COLUMNS: usize = 1 << 20;
 const COLUMNS_PER_VOXEL: usize = 256;
 
-/// A map, and what was left out of it.
+/// A map, and counts of the parts of the file that it leaves out.
 #[derive(Debug)]
 pub(crate) struct Placed {
     pub grid: VoxelGrid,
@@ -56,8 +56,8 @@ impl Stand<'_> {
     }
 }
 
-/// The map that a file shows. Its columns are those of the networks' window and of the models around it; of a file that this
-/// program wrote, those of the models.
+/// The map that a file shows. Its columns are those of the networks' window and of the models around it. In a file that
+/// this program wrote they are those of the models alone.
 pub(crate) fn place(file: &File<'_>) -> Result<Placed, String> {
     let mut skipped = BTreeMap::new();
     let mut count = |what: &str, n: usize| {

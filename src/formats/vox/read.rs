@@ -1,5 +1,5 @@
-//! The chunks of a `.vox` file. All of them lie in one list, so nothing here calls itself; what a chunk says of its size is
-//! checked against what is there.
+//! The chunks of a `.vox` file. All of them lie in one list, so no function here is recursive; the size that a chunk
+//! gives is checked against the bytes that are there.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +7,7 @@ use scene::message::quoted;
 
 use super::LONGEST;
 
-/// What a file holds that is used here.
+/// The parts of a file that are used here.
 #[derive(Debug, Default)]
 pub(crate) struct File<'a> {
     pub models: Vec<Model<'a>>,
@@ -49,7 +49,7 @@ pub(crate) enum Node {
     Shape(Vec<i32>),
 }
 
-/// The turn that changes nothing.
+/// The turn that leaves everything in place.
 pub(crate) const NO_TURN: [[i64; 3]; 3] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
 /// A chunk: its name, its content and its children.
@@ -113,7 +113,7 @@ fn name(id: &[u8; 4]) -> String {
     quoted(&String::from_utf8_lossy(id), 8)
 }
 
-/// What is used of a dictionary.
+/// The entries of a dictionary that are used.
 #[derive(Default)]
 struct Dict {
     name: Option<String>,
@@ -122,7 +122,7 @@ struct Dict {
     move_by: Option<[i64; 3]>,
 }
 
-/// What has not been read yet.
+/// Bytes that have not been read yet.
 struct Bytes<'a> {
     left: &'a [u8],
 }
@@ -204,7 +204,7 @@ impl<'a> Bytes<'a> {
         Ok((number, node))
     }
 
-    /// A number of things of at least so many bytes each, no more than there can be.
+    /// A count of entries of at least `bytes` bytes each. Errors if the bytes left cannot hold so many.
     fn counted(&mut self, bytes: usize) -> Result<usize, String> {
         let count = self.u32()? as usize;
         match count <= self.left.len() / bytes {

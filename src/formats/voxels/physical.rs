@@ -41,12 +41,13 @@ impl Physical {
         }
     }
 
-    /// Labels of Occ3D's convention: the other way round. What ends above the grid's top is cut off there.
+    /// Labels of Occ3D's convention, the inverse of [`Self::raised`]. Things that end above the grid's top are cut off
+    /// there.
     pub fn lowered(&self) -> VoxelGrid {
         self.grid(lower)
     }
 
-    /// The same bins as labels: for what follows Occ3D's convention already.
+    /// The bins as labels, unchanged: for bins that follow Occ3D's convention already.
     pub fn as_it_is(&self) -> VoxelGrid {
         self.grid(|column| *column)
     }
@@ -71,7 +72,7 @@ impl Physical {
         &self.columns[self.extent.index(x, y)]
     }
 
-    /// The same for writing.
+    /// A column for writing, lowest bin first.
     pub fn column_mut(&mut self, x: usize, y: usize) -> &mut [u8; Self::NZ] {
         &mut self.columns[self.extent.index(x, y)]
     }
@@ -96,8 +97,8 @@ impl Physical {
         })
     }
 
-    /// True if the ground lies where Occ3D's labels have it: more than one bin below where it is, by the middle one of the
-    /// ground's voxels around the ego vehicle, or of all if there are none. False without ground.
+    /// True if the ground lies where Occ3D's labels have it, more than one bin below its true place. The median of the
+    /// ground's voxels around the ego vehicle tells, or of all if there are none around it. False without ground.
     pub fn is_lowered(&self) -> bool {
         let ground = |near_m: f64| {
             let near = |(x, y, z, label): (usize, usize, usize, u8)| {
@@ -113,7 +114,7 @@ impl Physical {
             .is_some_and(|bin| bin == 0)
     }
 
-    /// A map that holds all of it and the networks' window: no larger than what is set needs.
+    /// A map that holds all voxels that are not free and the networks' window, and no more columns than that needs.
     pub fn snug(&self) -> Self {
         let window = Extent::WINDOW;
         let (mut low, mut high) = (window.from(), [0, 1].map(|a| window.from()[a] + side(window, a)));
@@ -182,8 +183,8 @@ fn lower(column: &[u8; Physical::NZ]) -> [u8; Physical::NZ] {
     out
 }
 
-/// What is unobserved in labels of Occ3D's convention where these bins of each column `[x][y]` are observed: a voxel is
-/// observed if one is that it may stand for, itself or one of the two above it.
+/// The unobserved voxels in labels of Occ3D's convention where these bins of each column `[x][y]` are observed. A voxel
+/// is observed if one of the bins that it may stand for is: its own or one of the two above it.
 pub(crate) fn unobserved(extent: Extent, observed: &[u32]) -> Option<Unobserved> {
     let word = |bits: &u32| !((0..=SMEAR).fold(0, |all, up| all | bits >> up) as u16);
     Unobserved::from_words(extent, observed.iter().map(word).collect())

@@ -118,7 +118,7 @@ pub(crate) struct Cells<'a> {
 const CLASSES: u32 = 32;
 
 impl<'a> Cells<'a> {
-    /// None yet. Errors in one line if the lattice lies nowhere near the ego vehicle.
+    /// Holds no cells yet. Errors in one line if the lattice lies nowhere near the ego vehicle.
     pub fn new(lattice: &'a Lattice, ego_from_lattice: &'a Pose) -> Result<Self, String> {
         let corners = lattice.corners_m().map(|corner| ego_from_lattice.apply(corner));
         let low = corners.iter().fold(corners[0], |low, c| low.min(*c));
@@ -157,9 +157,9 @@ impl<'a> Cells<'a> {
         Some((self.extent.index(x, y) * Physical::NZ + z) as u32)
     }
 
-    /// The voxels, and the number of cells that lie in none. A voxel has the most frequent class of the cells with their
-    /// middle in it; where cells are larger than voxels, that of the cell that holds its own middle. The map covers the
-    /// networks' window, and more only where something lies there.
+    /// The voxels, and the number of cells that lie in no voxel. A voxel has the most frequent class of the cells with
+    /// their middle in it; where cells are larger than voxels, that of the cell that holds its own middle. The map
+    /// covers the networks' window, and more only if cells beyond it are set.
     pub fn voxels(self) -> (Physical, usize) {
         match self.coarse.is_empty() {
             true => self.by_votes(),

@@ -6,7 +6,7 @@ use scene::roads::curve;
 
 /// Rounds of smoothing, in which each point comes nearer to its neighbours: the steps of a slanted border go.
 const ROUNDS: usize = 5;
-/// A line may leave the smooth border by so much, m.
+/// Largest distance of a line from the smooth border, m.
 const OFF_M: f64 = 0.12;
 /// Shorter borders are left out, m: holes of a cell or two.
 const SHORTEST_M: f64 = 3.0;
@@ -21,7 +21,7 @@ pub(crate) struct Border {
     pub(crate) is_closed: bool,
 }
 
-/// The borders of the columns for which `inside` says so (by place in arrays `[x][y]`). The side of the map is none.
+/// The borders of the columns for which `inside` holds (by place in arrays `[x][y]`). The side of the map is no border.
 pub(crate) fn borders(extent: Extent, inside: impl Fn(usize) -> bool) -> Vec<Border> {
     let mut sides = Sides::of(extent, inside);
     let mut out = Vec::new();

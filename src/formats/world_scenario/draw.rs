@@ -12,7 +12,7 @@ const ROUND: usize = 10;
 pub(crate) struct Corner {
     /// Pixels.
     pub(crate) at: DVec2,
-    /// Distance from the camera, m: what is nearer is in front.
+    /// Distance from the camera, m: nearer corners are in front.
     pub(crate) distance_m: f64,
     /// sRGB, each 0 to 255.
     pub(crate) color: DVec3,
@@ -28,7 +28,7 @@ pub(crate) struct Canvas {
 }
 
 impl Canvas {
-    /// A black picture of so many pixels.
+    /// A black picture of this size in pixels.
     pub(crate) fn new(width: u32, height: u32) -> Self {
         let (width, height) = (width as usize * SAMPLES, height as usize * SAMPLES);
         Self {
@@ -39,7 +39,7 @@ impl Canvas {
         }
     }
 
-    /// Makes it black, for another picture of so many pixels.
+    /// Makes the picture black, with a new size in pixels.
     pub(crate) fn begin(&mut self, width: u32, height: u32) {
         (self.width, self.height) = (width as usize * SAMPLES, height as usize * SAMPLES);
         let samples = self.width * self.height;
@@ -89,8 +89,8 @@ impl Canvas {
         }
     }
 
-    /// A line with round ends, so many pixels wide where it runs upright. As the documents' own pictures have it, a line that
-    /// runs level is thinner, in the ratio of the picture's height to its width.
+    /// A line with round ends, `width_px` wide where it runs upright. A line that runs level is thinner, by the ratio
+    /// of the picture's height to its width, as in the documents' own pictures.
     pub(crate) fn line(&mut self, ends: &[Corner; 2], width_px: f64) {
         let squeeze = DVec2::new(1.0, self.width as f64 / self.height as f64);
         let [a, b] = ends.map(|end| end.at * squeeze);

@@ -1,13 +1,13 @@
-//! Lines on the ground as they are painted: one beside another, and in dashes.
+//! Lines on the ground as they are painted: a line beside another, and dashes.
 
 use glam::DVec3;
 
 /// Length of a dash of a line between lanes, and of the gap after it, m.
 pub(crate) const LONG_DASH_M: [f64; 2] = [3.0, 9.0];
-/// Each of two lines lies so far from their middle, m.
+/// Distance of each line of a double line from its middle, m.
 pub(crate) const DOUBLE_M: f64 = 0.1;
 
-/// A line so far to the left of another along the ground, m.
+/// A line `offset_m` to the left of another along the ground, m.
 pub(crate) fn beside(line: &[DVec3], offset_m: f64) -> Vec<DVec3> {
     let last = line.len().saturating_sub(1);
     let left = |i: usize| {

@@ -1,6 +1,6 @@
-//! What a camera's picture of a world scenario shows: cuboids of five kinds that run from dark in front to light behind, with
-//! grey edges, and the lines and areas of the map, all darker with distance. Colours and widths are those of version 3 of the
-//! public renderer.
+//! A camera's picture of a world scenario: cuboids of five kinds that run from dark in front to light behind, with grey
+//! edges, and the lines and areas of the map, all darker with distance. Colours and widths are those of version 3 of
+//! the public renderer.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -13,9 +13,9 @@ use super::ftheta::FTheta;
 use super::map::{Map, Marking};
 use super::{Kind, category};
 
-/// Nothing farther is drawn, and colours go to black up to there, m.
+/// Farthest distance that is drawn, m; colours go to black up to there.
 const FARTHEST_M: f64 = 200.0;
-/// Nothing nearer is drawn, m.
+/// Nearest distance that is drawn, m.
 const NEAREST_M: f64 = 0.05;
 /// Width of the picture that widths of lines are given for, pixels.
 const WIDTH_PX: f64 = 1280.0;
@@ -55,7 +55,7 @@ pub(crate) struct Painted {
 }
 
 impl Painted {
-    /// Of a map.
+    /// The lines and areas of a map.
     pub(crate) fn of(map: &Map) -> Self {
         let mut lines = Vec::new();
         for (marking, line) in &map.lines {
@@ -123,7 +123,7 @@ struct Eye<'a> {
 }
 
 impl Eye<'_> {
-    /// Where a point is in the picture, and its depth along the optical axis, m; `None` outside of what is drawn.
+    /// Place of a point in the picture, and its depth along the optical axis, m; `None` if it is not drawn.
     fn corner(&self, p: DVec3, color: DVec3) -> Option<(Corner, f64)> {
         let local = self.camera_from_scenario.apply(p);
         let distance_m = local.length();
@@ -140,7 +140,7 @@ impl Eye<'_> {
         Some((corner, local.z))
     }
 
-    /// How long parts of something at a distance may be, m, so that no bend of the lens is missed.
+    /// Longest part of a line at a distance, m, for which no bend of the lens is missed.
     fn step_m(distance_m: f64, longest_m: f64) -> f64 {
         (0.06 * distance_m).clamp(0.04, longest_m)
     }

@@ -1,7 +1,9 @@
-//! The f-theta camera: how far a ray's angle from the optical axis lies from the principal point is a polynomial.
+//! The f-theta camera: the angle of a ray from the optical axis is a polynomial of its distance from the principal
+//! point.
 //!
-//! World scenarios know this model alone. Any other camera, a pinhole too, is brought to it by a fit of the angle over the distance in pixels: within a
-//! tenth of a pixel up to a view 105 degrees wide (of 1600 pixels), .45 pixels at 120 degrees.
+//! World scenarios know this model alone. Any other camera, also a pinhole, is brought to it by a fit of the angle over
+//! the distance in pixels: within a tenth of a pixel up to a view 105 degrees wide (of 1600 pixels), 0.45 pixels at 120
+//! degrees.
 
 use glam::{DVec2, DVec3};
 use numeric::linear::solve;
@@ -16,7 +18,7 @@ const CHECKS: usize = 2000;
 const CELLS: usize = 32;
 /// Rounds of reweighting after which the greatest error is as small as it gets.
 const ROUNDS: usize = 200;
-/// Beyond the corners of the picture the model goes on straight for so much of an angle, rad.
+/// The model goes on straight beyond the corners of the picture for this angle, rad.
 const BEYOND_RAD: f64 = 0.2;
 
 /// An f-theta camera; optical axes x right, y down, z forward. Pixel (0, 0) reaches from 0 to 1 on both axes.
@@ -38,7 +40,7 @@ pub struct FTheta {
 }
 
 impl FTheta {
-    /// The model of a camera. What its lens bends to one side (tangential distortion) and its rolling shutter are left out.
+    /// The model of a camera. Tangential distortion and a rolling shutter are left out.
     pub fn of(camera: &Camera) -> Self {
         let [fx, fy] = camera.focal_px;
         let linear_c = fx / fy;
@@ -46,7 +48,7 @@ impl FTheta {
         let center = DVec2::from_array(camera.center_px);
         let corner = center.abs().max((size - center).abs());
         let corner_px = DVec2::new(corner.x / linear_c, corner.y).length();
-        // The lens alone, as far as it is the same all round.
+        // The lens alone, without tangential distortion.
         let radial = Camera {
             focal_px: [1.0; 2],
             center_px: [0.0; 2],
@@ -72,7 +74,7 @@ impl FTheta {
             error_px: 0.0,
             farthest_px,
         };
-        // An error of the angle is so many times larger in pixels.
+        // The factor from an error of the angle to one in pixels.
         let px_per_rad = |r_px: f64| {
             let step = farthest_px * 1e-4;
             let (near, far) = ((r_px - step).max(0.0), (r_px + step).min(farthest_px));
@@ -103,7 +105,7 @@ impl FTheta {
         })
     }
 
-    /// The same view in a picture of another size and the same shape.
+    /// The view in a picture of another size with the same aspect ratio.
     pub fn resized(&self, width: u32, height: u32) -> Self {
         let sx = f64::from(width) / f64::from(self.width);
         let sy = f64::from(height) / f64::from(self.height);
@@ -122,7 +124,7 @@ impl FTheta {
         }
     }
 
-    /// Angle of a ray, rad, that meets the picture so far from the principal point (in pixels along y).
+    /// Angle, rad, of a ray that meets the picture at this distance from the principal point (in pixels along y).
     pub fn angle(&self, r_px: f64) -> f64 {
         self.angle_of_px.iter().rev().fold(0.0, |sum, k| sum * r_px + k)
     }

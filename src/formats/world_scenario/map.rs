@@ -1,4 +1,4 @@
-//! What the layout of a scene holds, as the elements of a world scenario.
+//! The layout of a scene as the elements of a world scenario.
 
 use glam::{DVec2, DVec3};
 use scene::road_map::{HALF_LANE_M, RoadMap};
@@ -7,7 +7,7 @@ use scene::{BevLayer, BevLayout, PolylineKind, Pose, Scene};
 use super::boundary::borders;
 use super::on_ground;
 
-/// Points of a line are at most so far apart, m, so that it follows the ground.
+/// Largest distance between points of a line, m, so that it follows the ground.
 const STEP_M: f64 = 2.0;
 /// Slope by which crossings are tilted.
 const TILT: f64 = 1e-3;
@@ -33,7 +33,7 @@ impl Marking {
     }
 }
 
-/// What marks the edge of a lane.
+/// Mark on the edge of a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Edge {
     Line(Marking),
@@ -53,7 +53,7 @@ impl Edge {
     }
 }
 
-/// An edge of a lane with what marks each of its segments.
+/// An edge of a lane with the mark on each of its segments.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rail {
     pub(crate) points_m: Vec<DVec3>,
@@ -84,7 +84,7 @@ fn tilt(corners: &mut [DVec3]) {
 }
 
 impl Map {
-    /// Of a scene. Points that are not finite are left out.
+    /// The map of a scene. Points that are not finite are left out.
     pub(crate) fn of(scene: &Scene, scenario_from_world: &Pose) -> Self {
         let layout = &scene.canvas().layout;
         let lifted = |line: &[DVec2]| -> Vec<DVec3> {
@@ -164,7 +164,7 @@ fn thinned(line: &[DVec2]) -> Vec<DVec2> {
     kept.map(|(_, p)| *p).collect()
 }
 
-/// A line so far to the left of another, m.
+/// A line `offset_m` to the left of another, m.
 fn beside(line: &[DVec2], offset_m: f64) -> Vec<DVec2> {
     let direction = |i: usize| {
         let (from, to) = (i.saturating_sub(1), (i + 1).min(line.len() - 1));
@@ -175,7 +175,7 @@ fn beside(line: &[DVec2], offset_m: f64) -> Vec<DVec2> {
         .collect()
 }
 
-/// What marks a lane's edge at a point: the layers around it tell.
+/// The mark on a lane's edge at a point, told by the layers around it.
 fn edge(layout: &BevLayout, at_m: DVec2) -> Edge {
     let extent = layout.extent();
     let reach = (NEAR_M * 2.5).round() as i64;

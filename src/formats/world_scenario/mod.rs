@@ -21,7 +21,7 @@ use scene::{Class, Pose, Scene, SceneBox};
 pub(crate) const TABLE_HZ: f64 = 10.0;
 /// Pictures of the control video per second.
 pub(crate) const VIDEO_HZ: f64 = 30.0;
-/// A scene that stands still is told for so long, s: readers drop what they see at a single moment.
+/// Length of the scenario of a scene that stands still, s: readers drop objects that they see at a single moment.
 const STILL_S: f64 = 1.0;
 
 /// How long the scenario of a scene is, s.
@@ -32,7 +32,7 @@ pub(crate) fn length_s(scene: &Scene) -> f64 {
     }
 }
 
-/// Moments of a scene, s: so many per second from 0, and its end.
+/// Moments of a scene, s: `rate_hz` per second from 0, and its end.
 pub(crate) fn times_s(scene: &Scene, rate_hz: f64) -> Vec<f64> {
     let length_s = length_s(scene);
     let count = (length_s * rate_hz + 1e-6) as usize;

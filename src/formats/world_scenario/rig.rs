@@ -17,7 +17,7 @@ const KNOWN: [(&str, f64, f64); 7] = [
     ("camera:rear:tele:30fov", 180.0, 30.0),
     ("camera:front:tele:30fov", 0.0, 30.0),
 ];
-/// A camera gets one of those names only if it looks that way, degrees.
+/// Largest angle between a camera's direction and that of the name it gets, degrees.
 const AWAY_DEG: f64 = 50.0;
 
 /// A camera under its name in the scenario.
@@ -30,7 +30,7 @@ pub(crate) struct Named {
 }
 
 impl Named {
-    /// The name as it is in names of files.
+    /// The name as used in names of files.
     pub(crate) fn file_name(&self) -> String {
         self.name.replace(':', "_")
     }
@@ -44,7 +44,7 @@ pub(crate) fn named(rig: &SensorRig) -> Vec<Named> {
     for (i, camera) in rig.cameras.iter().enumerate() {
         for (k, (_, yaw_deg, fov_deg)) in KNOWN.iter().enumerate() {
             let away_deg = (camera.aim().yaw_deg - yaw_deg + 180.0).rem_euclid(360.0) - 180.0;
-            // Between two that look the same way, the width of the view decides.
+            // The width of the view decides between two that look the same way.
             let unlike = (camera.fov_deg() / fov_deg).ln().abs();
             if away_deg.abs() <= AWAY_DEG {
                 pairs.push((away_deg.abs() + 10.0 * unlike, i, k));

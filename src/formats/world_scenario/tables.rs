@@ -1,4 +1,4 @@
-//! The tables of a world scenario: what is where at which time, the cameras, and the map.
+//! The tables of a world scenario: places at each time, the cameras, and the map.
 
 use glam::DVec3;
 use scene::{Pose, Scene, SceneBox};
@@ -11,7 +11,7 @@ use crate::table::{Field, Values, to_bytes, vectors};
 /// Version of the rows; readers ignore it.
 const VERSION: u64 = 1;
 
-/// The tables of a scene by their names, those that must be there first; of the map only those that have rows.
+/// The tables of a scene by their names, required ones first; of the map only those that have rows.
 pub(crate) fn tables(scene: &Scene) -> Result<Vec<(&'static str, Vec<u8>)>, FormatError> {
     if let Some(problem) = scene.rig.problem() {
         return Err(FormatError::new(problem));

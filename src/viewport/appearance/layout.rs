@@ -1,5 +1,5 @@
-//! What the shader of camera pictures reads besides the words of an appearance, field by field as in `shaders/appearance.wgsl`,
-//! and the constants that stand in front of it.
+//! Data that the shader of camera pictures reads besides the words of an appearance, field by field as in
+//! `shaders/appearance.wgsl`, and the constants that stand in front of it.
 
 use std::fmt::Write as _;
 use std::sync::OnceLock;
@@ -69,7 +69,7 @@ impl GpuView {
         (numbers.iter().all(|v| v.is_finite()) && fx != 0.0 && fy != 0.0).then_some(view)
     }
 
-    /// The same, drawing from this row on.
+    /// Makes the drawing begin at this row.
     pub fn starting_at_row(mut self, row: u32) -> GpuView {
         self.size[3] = row;
         self

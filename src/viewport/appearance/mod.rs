@@ -75,7 +75,7 @@ impl AppearanceRenderer {
         })
     }
 
-    /// Uploads what is drawn from now on. Errors if it does not fit the device.
+    /// Uploads the scene that is drawn from now on. Errors if it does not fit the device.
     pub fn set_appearance(&mut self, appearance: &AppearanceData) -> Result<(), AppearanceError> {
         self.appearance = None; // until it is there
         let bytes: &[u8] = bytemuck::cast_slice(&appearance.words);

@@ -19,7 +19,7 @@ impl Growing {
         }
     }
 
-    /// At least `bytes` (and 64: one item of any kind) large. What was in it is lost if it grows.
+    /// A buffer of at least `bytes` bytes (and at least 64, one item of any kind). Its content is lost if it grows.
     pub fn at_least(&mut self, device: &wgpu::Device, bytes: u64) -> &wgpu::Buffer {
         let bytes = bytes.max(64).next_multiple_of(16);
         if self.buffer.as_ref().is_some_and(|b| b.size() < bytes) {
@@ -40,7 +40,7 @@ impl Growing {
         self.buffer = None;
     }
 
-    /// What [`Growing::at_least`] made last.
+    /// The buffer that [`Growing::at_least`] made last, if there is one.
     pub fn get(&self) -> Option<&wgpu::Buffer> {
         self.buffer.as_ref()
     }

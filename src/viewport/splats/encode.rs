@@ -3,7 +3,7 @@
 use super::buffers::{Growing, PassSettings};
 use super::pipelines::{DIGIT_BITS, GROUP, Pipelines, SORT_BLOCK};
 
-/// Lists and what is computed on the way; nothing here outlives a batch.
+/// Lists and intermediate results of a batch; none of them outlives it.
 #[derive(Debug)]
 pub(super) struct Work {
     pub settings: PassSettings,
@@ -25,7 +25,7 @@ pub(super) struct Shape {
     pub key_bits: u32,
 }
 
-/// What goes into a batch and comes out of it.
+/// Input and output buffers of a batch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Data<'a> {
     pub batch: &'a wgpu::Buffer,
@@ -176,7 +176,7 @@ impl Work {
     }
 }
 
-/// A compute pass and what most of its steps need.
+/// A compute pass and the data that most of its steps need.
 struct Recorder<'a> {
     device: &'a wgpu::Device,
     pipelines: &'a Pipelines,
@@ -209,8 +209,8 @@ impl<'a> Recorder<'a> {
         self.pass.dispatch_workgroups(x, y, z);
     }
 
-    /// Sorts what is in the first buffer by the lowest `bits` of the keys; returns where it ends up.
-    /// At least one pass, which also leaves out what is culled.
+    /// Sorts the content of the first buffer by the lowest `bits` of the keys; returns the buffer with the result.
+    /// Makes at least one pass, which also drops culled items.
     fn sort(&mut self, buffers: [&'a wgpu::Buffer; 2], room: u32, bits: u32) -> &'a wgpu::Buffer {
         let [mut from, mut to] = buffers;
         let blocks = [room.div_ceil(SORT_BLOCK), 1, 1];

@@ -3,16 +3,16 @@
 /// Each message is one line.
 #[derive(Debug, thiserror::Error)]
 pub enum SplatError {
-    /// The device lacks what the shaders need.
+    /// A limit of the device is lower than the shaders need.
     #[error("graphics adapter {adapter:?} draws no splats: {limit} is {has}, needed {needs}")]
     Unable {
         /// Name of the adapter.
         adapter: String,
         /// Name of the limit in wgpu.
         limit: &'static str,
-        /// What the device has.
+        /// Limit of the device.
         has: u64,
-        /// What the shaders need.
+        /// Limit that the shaders need.
         needs: u64,
     },
     /// More Gaussians than the device can hold.
@@ -39,7 +39,7 @@ pub enum SplatError {
         /// How many there may be.
         max: u32,
     },
-    /// The driver refused something, or the device was lost.
+    /// The driver refused a command, or the device was lost.
     #[error("the graphics device failed to draw splats: {0}")]
     Device(String),
 }

@@ -1,4 +1,4 @@
-//! What the splat shaders read, field by field as in `shaders/shared/splat.wgsl`.
+//! Data that the splat shaders read, field by field as in `shaders/shared/splat.wgsl`.
 
 use glam::DMat3;
 
@@ -23,7 +23,7 @@ pub(super) struct GpuGaussian {
 }
 
 impl GpuGaussian {
-    /// `None` for what is never drawn: no number, no opacity, no such id, over 1e12 m away.
+    /// `None` for a Gaussian that is never drawn: not finite, without opacity, with an invalid id, or over 1e12 m away.
     pub fn new(g: &Gaussian) -> Option<GpuGaussian> {
         let near = |v: f32| v.is_finite() && v.abs() <= FAR_AWAY_M;
         // Not above 0 also drops NaN.
@@ -94,7 +94,7 @@ fn near_m(options: &SplatOptions) -> f32 {
     rounded_down(options.near_m.max(0.0).min(FAR_AWAY_M.into()))
 }
 
-/// Farthest depth; -1 where an option is not a number, since then nothing can be said to be drawn.
+/// Farthest depth; -1 where an option is not a number, so that nothing is drawn then.
 fn far_m(options: &SplatOptions) -> f32 {
     let drawn = options.low_pass_px2.is_finite() && !options.alpha_min.is_nan() && !options.t_stop.is_nan();
     if drawn && options.far_m >= 0.0 {

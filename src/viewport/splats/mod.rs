@@ -87,8 +87,8 @@ impl SplatRenderer {
         })
     }
 
-    /// Uploads what is drawn from now on. Errors if there are more than the device can hold (with
-    /// 128 MiB a buffer: four million).
+    /// Uploads the Gaussians that are drawn from now on. Errors if there are more than the device can hold (with 128
+    /// MiB a buffer: four million).
     pub fn set_cloud(&mut self, gaussians: &[Gaussian]) -> Result<(), SplatError> {
         let kept: Vec<GpuGaussian> = gaussians.iter().filter_map(GpuGaussian::new).collect();
         let max = self.max_items();
@@ -237,8 +237,8 @@ impl SplatRenderer {
         Ok(())
     }
 
-    /// Draws a batch and waits for it. Returns how many touches there were; if that is more than
-    /// there was room for, the maps are not complete and nobody was shown them.
+    /// Draws a batch and waits for it. Returns the number of touches; if that exceeds the room for them, the maps are
+    /// not complete, and they have not been handed out.
     fn draw_batch(
         &mut self,
         uniforms: &GpuBatch,

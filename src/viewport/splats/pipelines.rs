@@ -1,4 +1,4 @@
-//! The compute pipelines of the splat renderer, and what a device must offer to run them.
+//! The compute pipelines of the splat renderer, and the limits that a device must have to run them.
 
 use super::SplatError;
 use crate::error::one_line;
@@ -107,7 +107,7 @@ impl Pipelines {
     }
 }
 
-/// Runs `work` and turns what the device says against it into an error.
+/// Runs `work` and turns an error of the device into one of the renderer.
 pub(crate) fn checked<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, SplatError> {
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);

@@ -3,9 +3,9 @@
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use scene::{Camera, Pose, SensorRig};
 
-/// How nearly a front camera looks ahead: the cosine to the vehicle's x axis.
+/// Least cosine between the direction of a front camera and the vehicle's x axis.
 const LEAST_AHEAD: f64 = 0.5;
-/// What is nearer to the camera than this is cut off, m.
+/// Near plane, m: parts of a box that are nearer to the camera are cut off.
 const NEAR_M: f64 = 0.1;
 
 /// The camera of the rig that looks ahead.
@@ -29,7 +29,7 @@ pub(super) fn level(ahead: DVec2, at_m: DVec3) -> Pose {
 }
 
 impl FrontCamera {
-    /// Of several the one that looks most nearly ahead; `None` if none does.
+    /// The camera that looks most nearly ahead; `None` if none does.
     pub(super) fn of(rig: &SensorRig) -> Option<Self> {
         let ahead = |c: &Camera| (c.ego_from_camera().rotation * DVec3::Z).x;
         let best = rig.cameras.iter().max_by(|a, b| ahead(a).total_cmp(&ahead(b)))?;

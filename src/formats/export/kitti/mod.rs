@@ -41,7 +41,7 @@ pub const EXPORTER: Exporter = Exporter {
 const STEP_S: f64 = 0.1;
 /// Most scans.
 const MOST: usize = 1000;
-/// Points so far beyond a box belong to it, m.
+/// Points up to this far beyond a box belong to it, m.
 const MARGIN_M: f64 = 0.25;
 
 fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, FormatError> {
@@ -110,7 +110,8 @@ fn scan(sweep: &LidarSweep, ego_from_velo: &Pose) -> Vec<u8> {
     out
 }
 
-/// Boxes in the ego frame. An object's instance is its place among them, from 1; of what is no object 0.
+/// Labels of the points; boxes are in the ego frame. The instance of an object's point is the place of its box in the
+/// list, from 1; that of any other point is 0.
 fn labels(sweep: &LidarSweep, boxes: &[&SceneBox]) -> Vec<u8> {
     let mut out = Vec::with_capacity(sweep.points.len() * 4);
     for p in &sweep.points {

@@ -17,7 +17,7 @@ use super::camera::FrontCamera;
 const FARTHEST_M: f64 = 100.0;
 /// Lowest rectangle, px.
 const LEAST_PX: f64 = 4.0;
-/// Places along each edge of a box at which is looked whether something is before it.
+/// Places along each edge of a box at which it is tested whether something stands in front.
 const PROBES: usize = 4;
 /// Step along a line of sight, and how much of it before the object is its own, m.
 const STEP_M: f64 = 0.2;
@@ -106,7 +106,7 @@ fn wrapped(angle_rad: f64) -> f64 {
     (angle_rad + turn / 2.0).rem_euclid(turn) - turn / 2.0
 }
 
-/// Share of the places in a box, of those in the picture, that something else stands before; 1 if none is in the picture.
+/// Share of the places of a box in the picture that are hidden by something in front; 1 if no place is in the picture.
 fn hidden(b: &SceneBox, frame: &Frame, camera: &FrontCamera) -> f64 {
     let eye = camera.ego_from_rect.translation_m;
     let rect_from_ego = camera.ego_from_rect.inverse();

@@ -92,7 +92,7 @@ fn to_bytes(scene: &Scene, products: &mut dyn Products) -> Result<Vec<u8>, Forma
     log.finish()
 }
 
-/// The file so far.
+/// The file as written so far.
 struct Log {
     writer: Writer<Cursor<Vec<u8>>>,
     schemas: BTreeMap<&'static str, u16>,
@@ -186,7 +186,7 @@ fn transforms(now: &Scene, cameras: &[String], timestamp: Option<Time>) -> Frame
     FrameTransforms { transforms }
 }
 
-/// The boxes of a moment in place of those of the one before: an entity each, x along the heading.
+/// The boxes of a moment, which replace those of the moment before: an entity each, x along the heading.
 fn boxes(now: &Scene, timestamp: Option<Time>) -> SceneUpdate {
     let entity = |b: &SceneBox| {
         let [r, g, blue] = b.class.color().map(|c| f64::from(c) / 255.0);

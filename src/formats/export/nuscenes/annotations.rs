@@ -1,4 +1,4 @@
-//! Boxes of the key frames, and what is said of them.
+//! Boxes of the key frames, and their attributes and other properties.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use crate::nuscenes::tables::{Attribute, Instance, SampleAnnotation, Visibility}
 use crate::nuscenes::tokens::Tokens;
 use crate::nuscenes::{categories, wxyz};
 
-/// Faster than this something moves, m/s.
+/// A box faster than this moves, m/s.
 const MOVES_MPS: f64 = 0.2;
 
-/// The attributes of the data set, and what each says.
+/// The attributes of the data set, with their descriptions.
 const ATTRIBUTES: [(&str, &str); 8] = [
     ("vehicle.moving", "Vehicle is moving."),
     (
@@ -126,8 +126,8 @@ fn bin(visible: &Visible, id: BoxId) -> usize {
     BINS.iter().rposition(|(from, ..)| share >= *from).unwrap_or(0)
 }
 
-/// Place in [`ATTRIBUTES`]. What stands still is parked unless it moves at another time. In a clip what is no track stays
-/// where it is, whatever velocity it has.
+/// Place of a box's attribute in [`ATTRIBUTES`]. A box that stands still is parked, or stopped if it has a track. In a
+/// clip a box without a track stays where it is, whatever velocity it has.
 fn attribute(b: &SceneBox, is_track: bool, may_move: bool) -> Option<usize> {
     let moves = may_move && b.velocity_mps.length() > MOVES_MPS;
     let name = match b.class {
@@ -163,8 +163,8 @@ pub(super) fn visibilities() -> Vec<Visibility> {
     BINS.iter().enumerate().map(row).collect()
 }
 
-/// What is said of a scene: its prompt, and time of day and weather where the prompt does not name them. The devkit and
-/// many of its users look for `night` and `rain`.
+/// Description of a scene: its prompt, and time of day and weather where the prompt does not name them (day and clear
+/// weather are never added). The devkit and many of its users look for `night` and `rain`.
 pub(super) fn description(scene: &Scene) -> String {
     let conditions = &scene.conditions;
     let time = Some(conditions.time)

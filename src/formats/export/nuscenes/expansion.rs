@@ -1,5 +1,6 @@
-//! The map expansion (`nuscenes.map_expansion`, version 1.3): areas from the layers of the map, dividers from its lines, lanes,
-//! ways through junctions and what leads into what from its road graph. Road blocks and traffic lights are empty.
+//! The map expansion (`nuscenes.map_expansion`, version 1.3): areas from the layers of the map, dividers from its
+//! lines; lanes, ways through junctions and their connections from its road graph. Road blocks and traffic lights are
+//! empty.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +16,7 @@ use crate::opendrive::write::lane_graph::{GraphLane, lane_graph, outline};
 
 /// Layers that the devkit expects to be there.
 const EMPTY: [&str; 2] = ["road_block", "traffic_light"];
-/// Radius that a straight piece of a path is given, m; none of it is an arc.
+/// Radius that a straight piece of a path is given, m; no piece is an arc.
 const STRAIGHT_M: f64 = 1000.0;
 
 /// The file. `shift_m` leads from the world frame to the global frame.
@@ -120,7 +121,7 @@ impl Expansion<'_> {
         token
     }
 
-    /// Lanes, ways through junctions, their paths and what leads into what; roads and junctions as segments.
+    /// Lanes, ways through junctions, their paths and their connections; roads and junctions as segments.
     fn lanes(&mut self, layout: &BevLayout, file: &mut Map<String, Value>) {
         let lanes = lane_graph(layout);
         let token = |(i, lane): (usize, &GraphLane)| self.tokens.token(layer_of(lane), i as u64);
@@ -217,7 +218,7 @@ fn layer_of(lane: &GraphLane) -> &'static str {
     }
 }
 
-/// Points of a divider whose paint nobody knows.
+/// Points of a divider of unknown paint.
 fn segments(nodes: &[String]) -> Value {
     let segment = |node: &String| json!({"node_token": node, "segment_type": "NIL"});
     nodes.iter().map(segment).collect()

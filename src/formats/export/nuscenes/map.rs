@@ -9,7 +9,7 @@ use crate::nuscenes::tokens::Tokens;
 
 /// Pixels of a mask along the side of a column: the devkit takes them as 0.1 m.
 const PER_COLUMN: usize = 4;
-/// What counts as driven or walked on.
+/// Layers of the mask: ground that is driven or walked on.
 const ON_MASK: [BevLayer; 4] = [
     BevLayer::DrivableArea,
     BevLayer::PedCrossing,
@@ -32,7 +32,7 @@ pub(super) fn write(writing: &mut Writing<'_>) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// 8 bits of grey: 255 on the mask, else 0. The lower left corner is the origin of the global frame.
+/// Grey values of 8 bits: 255 on the mask, 0 beside it. The lower left corner is the origin of the global frame.
 fn mask(layout: &BevLayout) -> Result<Vec<u8>, png::EncodingError> {
     let extent = layout.extent();
     let [nx, ny] = [extent.nx(), extent.ny()];

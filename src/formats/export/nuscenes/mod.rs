@@ -65,7 +65,7 @@ struct Tables {
     lidarseg: Vec<Lidarseg>,
 }
 
-/// What is written, so far.
+/// The export while it is made: the tables and files so far.
 struct Writing<'a> {
     scene: &'a Scene,
     tokens: Tokens,
@@ -231,14 +231,15 @@ impl Writing<'_> {
     }
 }
 
-/// Scenes are called `scene-` and four digits; the devkit makes a number of them. Those of the data set end at 1110.
+/// Name of the scene, `scene-` and four digits; the devkit makes a number of them. The names of the data set end at
+/// 1110.
 fn scene_name(tokens: &Tokens) -> String {
     let token = tokens.token("scene", 0);
     let number = u64::from_str_radix(&token[..12], 16).unwrap_or(0);
     format!("scene-{}", 2000 + number % 8000)
 }
 
-/// What the recording is called: in the names of files, too.
+/// Name of the recording, which is also in the names of files.
 fn log_name(scene: &Scene) -> String {
     format!("sceneloom-{}", scene.seed)
 }

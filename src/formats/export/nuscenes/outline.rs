@@ -61,7 +61,7 @@ impl Cells {
         self.index(cell).is_some_and(|at| self.cells[at])
     }
 
-    /// True for a side of a cell of an area with nothing across it.
+    /// True for a side of a cell of an area if the cell across it is in no area.
     fn is_open(&self, cell: [i64; 2], side: usize) -> bool {
         self.has(cell) && !self.has(plus(cell, ACROSS[side]))
     }

@@ -15,11 +15,11 @@ use crate::{FormatError, jpeg, physical};
 
 /// Time between two sweeps, s.
 const SWEEP_S: f64 = 0.1;
-/// Longest clip with sweeps between its key frames, s: those of a minute are 400 MB.
+/// Longest clip with sweeps between its key frames, s: the sweeps of a minute are 400 MB.
 const LONGEST_S: f64 = 60.0;
 /// How far off the faces of boxes returns are kept, m.
 const OFF_FACE_M: f64 = 1e-3;
-/// Bits of a token's number that count what a sensor measured.
+/// Bits of a token's number that count the measurements of a sensor.
 const COUNT_BITS: u64 = 32;
 
 /// The sensors that are written: the cameras of the rig in its order, and its first LiDAR after them.
@@ -33,13 +33,13 @@ pub(super) struct Sensors {
     has_sweeps: bool,
 }
 
-/// Share of each box that cameras see of what they would see if nothing stood in front, 0 to 1, all cameras together.
+/// Share of each box that cameras see, of what they would see without anything in front, 0 to 1, all cameras together.
 pub(super) type Visible = BTreeMap<BoxId, f64>;
 
-/// What a key frame shows of its boxes.
+/// Visibility of the boxes in a key frame, to the LiDAR and to the cameras.
 #[derive(Default)]
 pub(super) struct Sighted {
-    /// Returns of the sweep as it is written that lie in each box, those with any.
+    /// Returns of the sweep, as it is written, that lie in each box; boxes without returns are left out.
     pub(super) returns: BTreeMap<BoxId, u32>,
     pub(super) visible: Visible,
 }
@@ -88,7 +88,7 @@ impl Sensors {
         }
     }
 
-    /// Sweep and pictures of a key frame. Returns what they show of each box.
+    /// Sweep and pictures of a key frame. Returns the visibility of each box in them.
     pub(super) fn key_frame(
         &mut self,
         writing: &mut Writing<'_>,
@@ -120,7 +120,7 @@ impl Sensors {
         if now.rig.cameras.is_empty() {
             return Ok(seen);
         }
-        // Pixels that show a box, and those that would if nothing stood in front.
+        // Pixels that show a box, and pixels that would show it without anything in front.
         let mut pixels: BTreeMap<BoxId, [f64; 2]> = BTreeMap::new();
         let mut next = 0;
         products.truth(&mut |picture, truth| {
@@ -268,8 +268,8 @@ impl Sensors {
     }
 }
 
-/// The sweep of the moment that is shown, on the physical ground. No return is on a face of a box: who counts those within
-/// it need not ask how others round.
+/// The sweep of the moment that is shown, on the physical ground. No return is exactly on a face of a box, so readers
+/// that round differently count the same returns within it.
 fn sweep(now: &Scene, products: &mut dyn Products) -> Result<LidarSweep, FormatError> {
     let mut sweep = products.sweep()?;
     let origin_in_ego = now.rig.lidars[0].ego_from_sensor().translation_m;
@@ -278,8 +278,8 @@ fn sweep(now: &Scene, products: &mut dyn Products) -> Result<LidarSweep, FormatE
     Ok(sweep)
 }
 
-/// Moves returns that are on a face of a box a hair off it: out of it what is ground, the road under a box that stands on it, and in
-/// what is not.
+/// Moves returns on a face of a box a little off it: returns of the ground out of the box, which stands on the road,
+/// and all others into it.
 fn off_faces(sweep: &mut LidarSweep, now: &Scene) {
     let pose = now.frame().world_from_ego;
     let boxes: Vec<&SceneBox> = now.frame().boxes.values().collect();

@@ -84,7 +84,7 @@ fn to_bytes(scene: &Scene, products: &mut dyn Products) -> Result<Vec<u8>, Forma
     serde_json::to_vec(&file).map_err(FormatError::new)
 }
 
-/// Objects as they are first, and the frames that they are in.
+/// Boxes of the objects when they first appear, and the frames that they are in.
 type Objects = std::collections::BTreeMap<scene::BoxId, (SceneBox, Vec<usize>)>;
 
 /// An object through the clip.

@@ -4,8 +4,9 @@
 //!   ground found around it, and so is every point less than 0.15 m above.
 //! - Ground that is reached from the vehicle without a step is taken as driveable surface, other ground as other flat. Grass at
 //!   the height of the road cannot be told from it.
-//! - What stands on the ground, is lower than 4.2 m and shorter than 14 m on its own is "others": a vehicle, a person, a bush.
-//! - All else is vegetation where it is thick seen from above, and manmade where it is thin as a wall is.
+//! - A thing on the ground that is lower than 4.2 m and shorter than 14 m on its own is "others": a vehicle, a person,
+//!   a bush.
+//! - All other points are vegetation where they are thick seen from above, and manmade where they are thin as a wall.
 //!
 //! Measured on the program's own sweeps; docs/formats/points.md has the figures.
 
@@ -14,14 +15,15 @@ use std::collections::VecDeque;
 use glam::{DVec2, DVec3};
 use scene::{Class, Window};
 
-/// Points so much above the ground belong to it, m.
+/// Points up to this far above the ground belong to it, m.
 const GROUND_BAND_M: f64 = 0.15;
-/// How far ground may lie above what is around it, m, and so much more per m to the nearest of it.
+/// How far ground may lie above the ground around it, m, and how much more for each m to the nearest of it.
 const RISE_M: f64 = 0.12;
 const RISE_PER_M: f64 = 0.10;
-/// How far it may lie below, m (what is lower is an echo from elsewhere), and more per m as above.
+/// How far ground may lie below the ground around it, m (lower points are echoes from elsewhere); more per m as above.
 const FALL_M: f64 = 0.5;
-/// The same for ground that is driven on, up and down.
+/// How far ground that is driven on may lie above or below such ground around it, m, and how much more for each m to
+/// it.
 const STEP_M: f64 = 0.06;
 const STEP_PER_M: f64 = 0.02;
 /// Ground farther away than this counts as being there, m.
@@ -29,7 +31,7 @@ const FARTHEST_M: f64 = 6.0;
 /// Radii in which ground is looked for, columns, and how many columns are enough.
 const REACH: [usize; 3] = [5, 15, 30];
 const ENOUGH: usize = 3;
-/// The level at the vehicle: this share of the lowest points within so many m lies below it.
+/// Share of the lowest points near the vehicle that lie below the level, and how near they must be, m.
 const LEVEL_SHARE: f64 = 0.25;
 const LEVEL_REACH_M: f64 = 15.0;
 /// A thing is lower and shorter than this, m.
@@ -95,7 +97,7 @@ fn distance_m(a: usize, b: usize) -> f64 {
 
 /// Heights of the ground per column.
 struct Ground {
-    /// Of ground that was found or is near, m.
+    /// Height of the ground that was found there or is near, m.
     height_m: Vec<f64>,
     /// Reached from the vehicle without a step.
     is_driven: Vec<bool>,
@@ -152,8 +154,8 @@ fn quantile(mut values: Vec<f64>) -> f64 {
     values.get(at).copied().unwrap_or(0.0)
 }
 
-/// The mean of what is known around a column, the near counting more, and the distance to the nearest, m. `None` if too little
-/// is known.
+/// The mean of the known values around a column, near ones counting more, and the distance to the nearest, m. `None` if
+/// too few are known.
 fn mean_around(values: &[f64], c: usize) -> Option<(f64, f64)> {
     REACH.into_iter().find_map(|reach| {
         let (mut known, mut sum, mut weights, mut nearest_m) = (0, 0.0, 0.0, f64::INFINITY);
@@ -219,7 +221,7 @@ impl Above {
     }
 }
 
-/// For each column whether what stands there is low and short on its own.
+/// Tells for each column whether its points above the ground belong to a low and short thing that stands alone.
 fn things(above: &[Above]) -> Vec<bool> {
     let mut out = vec![false; above.len()];
     let mut seen: Vec<bool> = above.iter().map(|a| a.count == 0.0).collect();
@@ -250,7 +252,8 @@ fn things(above: &[Above]) -> Vec<bool> {
     out
 }
 
-/// How thick what stands in a column is seen from above, m: the mean over the columns around. 0 where too few points stand.
+/// Thickness of the things in each column, seen from above, m: the mean over the columns around. 0 where too few points
+/// stand.
 fn thickness(above: &[Above]) -> Vec<f64> {
     let of_column = |c: usize| {
         let here = above[c];

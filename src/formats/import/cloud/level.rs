@@ -4,9 +4,9 @@
 //!   an echo by way of a mirror.
 //! - A **plane** is put through them: of planes through three of them (tilted by 12 degrees at most) the one that most lie on and
 //!   fewest lie below, then least squares through those that lie on it.
-//! - The plane is the ground if enough cells lie on it and they do not all lie in one direction: a table or a ceiling is none.
+//! - The plane is the ground if enough cells lie on it in enough directions, which a table or a ceiling does not have.
 //!
-//! The same points give the same plane: what is drawn at random is drawn from a fixed seed.
+//! Equal points give an equal plane: random draws start from a fixed seed.
 
 use glam::{DVec2, DVec3};
 use numeric::linear::solve;
@@ -54,7 +54,7 @@ pub(super) struct Ground {
 }
 
 impl Ground {
-    /// The ground that these points show; `None` if they show none.
+    /// The ground that these points lie on; `None` if they show no ground.
     pub(super) fn of(points: impl Iterator<Item = DVec3>) -> Option<Self> {
         let lowest = lowest(points);
         let plane = plane(&lowest)?;
@@ -85,7 +85,7 @@ impl Ground {
         }
     }
 
-    /// What was done with a cloud, for a person.
+    /// Notes on what was done with a cloud, for a person.
     pub(super) fn told(self) -> Vec<String> {
         let lift_m = self.lift_m();
         let mut out = match lift_m {
@@ -146,7 +146,7 @@ fn lowest(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
     cells.iter_mut().filter_map(one).collect()
 }
 
-/// The plane that most of these points lie on and few below; `None` if no three of them tell one.
+/// The plane that most of these points lie on and few lie below; `None` if no three of them give one.
 fn plane(points: &[DVec3]) -> Option<Ground> {
     let mut random = SplitMix64::new(0);
     let mut best: Option<(i64, Ground)> = None;

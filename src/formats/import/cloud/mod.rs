@@ -1,9 +1,10 @@
-//! Points into a scene: what every format of point clouds needs.
+//! Points into a scene: code that all formats of point clouds share.
 //!
-//! Points are counted into the voxels of the networks' window. A voxel gets the class that most of its points have; of points
-//! without a label the class is told by shape ([`geometry`]). Labels of this program, as those of Occ3D, have the road under the
-//! vehicle in the lowest bin, two below its height; in clouds it lies where it is. The ground of a cloud is therefore moved so
-//! that its level around the vehicle comes to the middle of the lowest bin. Everything else stays.
+//! Points are counted into the voxels of the networks' window. A voxel gets the class that most of its points have; the
+//! class of points without a label is told by their shape ([`geometry`]). Labels of this program and of Occ3D have the
+//! road under the vehicle in the lowest bin, two bins below its height; clouds have it at its height. The ground of a
+//! cloud is therefore moved so that its level around the vehicle comes to the middle of the lowest bin. Other points
+//! stay.
 //!
 //! A cloud whose ground lies beside the map, as a sweep in its sensor's frame, is lifted as a whole before that ([`level`]), or
 //! by as much as the user says.
@@ -40,7 +41,7 @@ const CLASSES: u32 = 32;
 const PENDING: usize = 1 << 20;
 /// Points that wait until the height of the ground is known; of a larger cloud these tell it.
 const WAITING: usize = 1 << 22;
-/// What is nearer to the sensor than this, m, is no return: sensors write such places where nothing came back.
+/// Nearest return to the sensor, m: sensors write nearer places where no echo came back.
 const EMPTY_M: f64 = 0.1;
 /// Unlabelled points of one voxel of which the shape is looked at.
 const MOST_PER_VOXEL: u8 = 32;
@@ -52,28 +53,28 @@ const LEAST_FOR_LEVEL: u64 = 20;
 /// Ground below the first layer is where labels have it; ground above the last one (0.3 m) is a hill and stays.
 const LOWEST_LEVEL: usize = FINE - 1;
 const HIGHEST_LEVEL: usize = 25;
-/// Nothing of the own vehicle is above the ground by less, or beyond its box by more, m.
+/// A point of the own vehicle lies higher above the ground than the first and at most the second beyond its box, m.
 const OWN_FROM_M: f64 = 0.3;
 const OWN_MARGIN_M: f64 = 0.2;
 
-/// What is known of a point's class.
+/// Label of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Label {
-    /// It has one.
+    /// It stands for a class.
     Class(Class),
-    /// It has a label that no class stands for: "others", counted.
+    /// It stands for no class: "others", counted.
     Unknown,
-    /// It has none: its shape tells.
+    /// There is none: the shape tells the class.
     None,
 }
 
-/// None of the points would be left.
+/// Error of a cloud of which no point would be left.
 #[derive(Debug, PartialEq, thiserror::Error)]
 #[error("{}", self.line())]
 pub struct NothingOnTheMap {
     /// Points in the file.
     pub points: usize,
-    /// Those without a place, or at the sensor itself: nothing came back.
+    /// Points without a place, or at the sensor itself: no echo came back.
     pub empty: usize,
 }
 
@@ -89,7 +90,7 @@ impl NothingOnTheMap {
     }
 }
 
-/// Points on the map, and what is known of them.
+/// Points on the map, and their labels.
 #[derive(Default)]
 pub(super) struct Cloud {
     /// Points within the map seen from above, until it is known how far they are lifted.
@@ -98,11 +99,11 @@ pub(super) struct Cloud {
     lift_m: Option<f64>,
     /// The user said how far.
     is_asked: bool,
-    /// What was done with the height, for a person.
+    /// Notes on what was done with the height, for a person.
     notes: Vec<String>,
     /// Column, layer and class of a point in one number.
     pending: Vec<u32>,
-    /// The same numbers, sorted, and how many points have them.
+    /// Sorted numbers of the same kind, each with the count of its points.
     counted: Vec<(u32, u32)>,
     loose: Vec<Loose>,
     /// Loose points of each voxel.
@@ -142,7 +143,7 @@ impl Loose {
 }
 
 impl Cloud {
-    /// An empty cloud of a file: lifted as the user says, else as its ground asks.
+    /// An empty cloud of a file: lifted as the user says, else by the height of its ground.
     pub(super) fn of(source: &Source<'_>) -> Self {
         Self {
             lift_m: source.lift_m,
@@ -163,7 +164,7 @@ impl Cloud {
         self.add_return(at, &Pose::default(), label);
     }
 
-    /// One slot of a sensor, in m in its frame: a point, unless nothing came back.
+    /// One slot of a sensor, in m in its frame: a point, unless no echo came back.
     pub(super) fn add_return(&mut self, at: DVec3, ego_from_sensor: &Pose, label: Label) {
         if label == Label::None && is_empty_return(at) {
             self.added += 1;
@@ -173,7 +174,7 @@ impl Cloud {
         self.add_point(ego_from_sensor.apply(at), label);
     }
 
-    /// One point, in m; its height is that of the ego frame unless the ground says otherwise.
+    /// One point, in m; its height is taken as that of the ego frame unless the ground shows otherwise.
     pub(super) fn add_point(&mut self, at: DVec3, label: Label) {
         self.added += 1;
         if !at.is_finite() {
@@ -256,7 +257,7 @@ impl Cloud {
         some.map(|(what, n)| (what.to_owned(), n)).collect()
     }
 
-    /// The scene of the points; `left_out` is what else the file holds, counted by kind.
+    /// The scene of the points; `left_out` counts the other content of the file by kind.
     pub(super) fn scene(
         mut self,
         name: &str,
@@ -323,7 +324,7 @@ impl Cloud {
         }
     }
 
-    /// Counts what waits.
+    /// Counts the points that wait.
     fn settle(&mut self) {
         self.pending.sort_unstable();
         let new = self.pending.chunk_by(|a, b| a == b);
@@ -369,7 +370,7 @@ impl Cloud {
     }
 }
 
-/// What of a cloud without labels is a guess.
+/// Guessed parts of a scene from a cloud without labels.
 const GUESSED_BY_SHAPE: [&str; 4] = ["classes", "layout", "boxes", "background"];
 
 /// Equal keys as one, their counts added up; sorted.

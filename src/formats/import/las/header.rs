@@ -18,7 +18,7 @@ const MOST_PER_BYTE: u64 = 32;
 /// Most points that are read.
 const MOST_POINTS: u64 = 200_000_000;
 
-/// What is used of a header.
+/// The fields of a header that are used.
 pub(super) struct Header {
     /// Point format, 0 to 10.
     pub(super) format: u8,
@@ -32,7 +32,7 @@ pub(super) struct Header {
     pub(super) offset_m: DVec3,
     /// Place of the byte with the class in Occ3D in a point.
     pub(super) class_at: Option<usize>,
-    /// What the record of LASzip says, if the points are compressed.
+    /// Content of the LASzip record; `None` if the points are not compressed.
     pub(super) laszip: Option<Vec<u8>>,
     /// Written by this program: points are in the ego frame.
     pub(super) is_own: bool,

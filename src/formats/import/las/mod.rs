@@ -1,9 +1,9 @@
 //! Point clouds as LAS and LAZ (ASPRS LAS 1.0 to 1.4, all point formats): a cloud becomes the occupancy of a scene.
 //!
 //! Classes are those of the extra byte `occ3d_class`, as this program writes it, or of the standard's classification
-//! ([`crate::las`]); noise and withheld points are left out. See `cloud` for what becomes of points with and without
-//! labels. Coordinates are taken as metres. Where a cloud lies somewhere else than around the origin, as in projected
-//! coordinates, its middle becomes the origin and its ground there z = 0; what was subtracted is told.
+//! ([`crate::las`]); noise and withheld points are left out. See `cloud` for the use of points with and without labels.
+//! Coordinates are taken as metres. If a cloud does not lie around the origin, as in projected coordinates, its middle
+//! becomes the origin and its ground there z = 0; a report names the offset that was subtracted.
 
 mod header;
 mod points;
@@ -42,9 +42,9 @@ pub enum LasError {
     Header {
         /// Which field.
         what: &'static str,
-        /// What it says.
+        /// Its value.
         found: String,
-        /// What would do.
+        /// The values that are accepted.
         expected: String,
     },
     /// The file holds less than its header says.
@@ -60,10 +60,10 @@ pub enum LasError {
     Packed {
         /// Which point, from 0.
         point: u64,
-        /// What is wrong.
+        /// Why the points cannot be unpacked.
         problem: String,
     },
-    /// Nothing would be left.
+    /// No point would be left.
     #[error(transparent)]
     Nothing(#[from] NothingOnTheMap),
 }
@@ -135,12 +135,13 @@ pub fn read_around(source: &Source<'_>, origin_m: Option<DVec3>) -> Result<Conte
 const SAMPLED: u64 = 1 << 16;
 /// Share of them that may be stray on either side.
 const STRAY: f64 = 0.01;
-/// Ground at the origin: this share of the points within so many m lies lower.
+/// Ground at the origin: this share of the points within this distance lies lower, m.
 const GROUND_SHARE: f64 = 0.1;
 const GROUND_REACH_M: f64 = 40.0;
 
-/// What is subtracted from each point: nothing of a cloud of this program, or one around the origin whose ground is on the
-/// map; of others the middle, to the metre, and the height of the ground there, unless the user says how far to lift.
+/// The point that is subtracted from every point: zero for a cloud of this program. Else x and y are those of the
+/// middle, to the metre, or 0 for a cloud around the origin. z is the height of the ground there; it is 0 where the
+/// user says how far to lift, and for a cloud around the origin whose ground is on the map.
 fn origin(header: &Header, bytes: &[u8], keeps_height: bool) -> Result<DVec3, LasError> {
     if header.is_own {
         return Ok(DVec3::ZERO);

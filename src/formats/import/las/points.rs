@@ -1,7 +1,7 @@
 //! The points of a LAS file, as they are or unpacked from LAZ.
 //!
-//! LAZ is unpacked by the crate `laz`, chunk by chunk. The crate asks for as much memory as a chunk says it needs; what a chunk
-//! says is therefore checked here first, against the bytes that are there.
+//! LAZ is unpacked by the crate `laz`, chunk by chunk. The crate allocates as much memory as a chunk claims to need, so
+//! the sizes that a chunk gives are checked here first, against the bytes that are there.
 
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -13,7 +13,7 @@ use laz::{DecompressionSelection, LazItem, LazVlr};
 use super::header::Header;
 use super::{LasError, wrong};
 
-/// What is used of a point.
+/// The fields of a point that are used.
 pub(super) struct Record {
     /// In the file's coordinates, m.
     pub(super) at_m: DVec3,
@@ -70,9 +70,9 @@ pub(super) fn each(header: &Header, bytes: &[u8], mut take: impl FnMut(&Record))
 /// How the points are packed.
 struct Packing {
     items: Vec<LazItem>,
-    /// Points of a chunk; `None` where each chunk says it.
+    /// Points of a chunk; `None` if each chunk gives its own count.
     chunk: Option<u64>,
-    /// Numbers of four bytes that give the sizes of a chunk's layers; none where points are packed one after the other.
+    /// Number of four-byte sizes of a chunk's layers; 0 where points are packed one after the other.
     layers: usize,
 }
 
@@ -163,8 +163,8 @@ impl Packing {
         Ok(())
     }
 
-    /// The first chunk of layers in these bytes, and how many points it holds: a point as it is, their number, the sizes of
-    /// the layers, the layers. `None` if that is more than is there.
+    /// The first chunk of layers in these bytes, and its number of points. It consists of a point as it is, the number
+    /// of points, the sizes of the layers, and the layers. `None` if it is longer than the bytes.
     fn chunk_of<'a>(&self, header: &Header, bytes: &'a [u8]) -> Option<(&'a [u8], u64)> {
         let word = |i: usize| {
             let at = header.length + 4 * i;

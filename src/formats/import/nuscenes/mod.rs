@@ -1,11 +1,12 @@
 //! nuScenes tables: a scene of a folder becomes a scene with a clip. See [`crate::nuscenes`].
 //!
-//! Read is the first scene by name; [`pictures`] reads all, for training. The vehicle moves through its poses at the key frames, objects through their annotations,
-//! and both go straight on beyond the first and the last. What stays within 5 cm in all key frames stands still, and so do barriers,
-//! cones and what is parked as long as they stay within half a metre, in the middle of their places: annotations jitter. Boxes, tracks
-//! and poses are marked as recorded ([`Recorded`]), so that checks do not call them mistakes. Sensors become the rig. Voxels come from Occ3D's `gts/SCENE/SAMPLE/labels.npz` if they lie beside, else from the
-//! LiDAR sweeps of the key frames with their lidarseg labels; there, points in boxes are left out and boxes drawn as drafts.
-//! The map is inferred from the voxels.
+//! The first scene by name is read; [`pictures`] reads all, for training. The vehicle moves through its poses at the
+//! key frames, objects through their annotations, and both go straight on beyond the first and the last. Objects that
+//! stay within 5 cm in all key frames stand still. Barriers, cones and parked objects stand in the middle of their
+//! places if they stay within half a metre: annotations jitter. Boxes, tracks and poses are marked as recorded
+//! ([`Recorded`]), so that checks do not call them mistakes. Sensors become the rig. Voxels come from Occ3D's
+//! `gts/SCENE/SAMPLE/labels.npz` if they lie beside, else from the LiDAR sweeps of the key frames with their lidarseg
+//! labels; there, points in boxes are left out and boxes drawn as drafts. The map is inferred from the voxels.
 //!
 //! The world frame is that of the first ego pose (x forward, on the ground), except in folders that Sceneloom wrote: their
 //! `map.json` names the origin that the scene had.
@@ -155,10 +156,10 @@ fn read_drive(source: &Source<'_>, which: usize) -> Result<(Loaded, read::Record
     Ok((loaded, recording))
 }
 
-/// What is guessed from the voxels.
+/// The parts that are guessed from the voxels.
 const GUESSED: [&str; 2] = ["layout", "background"];
 
-/// Text of a file without what ends lines.
+/// Text of a file with spaces in place of control characters.
 fn plain(text: &str) -> String {
     text.chars()
         .map(|c| if c.is_control() { ' ' } else { c })

@@ -9,25 +9,26 @@ use scene::{BoxId, Class, Clip, Frame, Key, Motion, SceneBox, Track};
 use super::read::{Annotation, Object, Recording};
 use super::{Skipped, count};
 
-/// What never leaves this distance from where it was first, and this heading, stands.
+/// An object stands if it stays within this distance of its first place, m, and this angle of its first heading, rad.
 const STANDS_M: f64 = 0.05;
 const STANDS_RAD: f64 = 0.01;
-/// What is parked, and barriers and cones, stand within this distance of their middle place: annotations jitter.
+/// Parked objects, barriers and cones stand if they stay within this distance of their middle place, m: annotations
+/// jitter.
 const JITTER_M: f64 = 0.5;
 /// Longest time between two boxes from which the devkit tells a velocity, s; twice that for both neighbours.
 const LONGEST_S: f64 = 1.5;
 
 /// Objects of a scene.
 pub(super) struct Things {
-    /// Those that stand, always there.
+    /// Objects that stand and are always there.
     pub(super) standing: BTreeMap<BoxId, SceneBox>,
-    /// Those that move, come or go.
+    /// Objects that move, come or go.
     pub(super) tracks: BTreeMap<BoxId, Track>,
     /// Boxes of the tracks by key frame.
     pub(super) moving: Vec<Vec<SceneBox>>,
 }
 
-/// The objects, numbered in order. What is not sound is counted.
+/// The objects, numbered in order. Objects that are not sound are counted.
 pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> Things {
     let times_s: Vec<f64> = recording.frames.iter().map(|f| f.time_s).collect();
     let mut out = Things {
@@ -42,7 +43,7 @@ pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> Things {
         };
         let everywhere = object.boxes.len() == times_s.len();
         let is_fixed = object.parked || matches!(object.class, Class::Barrier | Class::TrafficCone);
-        // (what Sceneloom wrote does not jitter)
+        // (a folder that Sceneloom wrote does not jitter)
         let jitters = is_fixed && !recording.is_own;
         let middle = middle(recording, object).filter(|m| jitters && stays(object, m.center_m, JITTER_M));
         let at = middle.unwrap_or(first);
@@ -97,8 +98,8 @@ fn scene_box(id: BoxId, object: &Object, at: &Annotation, velocity_mps: DVec2) -
     }
 }
 
-/// The motion through keyframes. Before the first and after the last of them a motion stands; what moves there goes straight
-/// on to one more key on either side, so that it has its velocity at all times.
+/// The motion through keyframes. A motion stands before its first keyframe and after its last. So an object that moves
+/// there gets one more keyframe straight on at either end, to have its velocity at all times.
 pub(super) fn motion(keys: Vec<Key>) -> Motion {
     let beyond = |from: &Key, end: &Key| {
         let by_m = end.at_m - from.at_m;
@@ -137,9 +138,9 @@ fn stands(object: &Object, first: &Annotation) -> bool {
     })
 }
 
-/// What stands for all places of an object: the middle one along x and along y, with heading and size of the nearest to it. Its height
-/// is that of the key frame in which the vehicle is nearest, as poses on a slope are known without their height. An object that never
-/// moves is where it was first, to the last bit.
+/// The box that stands for all places of an object: the middle place along x and along y, with heading and size of the
+/// box nearest to it. Its height is that of the key frame in which the vehicle is nearest, as poses on a slope are
+/// known without their height. `None` for an object that never moves: it is where it was first, to the last bit.
 fn middle(recording: &Recording, object: &Object) -> Option<Annotation> {
     let first = object.boxes.values().next()?;
     if stands(object, first) {
@@ -181,7 +182,7 @@ fn there_s(object: &Object, times_s: &[f64]) -> [Option<f64>; 2] {
     ]
 }
 
-/// Velocity at the first box, as `NuScenes.box_velocity` tells it; 0 where it tells none.
+/// Velocity at the first box as `NuScenes.box_velocity` gives it; 0 where that gives none.
 fn velocity_mps(object: &Object, times_s: &[f64]) -> DVec2 {
     let mut boxes = object.boxes.iter();
     let (Some((from, a)), Some((to, b))) = (boxes.next(), boxes.next()) else {

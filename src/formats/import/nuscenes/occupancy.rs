@@ -1,5 +1,5 @@
-//! Voxels of what was measured: Occ3D labels or LiDAR sweeps of the key frames, put together in the world frame. What moves
-//! is taken out; tracks have voxels of their own.
+//! Voxels from measurements: Occ3D labels or LiDAR sweeps of the key frames, put together in the world frame. Moving
+//! objects are taken out; tracks have voxels of their own.
 
 use glam::DVec3;
 use scene::{
@@ -13,18 +13,18 @@ use super::{Skipped, count};
 use crate::import::Source;
 use crate::occ3d;
 
-/// Largest sweep and its labels, bytes: a hundred times those of the data set.
+/// Largest file of a sweep or of its labels, bytes: a hundred times those of the data set.
 const LARGEST_SWEEP: u64 = 64 << 20;
 /// Bytes of a point.
 const POINT: usize = 20;
 /// A point this far outside of a box still comes from what is in it, m.
 const MARGIN_M: f64 = 0.15;
-/// The same of voxels.
+/// A voxel this far outside of a box still belongs to what is in it, m.
 const VOXEL_MARGIN_M: f64 = 0.4;
 /// Classes that a number can hold beside its voxel.
 const CLASSES: u64 = 32;
 
-/// What stands still.
+/// The parts of the scene that stand still.
 pub(super) struct Observed {
     pub(super) layout: BevLayout,
     pub(super) voxels: VoxelGrid,
@@ -53,7 +53,8 @@ pub(super) fn observed(
     })
 }
 
-/// Ground where the layout has some and there is none: between the rings of a LiDAR, and where something drove.
+/// Adds ground voxels where the layout has ground and the voxels have none: between the rings of a LiDAR, and where
+/// moving objects were taken out.
 fn lay_ground(voxels: &mut VoxelGrid, layout: &BevLayout, touched: &[bool]) {
     let ground = BevLayer::DrivableArea.bit() | BevLayer::Walkway.bit();
     for (at, [x, y]) in layout.extent().all_columns().enumerate() {
@@ -72,7 +73,7 @@ fn is_plain(name: &str) -> bool {
     !name.is_empty() && name != "." && name != ".." && !name.contains(['/', '\\', ':', '\0'])
 }
 
-/// Where a file of the data set is from the folder of its tables; `None` for a path that leads out of it.
+/// Path of a file of the data set, from the folder of its tables; `None` for a path that leads out of the data set.
 pub(super) fn in_data_set(filename: &str) -> Option<String> {
     filename
         .split('/')
@@ -289,7 +290,8 @@ impl Votes {
         }
     }
 
-    /// Each voxel by the vote of its points; of equally many the lowest class, "others" last. `None` without any.
+    /// Each voxel gets the class that most of its points have; of equally many the lowest class, "others" last. `None`
+    /// without any point.
     fn grid(mut self) -> Option<VoxelGrid> {
         self.voxels.sort_unstable();
         let mut grid = VoxelGrid::over(self.extent);

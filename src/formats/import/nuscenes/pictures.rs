@@ -43,7 +43,8 @@ struct Picture {
 }
 
 impl Picture {
-    /// Place in the ring of the camera that took it, that camera in the world frame, and the file. `None` if its intrinsics are not sound.
+    /// Place in the ring of the camera that took it, that camera in the world frame, and the file. `None` if its
+    /// intrinsics are not sound.
     fn placed(&self, cameras: &[Camera], world_from_global: &Pose) -> Option<(usize, Camera, PathBuf)> {
         let camera = cameras.iter().find(|c| c.name == self.channel)?;
         let alone = SensorRig {
@@ -60,7 +61,7 @@ impl Picture {
 pub struct PictureDrive {
     /// The scene, at its first moment.
     pub scene: Scene,
-    /// Those with all pictures.
+    /// Key frames with all pictures.
     pub moments: Vec<Photographed>,
 }
 
@@ -106,7 +107,7 @@ impl PictureFolder {
         })
     }
 
-    /// Of each drive, in the order of their names, the number of key frames with all pictures.
+    /// Number of key frames with all pictures in each drive, in the order of the drives' names.
     pub fn drives(&self) -> impl Iterator<Item = usize> {
         self.drives.iter().map(Vec::len)
     }
@@ -143,7 +144,8 @@ impl PictureFolder {
     }
 }
 
-/// A picture at a size, rows from above, three bytes a pixel, sRGB; of a larger one each pixel is a mean. Errors if it is none.
+/// A picture at a size: rows from the top, three bytes a pixel, sRGB. A pixel of a larger picture is a mean. Errors if
+/// the file is no picture.
 pub fn pixels(file: &Path, [width, height]: [u32; 2]) -> Result<Vec<u8>, FormatError> {
     let bytes = input::read(file, LARGEST_PICTURE).map_err(FormatError::new)?;
     let image = || -> image::ImageResult<image::DynamicImage> {

@@ -34,9 +34,9 @@ pub(super) struct Recording {
     pub(super) rig: SensorRig,
     /// The frame that all of this is in, from that of the tables.
     pub(super) world_from_global: Pose,
-    /// True for a folder that Sceneloom wrote: nothing was recorded.
+    /// True for a folder that Sceneloom wrote: it holds no recording.
     pub(super) is_own: bool,
-    /// Class of each number in lidarseg files; `None` for what is left out.
+    /// Class of each number in lidarseg files; `None` for points that are left out.
     pub(super) labels: Vec<Option<Class>>,
 }
 
@@ -64,7 +64,7 @@ pub(super) struct Sweep {
 
 /// An object through the scene.
 pub(super) struct Object {
-    /// What it is.
+    /// Class of the object.
     pub(super) class: Class,
     /// Its name, where its category has one.
     pub(super) label: BoxLabel,
@@ -204,7 +204,7 @@ impl<'a> Kinds<'a> {
     }
 }
 
-/// For each key frame the file whose ego pose counts: the LiDAR's, else that of the first sensor there is.
+/// For each key frame the file whose ego pose is used: that of the LiDAR, else that of the first sensor there is.
 fn reference<'a>(
     kinds: &Kinds<'_>,
     data: &'a [SampleData],

@@ -24,7 +24,7 @@ pub(super) fn of<T: DeserializeOwned>(
     parse(&bytes, keep).map_err(|e| FormatError::new(e).at(&file))
 }
 
-/// The same of a table that may be missing; none then.
+/// Reads rows as [`of`] does from a table that may be missing; there are none then.
 pub(super) fn of_optional<T: DeserializeOwned>(
     source: &Source<'_>,
     table: &str,

@@ -22,18 +22,18 @@ use super::{ProjectError, SCENE};
 pub struct Migration {
     /// The version that it takes.
     pub from: u32,
-    /// What the next version has that this one had not, for a person.
+    /// Additions of the next version over this one, for a person.
     pub what: &'static str,
-    /// What is done to a file.
+    /// The change that is made to a file.
     pub change: Change,
 }
 
-/// What a step does.
+/// Change that a step makes.
 #[derive(Clone, Copy)]
 pub enum Change {
-    /// The next version only added keys and entries that may be absent: nothing is to be done.
+    /// The next version only added keys and entries that may be absent: no change is needed.
     Added,
-    /// `scene.json` or other entries change. Errors say in one line what cannot be taken over.
+    /// `scene.json` or other entries change. Errors say in one line which part cannot be converted.
     Rewrites(fn(&mut dyn Entries) -> Result<(), ProjectError>),
 }
 
@@ -49,7 +49,7 @@ pub const ALL: [Migration; 8] = [
     v8::TO_V9,
 ];
 
-/// What a step may change.
+/// The entries of a file that a step may change.
 pub trait Entries {
     /// `scene.json`.
     fn scene(&mut self) -> Result<&mut Value, ProjectError>;

@@ -1,8 +1,8 @@
-//! From version 4 to 5: frames, each with grids of its own in its ego frame, become one canvas and what moves on it.
+//! From version 4 to 5: frames, each with grids of its own in its ego frame, become one canvas and tracks.
 //!
-//! The first frame is the canvas, its ego frame the world frame. Boxes that later frames show elsewhere, or not, become tracks
-//! through those places, with draft voxels. The grids of later frames are left out: no program ever wrote more than one
-//! frame of different ground.
+//! The first frame is the canvas, its ego frame the world frame. Boxes that later frames show elsewhere, or do not
+//! show, become tracks through those places, with draft voxels. The grids of later frames are left out: no program ever
+//! wrote more than one frame of different ground.
 
 use std::collections::BTreeMap;
 
@@ -230,8 +230,8 @@ fn draft_voxels(b: &SceneBox) -> ([i32; 2], [usize; 2], Vec<u8>) {
     ([from[0] + low[0] as i32, from[1] + low[1] as i32], size, labels)
 }
 
-/// Puts the first frame's grids where the canvas has them, without the voxels of what moves, drops those of other frames, and
-/// adds the voxels of tracks.
+/// Puts the first frame's grids where the canvas has them, without the voxels of moving objects, drops those of other
+/// frames, and adds the voxels of tracks.
 fn move_entries(
     entries: &mut dyn Entries,
     first: &Map<String, Value>,

@@ -7,8 +7,8 @@ use scene::Extent;
 /// Smaller patches are left out, cells (0.64 m²).
 const SMALLEST: usize = 4;
 
-/// Outlines of all cells for which `is_in` holds, m: each is free of holes, together they cover every patch of at least
-/// [`SMALLEST`] cells and nothing else. Corners lie on borders of cells, so a centre of a cell is never on an edge.
+/// Outlines of all cells for which `is_in` holds, m. Each is free of holes; together they cover exactly the patches of
+/// at least [`SMALLEST`] cells. Corners lie on borders of cells, so a centre of a cell is never on an edge.
 pub(super) fn outlines(extent: Extent, is_in: impl Fn(usize) -> bool) -> Vec<Vec<DVec2>> {
     let is_in = large(extent, is_in);
     let mut open: Vec<Sweep> = Vec::new();

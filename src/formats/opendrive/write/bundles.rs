@@ -1,4 +1,5 @@
-//! Lanes side by side, grouped: each bundle becomes a road. What is free of zones belongs to one bundle each.
+//! Lanes side by side, grouped: each bundle becomes a road. Parts of lanes that are free of zones belong to one bundle
+//! each.
 
 use std::collections::{BTreeMap, BinaryHeap};
 
@@ -10,13 +11,13 @@ use scene::BevLayout;
 
 /// Middles of lanes that are side by side are this far apart, m.
 const APART_M: [f64; 2] = [1.5, 6.0];
-/// Samples beside one another differ by no more along the lane, m.
+/// Samples beside one another differ by at most this along the lane, m.
 const BESIDE_M: f64 = 0.3;
-/// A neighbour that is there for a shorter way is none, and one that is missing for a shorter way is there, samples.
+/// A neighbour that is present on fewer samples than this is dropped, and a gap of at most so many is closed.
 const SHORT: usize = 6;
 /// Half of the zone where a lane parts from its bundle, samples.
 const PART: usize = 6;
-/// What is left of lanes before a zone is the zone's up to this length, samples.
+/// A rest of lanes before a zone is part of the zone if it is shorter than this, samples.
 const RAGGED: usize = 30;
 /// Shortest road, samples.
 const SHORTEST: usize = 8;
@@ -50,7 +51,7 @@ pub(super) struct Bundled {
     pub owner: Vec<Vec<Option<usize>>>,
 }
 
-/// Groups what is free. Zones grow where a lane leaves its neighbours without an end.
+/// Groups the free parts of lanes. Zones grow where a lane leaves its neighbours without an end.
 pub(super) fn bundled(layout: &BevLayout, chains: &[Chain], near: &Near, zones: &mut Zones) -> Bundled {
     for round in 0.. {
         let mut pass = Pass {
@@ -360,7 +361,8 @@ impl Pass<'_> {
         }
     }
 
-    /// What no bundle has, and where one bundle goes over to another, becomes a zone.
+    /// Makes zones of short rests beside a zone that are in no bundle, and of places where one bundle changes to
+    /// another.
     fn leftovers(&mut self) {
         for (i, chain) in self.chains.iter().enumerate() {
             for run in runs(chain, i, |k| self.is_open(i, k)) {

@@ -16,9 +16,9 @@ pub(super) const BEYOND_M: f64 = 12.0;
 const BORDER_M: f64 = 0.6;
 /// Pieces of one lane are no farther apart, m.
 const GAP_M: f64 = 1.2;
-/// And turn by no more from one to the next, as a cosine.
+/// Least cosine of the angle between two pieces of one lane.
 const LEAST_COSINE: f64 = 0.9;
-/// A lane that runs as close to another one all the way is the same lane drawn twice, m.
+/// A lane that is this close to another one all the way is the same lane drawn twice, m.
 const SAME_M: f64 = 0.6;
 /// Shortest lane that becomes a road, m.
 const SHORTEST_M: f64 = 2.0;
@@ -61,7 +61,7 @@ impl Chain {
         self.points_m.len()
     }
 
-    /// The sample that many places on; `None` beyond an end.
+    /// The sample `by` places on; `None` beyond an end.
     pub fn step(&self, k: usize, by: isize) -> Option<usize> {
         let (n, at) = (self.len() as isize, k as isize + by);
         match self.closed {
@@ -171,7 +171,7 @@ fn joined(pieces: &[Vec<DVec2>]) -> Vec<(Vec<DVec2>, bool)> {
             at = next[i];
         }
         if points.len() >= 2 {
-            // What no first piece leads to is a ring.
+            // A chain that is reached from no first piece is a ring.
             out.push((points, order >= open));
         }
     }
@@ -234,7 +234,7 @@ impl Near {
         (p / CELL_M).floor().as_ivec2().to_array()
     }
 
-    /// Samples no farther away than that, always in the same order.
+    /// Samples within a distance, always in the same order.
     pub fn within(&self, p: DVec2, reach_m: f64) -> impl Iterator<Item = &Sample> {
         let [x0, y0] = Self::cell(p - reach_m);
         let [x1, y1] = Self::cell(p + reach_m);
@@ -246,7 +246,7 @@ impl Near {
     }
 }
 
-/// What lies on the ground of a place.
+/// Ground at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Surface {
     Road,

@@ -59,7 +59,7 @@ pub(super) struct Gates {
     pub outward: Vec<Door>,
 }
 
-/// What is asked about while roads are connected.
+/// Data for connecting roads.
 pub(super) struct Ground<'a> {
     pub layout: &'a BevLayout,
     pub chains: &'a [Chain],
@@ -68,8 +68,8 @@ pub(super) struct Ground<'a> {
     pub left_hand: bool,
 }
 
-/// Adds connecting roads and answers the junctions. Roads are those of the bundles, with ids; new ones get the ids from
-/// `next_id` on, junctions those behind.
+/// Adds connecting roads and returns the junctions. `roads` are those of the bundles, with ids; new roads get the ids
+/// from `next_id` on, and junctions the ids behind those.
 pub(super) fn connect(
     ground: &mut Ground<'_>,
     bundled: &Bundled,

@@ -9,7 +9,7 @@ use super::roads::Contact;
 /// Turns beyond this go back, rad.
 pub(super) const BACK_RAD: f64 = 2.6;
 
-/// A smooth way from one place and heading to another; `None` where it would turn back or wind.
+/// A smooth way from one place and heading to another; `None` if it would turn back or wind.
 pub(super) fn curve(from: Contact, to: Contact) -> Option<Vec<DVec2>> {
     let way = to.at_m - from.at_m;
     let turn = wrapped(to.heading_rad - from.heading_rad);

@@ -43,7 +43,7 @@ pub(crate) fn reference(points: &[DVec2], ends_rad: [Option<f64>; 2]) -> Option<
                     records.push(record.at_s(s_m));
                 }
             },
-            // Nothing is left to divide.
+            // There is no point left to divide at.
             None if to - from <= 1 => return None,
             None => {
                 let middle = usize::midpoint(from, to);
@@ -162,7 +162,7 @@ impl Line {
         }
         let heading = self.heading_rad[from];
         let local = DVec2::from_angle(-heading).rotate(chord);
-        // The speed at both ends: that of a circle which turns as much.
+        // The speed at both ends: that of a circle with the same turn.
         let speed = chord.length() / (turn / 4.0).cos().powi(2);
         let (out, back) = (DVec2::X * speed, DVec2::from_angle(turn) * speed);
         let square = 3.0 * local - 2.0 * out - back;

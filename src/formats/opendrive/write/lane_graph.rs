@@ -1,4 +1,4 @@
-//! The lanes of a layout and which leads into which: those that an OpenDRIVE file has, as plain lines for other formats.
+//! The lanes of a layout and their connections, those of an OpenDRIVE file, as plain lines for other formats.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,9 +12,9 @@ use scene::roads::curve::{distinct, length_m, simplified};
 
 /// How far a line may be off the road's, m.
 const OFF_M: f64 = 0.02;
-/// A lane that is nowhere wider is none, m.
+/// A lane that is nowhere wider than this is dropped, m.
 const NARROWEST_M: f64 = 0.5;
-/// A lane of less than this is none, m.
+/// A lane shorter than this is dropped, m.
 const SHORTEST_M: f64 = 0.5;
 /// Halvings of a lane that is too wide for its bend.
 const HALVINGS: usize = 4;
@@ -36,7 +36,7 @@ pub(crate) struct GraphLane {
     pub(crate) outgoing: Vec<usize>,
 }
 
-/// The lanes of a layout, as far as they are within its map.
+/// The lanes of a layout, as far as they lie on its map.
 pub(crate) fn lane_graph(layout: &BevLayout) -> Vec<GraphLane> {
     let (roads, _) = network(layout);
     let (mut lanes, mut place) = (Vec::new(), BTreeMap::new());
@@ -82,7 +82,7 @@ pub(crate) fn lane_graph(layout: &BevLayout) -> Vec<GraphLane> {
     lanes
 }
 
-/// A strip of a road as a lane; `None` for one that is no lane, or has no length or width on the map.
+/// A strip of a road as a lane; `None` if it is no lane, or has no length or width on the map.
 fn lane(layout: &BevLayout, road: &Road, strip: usize) -> Option<GraphLane> {
     let Strip::Lane { along, .. } = road.strips.kinds[strip] else {
         return None;
@@ -105,7 +105,7 @@ fn lane(layout: &BevLayout, road: &Road, strip: usize) -> Option<GraphLane> {
     if middle_m.len() < 2 || length_m(&middle_m) < SHORTEST_M {
         return None;
     }
-    // As wide as it is in the middle of its stations: borders are for looking up, not for driving on.
+    // The width is the median of those at its stations: borders are for looking up, not for driving on.
     let mut widths: Vec<f64> = width.iter().map(|(_, w)| *w).collect();
     widths.sort_by(f64::total_cmp);
     let mut half_m = widths[widths.len() / 2] / 2.0;
@@ -132,7 +132,7 @@ pub(crate) fn outline([left, right]: &[Vec<DVec2>; 2]) -> Vec<DVec2> {
     right.iter().chain(left.iter().rev()).copied().collect()
 }
 
-/// A line beside another, so far to its left; places where it would run backwards are left out.
+/// A line beside another, `left_m` to its left; places where it would run backwards are left out.
 fn beside(line: &[DVec2], left_m: f64) -> Vec<DVec2> {
     let last = line.len() - 1;
     let way = |from: usize, to: usize| (line[to] - line[from]).normalize_or(DVec2::X);

@@ -36,7 +36,7 @@ impl<'a> Limits<'a> {
         }
     }
 
-    /// `<type>` elements of a road, each with its limit; none where none is known.
+    /// The `<type>` elements of a road, each with its limit; none if no limit is known.
     pub fn write(&self, out: &mut String, road: &Road) {
         let runs = self.runs(road);
         if runs.iter().all(|(_, limit)| limit.is_none()) {

@@ -1,4 +1,4 @@
-//! Figures of what comes back when roads are written and read again, and a picture to look at.
+//! Figures of how well roads come back when they are written and read again, and a picture to look at.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -10,10 +10,10 @@ use crate::loom;
 use scene::road_map::{project, resampled};
 use scene::{BevLayer, Extent, PolylineKind};
 
-/// What came back of a layout.
+/// Figures of how well a layout came back.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Figures {
-    /// Overlap of what is paved (roads and car parks) and of walkways, 0 to 1.
+    /// Overlap of paved ground (roads and car parks) and of walkways, 0 to 1.
     pub road: f64,
     pub walkway: f64,
     /// Share of the lanes of the layout within half a metre of one that came back, and the other way round.
@@ -159,7 +159,8 @@ fn figures_of_many_scenes() {
     }
 }
 
-/// Red what is missing, blue what is too much, grey what agrees; lanes of the layout dark, those that came back green.
+/// Missing ground in red, surplus ground in blue, agreeing ground in grey; lanes of the layout dark, lanes that came
+/// back green.
 pub(crate) fn picture(path: &std::path::Path, layout: &BevLayout, found: &BevLayout) {
     let extent = layout.extent();
     let scale = 4;

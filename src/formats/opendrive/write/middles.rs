@@ -16,7 +16,7 @@ const COVERED_M: f64 = 5.0;
 const NARROWEST_M: f64 = 0.9;
 /// Shortest middle line, m.
 const SHORTEST_M: f64 = 5.0;
-/// A road is so much longer than it is wide.
+/// Least ratio of a road's length to its width.
 const LONGER: f64 = 1.2;
 /// A branch is a corner of the ground, not a road, if it is no longer than that times its reach, m.
 const CORNER: f64 = 1.5;
@@ -26,7 +26,7 @@ const TWO_LANES_M: f64 = 5.0;
 const ASIDE_M: f64 = 1.9;
 /// A road of one lane is joined to others if it is as long, m. Shorter ones are ways to a door.
 const JOINED_M: f64 = 20.0;
-/// A middle line is continued over so much ground to meet another road, m.
+/// Longest ground over which a middle line is continued to meet another road, m.
 const REACH_M: f64 = 12.0;
 /// Rounds of pruning, at most.
 const ROUNDS: usize = 12;
@@ -153,7 +153,8 @@ impl Skeleton<'_> {
         }
     }
 
-    /// The neighbours that a line goes on to: those across a side before those across a corner beside them.
+    /// The neighbours that a line goes on to: across a side, and across a corner unless it goes on across a side beside
+    /// that corner.
     fn next(&self, cell: usize) -> Vec<usize> {
         let ring = self.ring(cell);
         let counts = |i: &usize| {
@@ -172,7 +173,7 @@ impl Skeleton<'_> {
         let mut walked = std::collections::HashSet::new();
         let is_node = |c: usize| degree(c) != 2;
         let starts = cells.iter().copied().filter(|c| is_node(*c));
-        // Then what no node is on: rings.
+        // Rings come last: no node is on them.
         for start in starts.chain(cells.iter().copied()) {
             for first in self.next(start) {
                 if walked.contains(&(start, first)) || (!is_node(start) && walked.contains(&(first, start))) {
@@ -210,7 +211,7 @@ impl Skeleton<'_> {
         cells.windows(2).map(|w| at(w[0]).distance(at(w[1]))).sum()
     }
 
-    /// Takes away branches into corners; false if there is none.
+    /// Takes away branches into corners; false if there is no such branch.
     fn prune(&mut self, lines: &[Line]) -> bool {
         let mut any = false;
         for line in lines {
@@ -229,8 +230,8 @@ impl Skeleton<'_> {
     }
 }
 
-/// One or two lanes along a middle line; none for one that is too short or too narrow. `depths` are those in the ground without
-/// lanes and in all that is paved, m.
+/// One or two lanes along a middle line; none if it is too short or too narrow. `depths` are those in the ground
+/// without lanes and in all paved ground, m.
 fn of_line(layout: &BevLayout, near: &Near, depths: [&[f32]; 2], line: &Line, left_hand: bool) -> Vec<Chain> {
     let extent = layout.extent();
     let [half_m, whole_m] = depths.map(|depth| {

@@ -1,7 +1,7 @@
-//! Writes the roads of a layout as OpenDRIVE 1.8. Lanes that run side by side become one road; where lanes cross, meet or part,
-//! roads end at a junction with one connecting road for each lane that leads through and for turns between the others.
-//! Paved ground, car parks and walkways beside the lanes become lanes too. Ground that no lane crosses gets lanes along its
-//! middle; what is left is written as areas. Beside all this stand Sceneloom's own rows, see `own_rows`.
+//! Writes the roads of a layout as OpenDRIVE 1.8. Lanes that run side by side become one road; where lanes cross, meet
+//! or part, roads end at a junction with one connecting road for each lane that leads through and for turns between the
+//! others. Paved ground, car parks and walkways beside the lanes become lanes too. Ground that no lane crosses gets
+//! lanes along its middle; the remaining ground is written as areas. Sceneloom's own rows follow, see `own_rows`.
 
 mod areas;
 mod bundles;
@@ -35,15 +35,15 @@ use zones::Zones;
 /// Ground beside a way of one lane that is still its own, m.
 const VERGE_M: f64 = 0.6;
 
-/// What a file holds besides Sceneloom's own rows.
+/// Amount of detail in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Detail {
     /// Roads alone.
     Roads,
-    /// Roads, and areas for what no road covers.
+    /// Roads, and areas for ground that no road covers.
     #[cfg(test)]
     Areas,
-    /// And Sceneloom's own rows.
+    /// Roads, areas, and Sceneloom's own rows.
     Rows,
 }
 
@@ -53,7 +53,7 @@ pub fn to_bytes(name: &str, layout: &BevLayout, roads: &RoadNetwork, background:
     text_of(name, layout, (roads, background), Detail::Rows).into_bytes()
 }
 
-/// The same as text without limits, with less in it.
+/// The text of a file with chosen detail, without a road network's limits and without background.
 #[cfg(test)]
 pub(super) fn to_text(name: &str, layout: &BevLayout, detail: Detail) -> String {
     text_of(
@@ -82,7 +82,7 @@ fn text_of(
     let header = xml::header(name, layout);
     let mut body = xml::network(&roads, &junctions, layout, &limits);
     if detail != Detail::Roads {
-        // What a reader makes of the roads shows what is missing.
+        // The roads as a reader sees them show which ground is missing.
         let text = format!("{header}{body}</OpenDRIVE>\n");
         if let Ok(read) = super::read(text.as_bytes()) {
             let found = read
@@ -185,7 +185,8 @@ fn is_left_hand(bundled: &Bundled) -> bool {
     let mut right_hand = 0i64;
     for bundle in &bundled.bundles {
         for pair in bundle.members.windows(2) {
-            // Members run from left to right: whoever drives along sees the oncoming lane to the left.
+            // Members run from left to right. With right-hand traffic, oncoming lanes lie to the left of the lane that
+            // is driven.
             match (pair[0].along, pair[1].along) {
                 (false, true) => right_hand += bundle.samples.len() as i64,
                 (true, false) => right_hand -= bundle.samples.len() as i64,

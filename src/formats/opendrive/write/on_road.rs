@@ -13,18 +13,18 @@ use crate::xml_text::number;
 use scene::background::PostKind;
 use scene::{Background, BevLayer, BevLayout, Form, PolylineKind};
 
-/// A stop line farther from a lane holds for nobody, m.
+/// Largest distance of a stop line from a lane, m.
 const STOP_M: f64 = 3.0;
-/// Nor does one that is farther from the middle of its road, m.
+/// Largest distance of a stop line from the middle of its road, m.
 const STOP_ROAD_M: f64 = 40.0;
-/// A sign or light farther from the middle of every road is nobody's, m.
+/// Largest distance of a sign or light from the middle of a road, m.
 const SIGNAL_ROAD_M: f64 = 40.0;
-/// Height of what a post carries at its top: the plate of a sign, the housing of lights, m.
+/// Height of the part at the top of a post, m: the plate of a sign, the housing of lights.
 const SIGN_M: f64 = 0.6;
 const LIGHT_M: f64 = 1.0;
 /// Stations that are looked at first.
 const EVERY: usize = 8;
-/// A road in a junction counts as so much farther away, m.
+/// Distance that is added to that of a road in a junction, m.
 const IN_JUNCTION_M: f64 = 10.0;
 
 /// Roads that get objects.
@@ -55,7 +55,7 @@ impl<'a> OnRoads<'a> {
         }
     }
 
-    /// The nearest place on any road; roads outside of junctions go before those in them if both are near.
+    /// The nearest place on any road; roads outside of junctions come before roads in them if both are near.
     fn nearest(&self, p: DVec2) -> Option<Place> {
         let cost = |(r, _, at): &(usize, usize, DVec2)| {
             let more_m = self.roads[*r].junction.map_or(0.0, |_| IN_JUNCTION_M);
@@ -115,7 +115,7 @@ impl<'a> OnRoads<'a> {
         road.objects.push(text);
     }
 
-    /// Crossings: those that have outlines, and painted cells in none of them.
+    /// Crossings: those that have outlines, and painted cells that are in none of these.
     pub fn crossings(&mut self, layout: &BevLayout) {
         let extent = layout.extent();
         let bit = BevLayer::PedCrossing.bit();
@@ -230,7 +230,7 @@ impl<'a> OnRoads<'a> {
             let bit = layer.bit();
             let missing = |c: usize| {
                 let (cell, there) = (layout.cells()[c], found.cells()[c]);
-                // What is a car park comes with that.
+                // The drivable area of a car park is added with the car park.
                 let other = bit != carpark && cell & carpark != 0;
                 cell & bit != 0 && there & bit == 0 && !other
             };
@@ -243,7 +243,7 @@ impl<'a> OnRoads<'a> {
     }
 }
 
-/// A road without any lane: a file without roads is none.
+/// A road without any lane: a file needs at least one road.
 pub(super) fn nowhere(layout: &BevLayout) -> Road {
     let from = layout.extent().min_m().truncate();
     let line = reference(&[from, from + DVec2::X], [None, None]).expect("two points a metre apart");

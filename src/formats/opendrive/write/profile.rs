@@ -15,7 +15,7 @@ pub(super) struct Record {
 const SAME_SLOPE: f64 = 2e-6;
 /// Heights are kept to this, m.
 const HEIGHT_M: f64 = 0.01;
-/// Tilts are kept to this, and smaller ones are none, rad.
+/// Tilts are kept to this, and smaller ones are dropped, rad.
 const TILT_RAD: f64 = 0.003;
 
 /// Straight pieces through as few of the values as stay within `near` of all.
@@ -50,7 +50,7 @@ pub(super) fn straight(s_m: &[f64], values: &[f64], near: f64) -> Vec<Record> {
     out
 }
 
-/// Heights of the ground under the reference line of a road; none where all of it is at 0.
+/// Heights of the ground under the reference line of a road; none if all of it is at 0.
 pub(super) fn elevation(road: &Road, relief: &Relief) -> Vec<Record> {
     if relief.is_flat() {
         return Vec::new();
@@ -93,7 +93,7 @@ pub(super) fn elevation(road: &Road, relief: &Relief) -> Vec<Record> {
     out
 }
 
-/// Tilt of the ground across the lanes of a road; none where it is nowhere tilted.
+/// Tilt of the ground across the lanes of a road; none if it is tilted nowhere.
 pub(super) fn superelevation(road: &Road, relief: &Relief) -> Vec<Record> {
     if relief.is_flat() {
         return Vec::new();

@@ -30,7 +30,7 @@ pub(super) struct Road {
     /// Places of the stations along the reference line, m: 0 first, its length last.
     pub s_m: Vec<f64>,
     pub strips: Strips,
-    /// What lies before its start and beyond its end.
+    /// Neighbours before its start and beyond its end.
     pub ends: [Option<End>; 2],
     /// For each strip the ids of the lanes before and behind.
     pub links: Vec<[Option<i32>; 2]>,
@@ -38,14 +38,14 @@ pub(super) struct Road {
     pub two_way: bool,
     /// True for left-hand traffic.
     pub left_hand: bool,
-    /// The bundle that it is made of; none for connecting roads.
+    /// The bundle that it is made of; `None` for connecting roads.
     pub bundle: Option<usize>,
     /// Elements of `<objects>` and of `<signals>`.
     pub objects: Vec<String>,
     pub signals: Vec<String>,
 }
 
-/// What a road ends at.
+/// Neighbour at an end of a road.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
     /// A road, at its end if true, else at its start.
@@ -84,7 +84,7 @@ impl Road {
         along != by_rule
     }
 
-    /// A strip at the start (`false`) or end of the road; `None` for one that is no lane or has no width there.
+    /// A strip at the start (`false`) or end of the road; `None` if it is no lane or has no width there.
     pub fn contact(&self, strip: usize, at_end: bool) -> Option<Contact> {
         let Strip::Lane { along, .. } = self.strips.kinds[strip] else {
             return None;
@@ -262,8 +262,9 @@ fn alone_half_m(
     median(&median(&filled))
 }
 
-/// Borders of lanes that lie in the middle of their borders: one number is free and taken so that the borders are nearest to the
-/// middles between lanes. `None` where lanes get a width that no lane has.
+/// Borders of lanes that put each lane in the middle between its own. One number is free and chosen so that the borders
+/// are nearest to the middles between lanes. `None` if a border would be too far from there, or a lane would get a
+/// width that no lane has.
 fn shared(lanes: &[(usize, f64)], alone_m: f64) -> Option<Vec<[f64; 2]>> {
     if let [(_, t)] = lanes {
         return Some(vec![[t + alone_m, t - alone_m]]);

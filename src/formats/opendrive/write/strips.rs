@@ -1,5 +1,5 @@
-//! What lies across a road: lanes, and to both sides of them paved ground, car parks and walkways as far as the cells of the
-//! layout say.
+//! Strips across a road: lanes, and to both sides of them paved ground, car parks and walkways as far as the cells of
+//! the layout say.
 
 use glam::DVec2;
 
@@ -9,22 +9,22 @@ use scene::BevLayout;
 /// Paved ground belongs to a road up to this far from its lanes, m; less to one that leads through a junction, as it turns.
 pub(super) const PAVED_M: f64 = 10.0;
 pub(super) const PAVED_IN_JUNCTION_M: f64 = 6.0;
-/// A car park as far beyond that, m.
+/// A car park belongs to it up to this far beyond that, m.
 const CARPARK_M: f64 = 8.0;
 /// A walkway begins at most this far from the paved ground, m.
 const VERGE_M: f64 = 3.0;
-/// And is at most that wide, m.
+/// Widest walkway, m.
 const WALKWAY_M: f64 = 8.0;
 /// Distance between two looks at the ground, m.
 const LOOK_M: f64 = 0.1;
-/// A strip that is nowhere wider is none, m: it holds no centre of a cell.
+/// A strip that is nowhere wider than this is dropped, m: it holds no centre of a cell.
 const NARROWEST_M: f64 = 0.15;
-/// What is moved for a straight middle, m.
+/// A middle that is nowhere farther from the reference line than this is moved onto it, m.
 const NEARLY_M: f64 = 0.03;
 /// Widths are medians over so many stations to both sides: cells leave steps where a road runs at a slant.
 const AROUND: usize = 3;
 
-/// What a strip of a road is.
+/// Kind of a strip of a road.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Strip {
     /// A lane of this chain; true if it is driven along the road.
@@ -48,7 +48,7 @@ pub(super) struct Strips {
     pub kinds: Vec<Strip>,
     /// One more than there are strips, each with a value per station: how far left, m; never growing to the right.
     pub borders_m: Vec<Vec<f64>>,
-    /// The border at which lanes to the left end and those to the right begin.
+    /// The border between the lanes to the left and those to the right.
     pub center: usize,
 }
 
@@ -60,8 +60,8 @@ pub(super) struct Station {
 }
 
 impl Strips {
-    /// Adds what lies to both sides, paved ground up to `most_m` wide. `is_own` tells of a place whether it belongs to this road
-    /// and to no other.
+    /// Adds the ground to both sides, with paved ground up to `most_m` wide. `is_own` says whether a place belongs to
+    /// this road and to no other.
     pub fn with_sides(
         mut self,
         layout: &BevLayout,
@@ -96,7 +96,7 @@ impl Strips {
         }
     }
 
-    /// The same seen from a place `by_m` (per station) to the left of where it was.
+    /// Measures the borders from a place `by_m` (per station) to the left of where they were measured from.
     pub fn seen_from(&mut self, by_m: impl Fn(usize) -> f64) {
         for border in &mut self.borders_m {
             border.iter_mut().enumerate().for_each(|(i, t)| *t -= by_m(i));
@@ -113,7 +113,7 @@ struct Reach {
     walkway_m: [f64; 2], // from, to
 }
 
-/// What is looked at beside lanes.
+/// Surroundings of the lanes, as far as they are looked at.
 struct Around<'a> {
     layout: &'a BevLayout,
     most_m: f64,
@@ -161,7 +161,7 @@ impl Around<'_> {
             (Strip::Walkway, to),
         ] {
             let wide = outer.iter().zip(&inner).any(|(o, i)| o - i > NARROWEST_M);
-            // Where there is nothing, what follows begins where this began.
+            // A strip that is too narrow is dropped, so the next one begins where it began.
             if wide {
                 out.push((kind, outer.clone()));
                 inner = outer;
@@ -226,7 +226,7 @@ impl Around<'_> {
     }
 }
 
-/// Stations beyond the map take over what the nearest one on it has.
+/// Stations beyond the map take the values of the nearest station on it.
 fn known(looks: &[Option<Reach>]) -> Vec<Reach> {
     const NOTHING: Reach = Reach {
         paved_m: 0.0,

@@ -15,7 +15,7 @@ use scene::road_map::resampled;
 const STRAIGHT_RAD: f64 = 0.5;
 /// Tightest turn, m.
 const RADIUS_M: f64 = 2.5;
-/// A turn keeps so much paved ground to both sides of its middle, m; the less only where the more is nowhere.
+/// Paved ground to both sides of a turn's middle, m; the smaller width only if the larger one is found nowhere.
 const ASIDE_M: [f64; 2] = [1.4, 0.9];
 /// On this share of its way, at least.
 const PAVED_SHARE: f64 = 0.97;
@@ -101,7 +101,7 @@ fn both(gates: &Gates, arm: (usize, bool)) -> bool {
     gates.inward.iter().any(|d| d.arm() == arm && d.two_way)
 }
 
-/// A way that can be driven: one curve, else straight on and a tighter curve around the corner.
+/// A way that can be driven: one curve, or else straight ways and a tighter curve around the corner.
 fn direct(ground: &Ground<'_>, from: Door, to: Door, aside_m: f64) -> Option<Vec<DVec2>> {
     let (from, to) = (from.contact, to.contact);
     let tighter = TIGHTER.iter().filter_map(|share| around_corner(from, to, *share));
@@ -110,7 +110,8 @@ fn direct(ground: &Ground<'_>, from: Door, to: Door, aside_m: f64) -> Option<Vec
         .find(|points| is_drivable(ground, points, aside_m))
 }
 
-/// A curve that begins and ends at that share of the way to where the two lanes cross; `None` where they do not cross ahead.
+/// A curve that begins and ends at a share of the way to the crossing of the two lanes; `None` if they do not cross
+/// ahead.
 fn around_corner(from: Contact, to: Contact, share: f64) -> Option<Vec<DVec2>> {
     let [out, back] = [from, to].map(|c| DVec2::from_angle(c.heading_rad));
     let (way, sine) = (to.at_m - from.at_m, out.perp_dot(back));

@@ -13,11 +13,11 @@ use scene::{BevLayer, BevLayout, Relief};
 
 /// Widths of lanes are kept to this, m.
 const LANE_M: f64 = 0.01;
-/// Widths of what lies beside them, m.
+/// Widths of strips beside them are kept to this, m.
 const BESIDE_M: f64 = 0.06;
 /// The line between left and right lanes, m.
 const CENTER_M: f64 = 0.004;
-/// Paint is looked for so far to both sides of a border of lanes, m.
+/// Distances to both sides of a border of lanes at which paint is looked for, m.
 const PAINT_M: [f64; 5] = [0.0, -0.2, 0.2, -0.4, 0.4];
 /// A painted line, or a gap in one, is not shorter, m.
 const PAINT_RUN_M: f64 = 3.0;

@@ -15,9 +15,9 @@ pub(super) const ALONG_COSINE: f64 = 0.94;
 const OWN_M: f64 = 12.0;
 /// Two places of a lane in the way of others are one zone if the free way between them is shorter, m.
 const GAP_M: f64 = 6.0;
-/// A zone reaches this far beyond what is in the way, m.
+/// A zone reaches this far beyond the obstructed part, m.
 const MARGIN_M: f64 = 3.0;
-/// What is left free between two zones of a lane is at least this long, m.
+/// Shortest free part of a lane beside a zone, m; a shorter one joins the zone.
 const SHORTEST_FREE_M: f64 = 4.0;
 
 /// No zone.
@@ -125,7 +125,7 @@ impl Zones {
         }
     }
 
-    /// Fills what is free between two zones of a chain where it is shorter than that, and makes them one.
+    /// Joins two zones of a chain across a free part between them that is shorter than `shortest` samples.
     pub fn close(&mut self, chains: &[Chain], shortest: usize) {
         for chain in 0..chains.len() {
             for run in self.free(chains, chain) {
