@@ -1,5 +1,5 @@
-//! Tests against the numbers of a network's twin in Python: these lie in training/weights, and both sides make their
-//! inputs alike.
+//! Helpers for tests against the numbers of a network's twin in Python. These lie in training/weights; both sides make
+//! their inputs alike.
 
 use std::path::PathBuf;
 

@@ -40,7 +40,7 @@ const WIDTH_M: f64 = 1.73;
 const MAST_BEHIND_M: f64 = 0.056;
 /// Mean height of the roof under the top of the vehicle's box, m: hits lie 0.33 m below the sensor.
 const ROOF_BELOW_TOP_M: f64 = 0.05;
-/// Largest height of a LiDAR above the roof, m: a higher one stands on another vehicle part or mast.
+/// Largest height of a LiDAR above the roof, m: a higher one does not stand on this roof.
 const HIGHEST_M: f64 = 1.5;
 /// Distance below which an echo may come back too early to be timed, m; the share of such echoes grows with nearness.
 const BLIND_M: f64 = 0.75;

@@ -24,7 +24,7 @@ pub struct TimeConfig {
     pub heads: usize,
     /// Temporal blocks.
     pub blocks: usize,
-    /// Blocks of the transformer after which a temporal block follows, each time.
+    /// Number of blocks of the transformer before each temporal block.
     pub every: usize,
     /// True if keys come from the same token of each frame, instead of the same place of the world.
     pub same_cell: bool,

@@ -16,7 +16,7 @@ const FACINGS: usize = 17;
 pub const EDGE: u8 = 0x80;
 /// Numbers that encode a depth.
 const DEPTHS: usize = 4;
-/// Least depth that is encoded; smaller ones count as this, m.
+/// Least depth whose logarithm is encoded, m; smaller depths count as this in it.
 const NEAREST_M: f32 = 0.3;
 /// Number of times of day that can be given.
 pub const TIMES: usize = 4;
@@ -197,8 +197,8 @@ impl<B: Ops> Teller<B> {
     }
 }
 
-/// Encoded depth: whether there is a surface, the logarithm of its depth, its nearness, and saw teeth of a metre; all 0
-/// where there is nothing.
+/// Encoded depth: whether there is a surface, the logarithm of its depth, its nearness, and a sine with a period of a
+/// metre that fades with depth; all 0 where there is nothing.
 fn depth_numbers(depth_m: f32) -> [f32; DEPTHS] {
     if depth_m <= 0.0 {
         return [0.0; DEPTHS];

@@ -184,7 +184,7 @@ impl<B: Ops> PictureVae<B> {
     }
 }
 
-/// The whole number of parts of `size` that is nearest to `length`, at least one.
+/// Rounds `length` up to a multiple of `size`, at least one.
 fn whole(length: usize, size: usize) -> usize {
     length.next_multiple_of(size).max(size)
 }

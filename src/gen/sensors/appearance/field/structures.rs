@@ -19,7 +19,7 @@ const RAGGED: usize = 3;
 const REACH: usize = 32;
 /// Radius around a middle within which connected columns decide its look, columns.
 const AROUND: usize = 12;
-/// Largest depth inside a structure that is told apart, columns.
+/// Largest depth inside a structure that counts, columns.
 const DEEPEST: u32 = 12;
 /// An edit changes no look farther away than this, m.
 #[cfg(test)]

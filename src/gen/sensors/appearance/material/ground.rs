@@ -157,7 +157,7 @@ impl Appearance {
         class.id()
     }
 
-    /// Depth of snow on the road, 0 to 1; `track` is how much of it tyres cleared, `None` off the lanes.
+    /// Amount of snow on the road, 0 to 1; `track` is how much of it tyres cleared, `None` off the lanes.
     fn snow_on_road(&self, a: Vec2, fp: f32, track: Option<f32>) -> f32 {
         let clear = track.map_or(0.06, |track| 0.75 * track + 0.14);
         ramp(
