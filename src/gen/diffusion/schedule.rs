@@ -6,7 +6,7 @@
 
 use thiserror::Error;
 
-/// How the noise variances of the training steps were chosen.
+/// Choice of the noise variances of the training steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Betas {
     /// Evenly spaced from `first` to `last`.
@@ -27,7 +27,7 @@ pub enum Betas {
     Cosine,
 }
 
-/// Where the sampling steps lie among the training steps (names as in diffusers).
+/// Placement of the sampling steps among the training steps (names as in diffusers).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spacing {
     /// Counted back from the noisiest step, which is included.
@@ -38,7 +38,7 @@ pub enum Spacing {
     Linspace,
 }
 
-/// What is wrong with a schedule or a choice of steps.
+/// Error of a schedule or of a choice of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum ScheduleError {
     /// No sampling step was asked for.
@@ -110,7 +110,7 @@ impl Level {
         sigma: 0.0,
     };
 
-    /// From log(alpha^2), which is at most 0 and may be minus infinity.
+    /// The level of log(alpha^2), which is at most 0 and may be minus infinity.
     pub fn from_log_alpha_bar(t: f64, log_alpha_bar: f64) -> Level {
         Level {
             t,

@@ -1,4 +1,5 @@
-//! Which part of one frame of a drive lies where a part of another does: what the temporal networks hear from.
+//! Correspondence of squares between the frames of a drive: which part of one frame lies where a part of another does.
+//! The temporal networks attend along it.
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -6,15 +7,15 @@ use rayon::prelude::*;
 /// Half of the window's side, m.
 const HALF_M: f64 = 40.0;
 
-/// Numbers that tell a pair of squares apart beside what they hold.
+/// Numbers that describe the offset of a pair of squares in place, heading and time.
 pub(crate) const OFFSETS: usize = 8;
 
 /// The squares that a window is divided into, and which of them belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Squares {
-    /// Along each side.
+    /// Squares along each side.
     side: usize,
-    /// Those of the same number, not those at the same place of the world.
+    /// True if squares of the same number belong together, instead of those at the same place of the world.
     same: bool,
 }
 
@@ -30,26 +31,28 @@ impl Squares {
         same: false,
     };
 
-    /// The same squares; whether those of the same number belong together, wherever the vehicle is.
+    /// These squares. If `same`, squares of the same number belong together, wherever the vehicle is; otherwise those
+    /// at the same place of the world.
     pub fn by_number(self, same: bool) -> Self {
         Self { same, ..self }
     }
 }
 
-/// The square there, and the offsets.
+/// The square of the other frame, and the offsets.
 pub(crate) type Pair = (u16, [f32; OFFSETS]);
 
-/// Which square of one frame lies where a square of another does.
+/// Correspondence of the squares of all pairs of frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Between {
     frames: usize,
     squares: usize,
-    /// `[frame][other frame][square]`; none where the place is out of sight.
+    /// `[frame][other frame][square]`; `None` where the place is out of sight.
     pairs: Vec<Option<Pair>>,
 }
 
 impl Between {
-    /// Of frames whose vehicles stand at these places (x and y in m, heading in rad) every `step_s` seconds.
+    /// Correspondence for frames whose vehicles stand at these places (x and y in m, heading in rad) every `step_s`
+    /// seconds.
     pub fn of(poses: &[[f64; 3]], step_s: f64, Squares { side, same }: Squares) -> Self {
         let (frames, squares) = (poses.len(), side * side);
         let size_m = 2.0 * HALF_M / side as f64;

@@ -1,5 +1,5 @@
-//! What stands in each column of a draft and how high its ground is: what the transformer gets to know of the background.
-//! Twin of `columns_of` in `training/pack.py`.
+//! Heights in each column of a draft: of what stands there, and of the ground. The transformer gets the background in
+//! this form. Twin of `columns_of` in `training/pack.py`.
 
 use scene::{Class, VoxelGrid, Window};
 
@@ -7,7 +7,7 @@ use scene::{Class, VoxelGrid, Window};
 pub const GROUPS: usize = 2;
 const LABELS: [Class; GROUPS] = [Class::Manmade, Class::Vegetation];
 
-/// Of one column, in bins, one more than the bin; 0 where there is none.
+/// Heights of one column, in bins, one more than the bin; 0 where there is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ColumnHeights {
     /// Lowest and highest bin of each group.
@@ -16,8 +16,8 @@ pub struct ColumnHeights {
     pub ground: u8,
 }
 
-/// Those of all columns, `[x][y]`: the ground of `draft`, the background of `full`, which is the draft with what stands beside
-/// the road in it.
+/// Heights of all columns, `[x][y]`: the ground of `draft`, the background of `full`, which is the draft with the
+/// scenery in it.
 pub fn column_heights(draft: &VoxelGrid, full: &VoxelGrid) -> Vec<ColumnHeights> {
     let columns = (0..Window::COLUMNS).map(|c| (c / Window::NY, c % Window::NY));
     let heights = columns.map(|(x, y)| {

@@ -1,4 +1,4 @@
-//! The encoder of the occupancy VAE up to its last norm: what the latents, and the features of F3D, are made from.
+//! The encoder of the occupancy VAE up to its last norm: the source of the latents and of the features of F3D.
 
 use rayon::prelude::*;
 
@@ -33,7 +33,7 @@ impl<B: Ops> Level<B> {
         Ok(Self(blocks.collect::<Result<_, _>>()?))
     }
 
-    /// One block after the other.
+    /// Applies one block after the other.
     pub fn apply(&self, ops: &B, map: B::Tensor) -> Result<B::Tensor, OpsError> {
         self.0.iter().try_fold(map, |map, block| ops.residual(block, map))
     }
@@ -113,7 +113,7 @@ impl<B: Ops> VoxelTable<B> {
     }
 }
 
-/// Labels to one vector per latent cell.
+/// The encoder: labels to one vector per latent cell.
 pub struct Encoder<B: Ops = Cpu> {
     width: usize,
     embed: VoxelTable<B>,

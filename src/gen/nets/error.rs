@@ -1,11 +1,11 @@
-//! Why a network refuses its input.
+//! Errors of the networks.
 
 use diffusion::schedule::ScheduleError;
 use diffusion::solver::SolverError;
 use nn::ops::OpsError;
 use thiserror::Error;
 
-/// What a network refuses, or cannot promise any more.
+/// Error of a network: an input that it refuses, or a result that it cannot guarantee.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ModelError {
     /// An input of the wrong size.
@@ -48,9 +48,9 @@ pub enum ModelError {
     OutOfRange {
         /// Which input.
         what: &'static str,
-        /// What was given.
+        /// The given value.
         found: usize,
-        /// What may be given.
+        /// The values allowed.
         expected: &'static str,
     },
     /// A number of steps that the schedule does not have.
@@ -59,7 +59,7 @@ pub enum ModelError {
     /// The solver refuses a state.
     #[error(transparent)]
     Solver(#[from] SolverError),
-    /// Whoever watched a run ended it. Not an error to show.
+    /// The watcher of a run stopped it. Not an error to show.
     #[error("stopped after step {step} of {steps}")]
     Stopped {
         /// Steps done, from 1.

@@ -68,7 +68,7 @@ pub struct ModelCard {
     pub hashes: [u64; 3],
 }
 
-/// Both networks, which belong together: the DiT knows only this VAE's latents.
+/// The two networks, which belong together: the DiT knows only this VAE's latents.
 pub struct OccModels {
     /// Labels to latents and back.
     pub vae: OccVae,
@@ -76,7 +76,7 @@ pub struct OccModels {
     pub dit: OccDit,
     /// The fine stage; a folder of weights may lack it.
     pub refiner: Option<Arc<Refiner>>,
-    /// Which weights these are.
+    /// Names and hashes of the weights.
     pub card: ModelCard,
 }
 

@@ -1,8 +1,8 @@
-//! Groups of cells that a network works on apart.
+//! Groups of cells that a network computes separately.
 
-/// Cells of a square map in groups that are worked on apart: those that touch are together, and groups whose rectangles,
-/// `reach` cells wider on every side, take no more together than apart. So two edits far from each other cost what both
-/// cost, not what lies between them.
+/// Divides the cells of a square map into groups that are computed separately. Cells that touch are in one group, and
+/// so are groups whose rectangles, `reach` cells wider on every side, take no more together than apart. Two edits far
+/// from each other thus cost the sum of both, without the cells between them.
 pub fn pieces(cells: &[bool], reach: usize) -> Vec<Vec<bool>> {
     let side = cells.len().isqrt();
     let mut groups: Vec<(Vec<bool>, [usize; 4])> = Vec::new(); // with x0, y0, x1, y1

@@ -1,5 +1,6 @@
-//! Diffusion that refines: from what the coarse latent decodes to, the fine latent (100x100x16) of what it may have been. v from a
-//! noisy fine latent, those of the coarse result's labels and of the draft, the coarse latent and a timestep. Twin of `training/models/refiner.py`.
+//! Refinement by diffusion: generates the fine latent (100x100x16) of an occupancy from the decoded result of its
+//! coarse latent. Predicts v from a noisy fine latent, the fine latents of the coarse result's labels and of the draft,
+//! the coarse latent and a timestep. Twin of `training/models/refiner.py`.
 
 use std::sync::{Arc, OnceLock};
 
@@ -61,7 +62,7 @@ impl RefinerConfig {
 pub struct Refiner<B: Ops = Cpu> {
     /// Labels to fine latents and back.
     pub vae: OccVae<B>,
-    /// Names both files.
+    /// Hash of both files.
     pub hash: u64,
     config: RefinerConfig,
     ops: B,
@@ -79,11 +80,11 @@ pub struct Refiner<B: Ops = Cpu> {
     head: B::Linear,
 }
 
-/// What is refined: latents of a window.
+/// Latents of a window that are to be refined.
 pub struct Rough<'a> {
     /// Fine latents of the coarse result's labels, `[x][y][16]`.
     pub fine: &'a [f32],
-    /// Fine latents of the draft that was asked for; all 0 where that is hidden.
+    /// Fine latents of the draft that was asked for; all 0 where it is hidden.
     pub told: &'a [f32],
     /// Coarse latents, `[x][y][8]`.
     pub coarse: &'a [f32],
@@ -103,15 +104,15 @@ impl Refiner {
         Ok(NET.get_or_init(|| Arc::new(net)).clone())
     }
 
-    /// On the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown, and another
-    /// fine VAE than the one that it was trained with.
+    /// Loads the network onto the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not
+    /// finite or unknown, and another fine VAE than the one that it was trained with.
     pub fn new(file: WeightFile<'_>, fine: WeightFile<'_>) -> Result<Self, WeightsError> {
         Self::on(Cpu, file, fine)
     }
 }
 
 impl<B: Ops + Clone> Refiner<B> {
-    /// The same on a backend.
+    /// Loads the network onto a backend; otherwise as [`Refiner::new`].
     pub fn on(ops: B, mut file: WeightFile<'_>, fine: WeightFile<'_>) -> Result<Self, WeightsError> {
         let (knows, name) = (file.metadata("fine"), fine.metadata("name"));
         if knows.is_some() && knows != name {

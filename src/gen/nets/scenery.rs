@@ -1,5 +1,5 @@
-//! Diffusion in two dimensions that draws what stands beside the roads, as a map of 100x100 cells of 0.8 m: v from a noisy
-//! map, a timestep and a condition (layout, ground, what is drawn and what stays). A U-net of the VAE's blocks. Twin of
+//! Diffusion in two dimensions that draws scenery as a map of 100x100 cells of 0.8 m: v from a noisy map, a timestep
+//! and a condition (layout, ground, which cells are drawn and what stays). A U-net of the VAE's blocks. Twin of
 //! `training/models/scenery.py`, which says what the numbers of a cell mean.
 
 use std::sync::{Arc, OnceLock};
@@ -30,7 +30,7 @@ const HEIGHTS: f32 = 14.0;
 const LOW: u8 = 8;
 /// Map layers of the layout, and whether any object stands there.
 const LAYERS: usize = 8 + 1;
-/// What is said of a cell: layout, ground, whether it is drawn, what stands in it where it stays.
+/// Numbers of a cell's condition: layout, ground, whether it is drawn, what stands in it where it stays.
 const CONDITION: usize = LAYERS + 1 + 1 + NUMBERS;
 /// Columns along one side of a cell.
 const COLUMNS: usize = Window::NX / SIDE;
@@ -69,7 +69,7 @@ impl SceneryConfig {
     }
 }
 
-/// What a map is drawn for.
+/// Condition that a map is drawn for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneryCondition {
     /// Bits of the 18 layers, `[x][y]`, 200x200.
@@ -78,7 +78,7 @@ pub struct SceneryCondition {
     pub ground: Vec<u8>,
     /// Which cells are drawn, 100x100.
     pub drawn: Vec<bool>,
-    /// The map of what stands; it is heard where it is not drawn.
+    /// The map of what stands; an input where it is not drawn.
     pub stands: Vec<f32>,
     /// Vegetation, building, clutter where they are given, 0 to 1 (`Density`).
     pub named: [Option<f32>; NAMED],

@@ -80,14 +80,14 @@ impl TextEncoder {
         Ok(ENCODER.get_or_init(|| Arc::new(encoder)).clone())
     }
 
-    /// On the processor. Takes all tensors of the file.
+    /// Loads the encoder onto the processor. Takes all tensors of the file.
     pub fn new(w: WeightFile<'_>) -> Result<Self, WeightsError> {
         Self::on(Cpu, w)
     }
 }
 
 impl<B: Ops> TextEncoder<B> {
-    /// The same on a backend.
+    /// Loads the encoder onto a backend; otherwise as [`TextEncoder::new`].
     pub fn on(ops: B, mut w: WeightFile<'_>) -> Result<Self, WeightsError> {
         let c: TextConfig = w.config("config")?;
         if c.buckets != BUCKETS || !(1..=1024).contains(&c.width) {
@@ -109,7 +109,7 @@ impl<B: Ops> TextEncoder<B> {
         Ok(out)
     }
 
-    /// A unit vector; of a text without words, zeros. Errors if the backend cannot compute.
+    /// Unit vector of a text; zeros for a text without words. Errors if the backend cannot compute.
     pub fn encode(&self, text: &str) -> Result<Vec<f32>, OpsError> {
         let (ops, ids) = (&self.ops, token_ids(text));
         let nothing = vec![0.0; self.width];

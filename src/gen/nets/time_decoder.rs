@@ -1,5 +1,6 @@
-//! Temporal decoder: what the decoder of the VAE is given of the frames of a drive, so that they do not flicker. Each cell hears the
-//! cells of all frames that lie at its place of the world. Twin of `training/models/time_decoder.py`.
+//! Temporal decoder: adapts the latents of the frames of a drive for the decoder of the VAE, so that the frames do not
+//! flicker. Each cell attends to the cells of all frames that lie at its place of the world. Twin of
+//! `training/models/time_decoder.py`.
 
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -13,7 +14,7 @@ use nn::ops::Ops;
 use nn::transformer::piece_of;
 use nn::weights::{WeightFile, WeightsError};
 
-/// Cells along the side of what the first layer sees.
+/// Side of the first layer's kernel, cells.
 const KERNEL: usize = 3;
 
 /// Sizes, as in the file's metadata.
@@ -87,8 +88,9 @@ impl TimeDecoder {
         })
     }
 
-    /// What the decoder is given for the latents (50x50x8 each) of the frames of a drive whose vehicles stand at these places (x and y
-    /// in m, heading in rad) every `step_s` seconds. Errors on other lengths and numbers that are not finite.
+    /// Latents for the decoder from the latents (50x50x8 each) of the frames of a drive, whose vehicles stand at these
+    /// places (x and y in m, heading in rad) every `step_s` seconds. Errors on other lengths and numbers that are not
+    /// finite.
     pub fn apply(
         &self,
         latents: &[Vec<f32>],
@@ -124,7 +126,7 @@ fn around(latent: &[f32]) -> Vec<f32> {
     let mut out = vec![0.0; CELLS * CHANNELS * area];
     for (cell, out) in out.chunks_exact_mut(CHANNELS * area).enumerate() {
         for tap in 0..area {
-            // One less than the neighbour's place would be one more: what is beyond wraps and is left out.
+            // Coordinates are counted from one cell beyond the edge; places beyond the map are left out.
             let (x, y) = (cell / SIDE + tap / KERNEL, cell % SIDE + tap % KERNEL);
             if (1..=SIDE).contains(&x) && (1..=SIDE).contains(&y) {
                 let from = &latent[((x - 1) * SIDE + y - 1) * CHANNELS..][..CHANNELS];
@@ -158,7 +160,7 @@ impl CellBlock {
         })
     }
 
-    /// In place over the cells of all frames.
+    /// Applies the block in place over the cells of all frames.
     fn apply(&self, frames: &mut [Vec<f32>], between: &Between, heads: usize) {
         let piece = piece_of(CELLS);
         let width = self.q.outputs();
@@ -193,7 +195,7 @@ impl CellBlock {
         }
     }
 
-    /// What one cell hears of its place in all frames, head by head.
+    /// Attention of one cell to its place in all frames, head by head.
     fn attend(
         &self,
         told: &[Told],
@@ -239,10 +241,10 @@ impl CellBlock {
     }
 }
 
-/// What the cells of a frame say of themselves.
+/// Projections of the cells of a frame, for attention.
 struct Told {
     queries: Vec<f32>,
     keys_values: Vec<f32>,
-    /// What queries ask of offsets.
+    /// Weights of the offsets in the scores, for each query.
     asked: Vec<f32>,
 }

@@ -1,4 +1,5 @@
-//! For tests against the numbers of a network's twin in Python: they lie in training/weights, and their inputs are made alike here and there.
+//! Helpers for tests against the numbers of a network's twin in Python. These lie in training/weights; both sides make
+//! their inputs alike.
 
 use std::path::PathBuf;
 
@@ -16,7 +17,7 @@ impl Twin {
         PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(format!("../../../training/weights/{}/{name}", self.0))
     }
 
-    /// What the twin says.
+    /// Numbers of the twin.
     pub fn numbers(&self, name: &str) -> Vec<f64> {
         let bytes = std::fs::read(self.path("golden.safetensors")).expect("the golden");
         let file = SafeTensors::deserialize(&bytes).expect("a safetensors file");
@@ -26,7 +27,7 @@ impl Twin {
         quads.iter().map(|q| f64::from(f32::from_le_bytes(*q))).collect()
     }
 
-    /// Prints the largest difference from what the twin says, and fails if it is too large.
+    /// Prints the largest difference from the twin's numbers, and fails if it is too large.
     pub fn compare(&self, name: &str, found: &[f32]) {
         let gap = crate::golden::gap(found, &self.numbers(name));
         println!("{name}: {gap:.1e} of the largest number");

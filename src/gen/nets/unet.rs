@@ -1,5 +1,5 @@
-//! The shape that small networks over maps share: three levels of residual blocks on the way down, two on the way up, which
-//! hear what was seen on the way down.
+//! The shape that small networks over maps share: three levels of residual blocks on the way down, two on the way up,
+//! which take in the features of the way down.
 
 use crate::ModelError;
 use crate::encoder::{Level, PIECE, levels, steps};
@@ -7,7 +7,8 @@ use nn::map::Map;
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 
-/// The levels with their weights, on a backend. Each halves the sides of the map of the one before; the first sees squares of 2 x 2 places.
+/// The levels with their weights, on a backend. Each halves the sides of the map of the one before; the first works on
+/// squares of 2 x 2 places.
 pub struct UNet<B: Ops = Cpu> {
     stem: B::Linear,
     enter: Vec<Level<B>>, // finest first
@@ -17,8 +18,8 @@ pub struct UNet<B: Ops = Cpu> {
 }
 
 impl<B: Ops> UNet<B> {
-    /// Takes `stem`, `enter`, `down`, `leave` and `up` of a file: `inputs` numbers a place, `widths` and the kernels of the blocks on the way
-    /// down finest first.
+    /// Takes `stem`, `enter`, `down`, `leave` and `up` of a file: `inputs` numbers a place, `widths` and the kernels of
+    /// the blocks on the way down finest first.
     pub fn new(
         ops: &B,
         w: &mut WeightFile<'_>,
@@ -35,8 +36,8 @@ impl<B: Ops> UNet<B> {
         })
     }
 
-    /// What the levels on the way down make of a map, the finest first: at a half, a quarter and an eighth of its sides, which
-    /// are multiples of 8.
+    /// Features of the levels on the way down, the finest first: at a half, a quarter and an eighth of the map's sides,
+    /// which are multiples of 8.
     pub fn seen(&self, ops: &B, map: Map) -> Result<[B::Tensor; 3], ModelError> {
         let squares = ops.fold(&ops.upload(map)?)?;
         let fine = self.enter[0].apply(ops, ops.apply(&self.stem, &squares, PIECE)?)?;
@@ -49,7 +50,7 @@ impl<B: Ops> UNet<B> {
         Ok([fine, middle, coarse])
     }
 
-    /// Down and up again: a map of half the sides, as wide as the finest level.
+    /// Goes down and up again: gives a map of half the sides, as wide as the finest level.
     pub fn apply(&self, ops: &B, map: Map) -> Result<B::Tensor, ModelError> {
         let [fine, middle, mut map] = self.seen(ops, map)?;
         for ((up, level), before) in self.up.iter().zip(&self.leave).zip([&middle, &fine]) {

@@ -1,4 +1,4 @@
-//! Reads reference vectors for the tests of this room: f32 inputs, f64 expected outputs.
+//! Reads reference vectors for the tests of this crate: f32 inputs, f64 expected outputs.
 
 use safetensors::{Dtype, SafeTensors};
 

@@ -10,7 +10,7 @@ use crate::ops::{Edge, MessageParts, NodeBlockParts};
 /// Rows that go through a layer in one piece.
 const PIECE: usize = 32;
 
-/// A round of messages, in place over the nodes `h`, see [`Ops::messages`](crate::Ops::messages).
+/// Applies a round of messages in place over the nodes `h`, see [`Ops::messages`](crate::Ops::messages).
 pub(crate) fn messages(round: &MessageParts<Linear>, h: &mut [f32], width: usize, edges: &[Edge]) {
     let n = h.len() / width;
     let y = modulated(h, &vec![0.0; width], &vec![0.0; width]);
@@ -36,8 +36,8 @@ pub(crate) fn messages(round: &MessageParts<Linear>, h: &mut [f32], width: usize
     h.iter_mut().zip(&out).for_each(|(h, o)| *h += o);
 }
 
-/// A transformer block, in place over the nodes `h`, see [`Ops::node_block`](crate::Ops::node_block); without a context that
-/// is empty.
+/// Applies a transformer block in place over the nodes `h`, see [`Ops::node_block`](crate::Ops::node_block); an empty
+/// `context` is none.
 pub(crate) fn block(
     block: &NodeBlockParts<Linear>,
     h: &mut [f32],

@@ -31,14 +31,14 @@ pub struct Int8Matrix {
     data: Vec<Line>,
     k: usize,
     n: usize,
-    /// Of each column: what one step of it is worth.
+    /// Value of one step in each column.
     scales: Vec<f32>,
     /// 128 times the sum of each column: inputs are stored 128 too high.
     offsets: Vec<i32>,
 }
 
 impl Int8Matrix {
-    /// Of the first `k` rows and `n` columns of `matrix`, which are finite.
+    /// Quantises the first `k` rows and `n` columns of `matrix`, which are finite.
     pub fn new(matrix: View<'_>, k: usize, n: usize) -> Self {
         assert!(k <= MOST_INPUTS);
         let groups = k.div_ceil(GROUP);
@@ -201,7 +201,7 @@ impl Int8Matrix {
 /// Sums of a row over the columns of a panel.
 pub type Wide = [i32; VECTORS * LANES];
 
-/// Where the line of a column and a group of rows lies.
+/// Place of the line of a column and a group of rows.
 fn place(column: usize, group: usize, groups: usize, n: usize) -> usize {
     let panel = column / (VECTORS * LANES);
     let first = panel * VECTORS;
@@ -210,11 +210,12 @@ fn place(column: usize, group: usize, groups: usize, n: usize) -> usize {
 }
 
 vectorised! {
-    /// Every row of `k` values to whole numbers around 128, rows padded to fours with 128, and what a step is worth.
+    /// Quantises every row of `k` values to whole numbers around 128, rows padded to fours with 128; `scales` gets the
+    /// value of a step.
     pub fn quantise_rows(x: &[f32], k: usize, out: &mut [u8], scales: &mut [f32]) {
         let padded = k.next_multiple_of(GROUP);
         for ((x, out), scale) in x.chunks_exact(k).zip(out.chunks_exact_mut(padded)).zip(scales) {
-            // Magnitudes compare as their bits do, and what is not finite has larger bits than any number.
+            // Magnitudes compare as their bits do, and numbers that are not finite have larger bits than any other.
             let magnitude = |v: f32| v.to_bits() & 0x7fff_ffff;
             let mut largest = [0u32; LANES];
             let chunks = x.chunks_exact(LANES);
@@ -240,7 +241,7 @@ vectorised! {
 }
 
 vectorised! {
-    /// Sums of one row to numbers.
+    /// Converts the sums of one row to numbers.
     pub fn scaled(sums: &[i32], offsets: &[i32], columns: &[f32], row: f32, bias: &[f32], out: &mut [f32]) {
         for ((((o, s), offset), c), b) in out.iter_mut().zip(sums).zip(offsets).zip(columns).zip(bias) {
             *o = (*s - offset) as f32 * (row * c) + b;

@@ -63,7 +63,7 @@ pub fn matmul(
 pub struct Linear {
     weight: PackedMatrix, // [inputs][outputs]
     bias: Vec<f32>,
-    /// The weight in eight bits, made when it is first asked for.
+    /// The weight in eight bits, made when it is first needed.
     int8: OnceLock<Int8Matrix>,
 }
 
@@ -84,7 +84,7 @@ impl Linear {
         })
     }
 
-    /// The same without a bias.
+    /// Takes `name.weight` as [`Self::new`] does; there is no bias.
     pub fn without_bias(
         w: &mut WeightFile<'_>,
         name: &str,
@@ -97,7 +97,7 @@ impl Linear {
         Ok(Self::from_parts(&weight, vec![0.0; outputs], inputs))
     }
 
-    /// From a weight `[outputs][inputs]`.
+    /// The layer of a weight `[outputs][inputs]`.
     pub fn from_parts(weight: &[f32], bias: Vec<f32>, inputs: usize) -> Self {
         let weight = PackedMatrix::new(View::columns(weight, inputs), inputs, bias.len());
         Self {
@@ -121,7 +121,7 @@ impl Linear {
         );
     }
 
-    /// The same in the precision asked for.
+    /// Rows of `x` to rows of `out`, on the calling thread, in the precision asked for.
     pub fn rows_in(&self, precision: Precision, x: &[f32], out: &mut [f32]) {
         match precision {
             Precision::F32 => self.rows(x, out),
@@ -157,9 +157,9 @@ impl Linear {
 
 /// Scale and shift of a norm.
 pub struct Norm {
-    /// Per channel.
+    /// Scale per channel.
     pub scale: Vec<f32>,
-    /// Per channel.
+    /// Shift per channel.
     pub shift: Vec<f32>,
 }
 
@@ -190,7 +190,7 @@ pub struct ResBlock {
 }
 
 impl ResBlock {
-    /// Of its parts; `weight` is that of the convolution, `[out][in][kernel][kernel]`.
+    /// The block of its parts; `weight` is that of the convolution, `[out][in][kernel][kernel]`.
     pub fn from_parts(norm: Norm, weight: &[f32], bias: Vec<f32>, kernel: usize, second: Linear) -> Self {
         let width = bias.len();
         Self {
@@ -217,7 +217,7 @@ impl ResBlock {
         self.kernel / 2
     }
 
-    /// In place, on all cores.
+    /// Applies the block in place, on all cores.
     pub fn apply(&self, map: &mut Map) {
         let (columns, width) = (map.columns, map.width);
         if self.kernel == 1 {
@@ -286,7 +286,7 @@ pub struct Head<'a> {
     keys_values: &'a [f32],
     /// Length of such a row.
     stride: usize,
-    /// Where the head's values start in a row.
+    /// Start of the head's values in a row.
     value_at: usize,
 }
 

@@ -1,4 +1,4 @@
-//! What networks are built from: weight files, blocks, and the processor's kernels.
+//! Building blocks of networks: weight files, layers, and the processor's kernels.
 
 mod cpu;
 #[cfg(test)]

@@ -103,7 +103,7 @@ impl CellRect {
         }
     }
 
-    /// The same place in cells half as large.
+    /// The rectangle at the same place in cells half as large.
     pub fn halved(self) -> Self {
         Self {
             x: 2 * self.x,

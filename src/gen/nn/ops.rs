@@ -1,4 +1,4 @@
-//! What a backend offers: blocks of networks and the values that pass between them. A network written against [`Ops`]
+//! Operations of a backend: blocks of networks and the values that pass between them. A network written against [`Ops`]
 //! runs on the processor's kernels ([`Cpu`](crate::Cpu)) and on any other implementation.
 
 use thiserror::Error;
@@ -9,18 +9,18 @@ use crate::ring::RingBlockParts;
 use crate::rules::RuleBook;
 use crate::weights::{WeightFile, WeightsError};
 
-/// Why a backend could not compute. One line. The processor's never fails.
+/// Error of a backend that could not compute. One line. The processor's never fails.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{backend}: {reason}")]
 pub struct OpsError {
     /// Name of the backend.
     pub backend: &'static str,
-    /// What it said.
+    /// Reason that it gave.
     pub reason: String,
 }
 
 impl OpsError {
-    /// From any error, on one line.
+    /// Makes one from any error, on one line.
     pub fn new(backend: &'static str, error: impl std::fmt::Display) -> Self {
         let text = error.to_string();
         let reason = text.lines().next().unwrap_or("no reason").to_owned();
@@ -65,21 +65,21 @@ pub struct BlockParts<L> {
 /// A directed edge of a graph ([`Ops::messages`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// The node that speaks.
+    /// Node that the message comes from.
     pub from: usize,
-    /// The node that listens.
+    /// Node that the message goes to.
     pub to: usize,
-    /// What they are to each other.
+    /// Number of the relation between them.
     pub relation: usize,
-    /// How far apart they are said to be, and 1 if anything is said.
+    /// Stated distance between them, and 1 if one is stated.
     pub distance: [f32; 2],
 }
 
 /// Parts of a round of messages along the edges of a graph ([`Ops::messages`]).
 pub struct MessageParts<L> {
-    /// Of the node that speaks: `width` to `width`.
+    /// Layer of the node that a message comes from: `width` to `width`.
     pub source: L,
-    /// Of the node that listens: `width` to `width`.
+    /// Layer of the node that a message goes to: `width` to `width`.
     pub target: L,
     /// `[relation][width]`.
     pub relation: Vec<f32>,
@@ -110,7 +110,7 @@ pub struct NodeBlockParts<L> {
 pub trait Ops: Send + Sync + Sized + 'static {
     /// Name for messages.
     const NAME: &'static str;
-    /// What passes between blocks.
+    /// Value that passes between blocks.
     type Tensor: Values;
     /// y = x W + b at every place.
     type Linear: Send + Sync;
@@ -126,7 +126,7 @@ pub trait Ops: Send + Sync + Sized + 'static {
     type SparseConvolution: Send + Sync;
     /// x + W relu(convolution(norm(x))) of sites.
     type SparseResidual: Send + Sync;
-    /// Memory that sparse blocks may use again; what is in it means nothing.
+    /// Memory that sparse blocks may use again; its content means nothing.
     type Room: Default;
     /// A round of messages along the edges of a graph.
     type Messages: Send + Sync;
@@ -135,16 +135,16 @@ pub trait Ops: Send + Sync + Sized + 'static {
     /// A transformer block over a ring of maps, modulated by time.
     type RingBlock: Send + Sync;
 
-    /// Values of the processor to the backend.
+    /// Moves values from the processor to the backend.
     fn upload(&self, map: Map) -> Result<Self::Tensor, OpsError>;
-    /// Back to the processor.
+    /// Moves values back to the processor.
     fn download(&self, x: Self::Tensor) -> Result<Map, OpsError>;
 
-    /// `weight` is `[outputs][inputs]`.
+    /// A linear layer; `weight` is `[outputs][inputs]`.
     fn linear_from(&self, weight: &[f32], bias: Vec<f32>, inputs: usize) -> Result<Self::Linear, OpsError>;
-    /// Scale and shift per channel.
+    /// A norm, with scale and shift per channel.
     fn norm_from(&self, scale: Vec<f32>, shift: Vec<f32>) -> Result<Self::Norm, OpsError>;
-    /// `weight` is that of the convolution, `[out][in][kernel][kernel]`; the kernel is 1 or 3.
+    /// A residual block; `weight` is that of the convolution, `[out][in][kernel][kernel]`; the kernel is 1 or 3.
     fn residual_from(
         &self,
         norm: Self::Norm,
@@ -153,7 +153,7 @@ pub trait Ops: Send + Sync + Sized + 'static {
         kernel: usize,
         second: Self::Linear,
     ) -> Result<Self::Residual, OpsError>;
-    /// `entries` is `[entry][width]`.
+    /// A table; `entries` is `[entry][width]`.
     fn table_from(&self, entries: Vec<f32>, width: usize) -> Result<Self::Table, OpsError>;
     /// A transformer block.
     fn block_from(&self, parts: BlockParts<Self::Linear>) -> Result<Self::Block, OpsError>;
@@ -182,9 +182,9 @@ pub trait Ops: Send + Sync + Sized + 'static {
         parts: RingBlockParts<Self::Linear, Self::Norm>,
     ) -> Result<Self::RingBlock, OpsError>;
 
-    /// At every place; the processor works on `piece` places at a time.
+    /// Applies a linear layer at every place; the processor works on `piece` places at a time.
     fn apply(&self, linear: &Self::Linear, x: &Self::Tensor, piece: usize) -> Result<Self::Tensor, OpsError>;
-    /// Several layers of the same input.
+    /// Applies several layers to the same input.
     fn apply_each(&self, layers: &[&Self::Linear], x: &Self::Tensor) -> Result<Vec<Self::Tensor>, OpsError>;
     /// Layer norm of every place.
     fn norm(&self, norm: &Self::Norm, x: Self::Tensor) -> Result<Self::Tensor, OpsError>;
@@ -252,8 +252,9 @@ pub trait Ops: Send + Sync + Sized + 'static {
         room: &mut Self::Room,
     ) -> Result<Self::Tensor, OpsError>;
 
-    /// x + out(m) of the nodes `x`: m is the mean over the edges to a node of gelu(source(y of the one that speaks) + target(y
-    /// of the node) + relation + distance), 0 without an edge; y is x after a layer norm without learned numbers.
+    /// x + out(m) of the nodes `x`: m is the mean over the edges to a node of gelu(source(y of the node that the edge
+    /// comes from) + target(y of the node) + relation + distance), 0 without an edge; y is x after a layer norm without
+    /// learned numbers.
     fn messages(
         &self,
         round: &Self::Messages,
@@ -329,7 +330,7 @@ pub trait Ops: Send + Sync + Sized + 'static {
             .map_err(|e| w.backend_error(e))
     }
 
-    /// The same without a bias, of the shape `[outputs, inputs]`.
+    /// Takes `name.weight` of the shape `[outputs, inputs]`; there is no bias.
     fn linear_without_bias(
         &self,
         w: &mut WeightFile<'_>,

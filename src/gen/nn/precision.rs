@@ -1,8 +1,8 @@
-//! In what numbers a network computes.
+//! Precision in which a network computes.
 
 use serde::{Deserialize, Serialize};
 
-/// In what the denoising network's products are computed.
+/// Precision of the denoising network's products.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Precision {

@@ -31,7 +31,7 @@ pub struct RingBlockParts<L, N> {
 
 /// Parts of attention to the maps on the left and on the right.
 pub struct AcrossParts<L, N> {
-    /// Of the tokens that it hears.
+    /// Norm of the tokens that are attended to.
     pub norm: N,
     /// Added to the keys of the left map, then to those of the right one, `[2][width]`.
     pub side: Vec<f32>,
@@ -50,7 +50,7 @@ pub struct RingBlock {
 }
 
 impl RingBlock {
-    /// Of its parts.
+    /// The block of its parts.
     pub fn new(parts: RingBlockParts<Linear, Norm>) -> Self {
         let layers = [parts.qkv, parts.proj, parts.fc1, parts.fc2];
         Self {
@@ -61,8 +61,8 @@ impl RingBlock {
         }
     }
 
-    /// In place over maps of one size, in the order of the ring: the map before one is on its left, the last one on the left of
-    /// the first. `ada` has for each of them what modulates it, `[6][width]`.
+    /// Applies the block in place over maps of one size, in the order of the ring: the map before one is on its left,
+    /// the last one on the left of the first. `ada` has for each of them what modulates it, `[6][width]`.
     pub fn apply(&self, maps: &mut [Map], ada: &[Map]) {
         let precision = Precision::F32;
         let ada: Vec<Vec<f32>> = ada
@@ -95,7 +95,7 @@ impl RingBlock {
         });
     }
 
-    /// Adds to every map what it hears of its neighbours.
+    /// Adds to every map its attention to its neighbours.
     fn hear(&self, across: &AcrossParts<Linear, Norm>, maps: &mut [Map]) {
         let piece = |map: &Map| piece_of(map.rows * map.columns);
         let project = |map: &Map| {

@@ -1,12 +1,12 @@
-//! Who feeds whom in a sparse convolution, computed once for a set of sites. One form serves submanifold, strided and
-//! transposed convolution (Graham et al. 2018, arXiv 1711.10275).
+//! Rule books of sparse convolutions: which sites feed which rows, computed once for a set of sites. One form serves
+//! submanifold, strided and transposed convolution (Graham et al. 2018, arXiv 1711.10275).
 
 use rayon::prelude::*;
 
 /// Sites that are worked on together.
 pub(crate) const PIECE: usize = 256;
 
-/// Where the rows of a sparse convolution take their inputs from.
+/// Sources of the rows of a sparse convolution.
 pub struct RuleBook {
     rows: usize,
     pieces: Vec<Piece>,
@@ -19,7 +19,8 @@ pub(crate) struct Piece {
 }
 
 impl RuleBook {
-    /// For `rows` rows of `taps` taps each; `source(row, tap)` is the site there, `sites` or more for none.
+    /// The rule book of `rows` rows of `taps` taps each; `source(row, tap)` is the site there, `sites` or more for
+    /// none.
     pub fn new(rows: usize, taps: usize, sites: usize, source: impl Fn(usize, usize) -> u32 + Sync) -> Self {
         let piece = |room: &mut Vec<[u32; 2]>, first: usize| {
             let last = (first + PIECE).min(rows);
@@ -27,7 +28,8 @@ impl RuleBook {
             let (mut ends, mut n) = (Vec::with_capacity(taps), 0);
             for tap in 0..taps {
                 for row in first..last {
-                    // Written so that nothing has to be guessed by the processor: what is not there is overwritten.
+                    // Written without a branch that would have to be predicted: entries of missing sites are
+                    // overwritten.
                     let site = source(row, tap);
                     room[n] = [(row - first) as u32, site];
                     n += usize::from((site as usize) < sites);
@@ -44,7 +46,7 @@ impl RuleBook {
         Self { rows, pieces }
     }
 
-    /// Of no rows.
+    /// A rule book without rows.
     pub fn none() -> Self {
         Self {
             rows: 0,
@@ -52,7 +54,7 @@ impl RuleBook {
         }
     }
 
-    /// Rows of what a convolution makes.
+    /// Rows of the output of a convolution.
     pub fn rows(&self) -> usize {
         self.rows
     }

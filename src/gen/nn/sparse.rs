@@ -15,7 +15,7 @@ pub struct Convolution {
 }
 
 impl Convolution {
-    /// From a weight `[tap][input][output]`.
+    /// The convolution of a weight `[tap][input][output]`.
     pub fn from_parts(weight: &[f32], bias: Vec<f32>, taps: usize) -> Self {
         let inputs = weight.len() / (taps * bias.len());
         Self {
@@ -26,7 +26,7 @@ impl Convolution {
         }
     }
 
-    /// Numbers of a row of what it makes.
+    /// Numbers of a row of the output.
     pub fn outputs(&self) -> usize {
         self.bias.len()
     }
@@ -73,12 +73,12 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// Of its parts.
+    /// The block of its parts.
     pub fn from_parts(norm: Norm, conv: Convolution, linear: Linear) -> Self {
         Self { norm, conv, linear }
     }
 
-    /// In place; `normed` is room that may be used again.
+    /// Applies the block in place; `normed` is room that may be used again.
     pub fn apply(&self, x: &mut [f32], around: &RuleBook, normed: &mut Vec<f32>) {
         normed.resize(x.len().max(normed.len()), 0.0);
         let normed = &mut normed[..x.len()];

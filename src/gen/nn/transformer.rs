@@ -29,7 +29,7 @@ pub struct Block {
     side: usize,
 }
 
-/// What a block does once it is told shifts, scales and gates; of a map of any shape.
+/// The part of a block after its modulation: shifts, scales and gates are given. Works on a map of any shape.
 pub(crate) struct Body {
     qkv: Linear,
     proj: Linear,
@@ -48,7 +48,7 @@ struct Local {
 /// Which tokens of a map are computed.
 #[derive(Clone, Copy)]
 pub(crate) struct Places<'a> {
-    /// Where they stand, row by row.
+    /// Places of the tokens, row by row.
     pub at: &'a [usize],
     /// Rows and columns of the map.
     pub shape: [usize; 2],
@@ -60,7 +60,7 @@ pub fn piece_of(tokens: usize) -> usize {
 }
 
 impl Block {
-    /// Of its parts.
+    /// The block of its parts.
     pub fn new(parts: BlockParts<Linear>) -> Self {
         Self {
             body: Body::new(
@@ -73,9 +73,9 @@ impl Block {
         }
     }
 
-    /// In place over some tokens of one sequence, which stand at `places` of it. `keys_values` holds those
-    /// of the whole sequence; these tokens' own are renewed first. `ada` is shift, scale, gate for
-    /// attention, then the same for the MLP.
+    /// Applies the block in place to some tokens of one sequence, which stand at `places` of it. `keys_values` holds
+    /// those of the whole sequence; these tokens' own are renewed first. `ada` is shift, scale, gate for attention,
+    /// then the same for the MLP.
     pub fn apply(
         &self,
         tokens: &mut [f32],
@@ -94,7 +94,7 @@ impl Block {
 }
 
 impl Body {
-    /// Of its parts, without a convolution if `local` is none.
+    /// The body of its parts, without a convolution if `local` is `None`.
     pub(crate) fn new(
         [qkv, proj, fc1, fc2]: [Linear; 4],
         local: Option<(Vec<f32>, Vec<f32>)>,
@@ -110,7 +110,7 @@ impl Body {
         }
     }
 
-    /// Attention of the block, see [`Block::apply`]; `then` is done with every piece of tokens.
+    /// Attention of the block, see [`Block::apply`]; `then` is called with every piece of tokens.
     pub(crate) fn attend(
         &self,
         tokens: &mut [f32],
@@ -179,7 +179,7 @@ impl Body {
             });
     }
 
-    /// The MLP of the block, in place over some tokens.
+    /// The MLP of the block, applied in place to some tokens.
     pub(crate) fn mlp<'a>(&'a self, ada: &'a [f32], precision: Precision) -> impl Fn(&mut [f32]) + Sync + 'a {
         let width = ada.len() / 6;
         let part = move |i: usize| &ada[i * width..][..width];
@@ -210,7 +210,7 @@ pub(crate) fn shrunk_queries(rows: &[f32], stride: usize, at: usize, width: usiz
 }
 
 impl Local {
-    /// `weight` is `[width][3][3]`.
+    /// The convolution of `weight`, `[width][3][3]`.
     fn new(weight: &[f32], bias: Vec<f32>) -> Self {
         let width = bias.len();
         Self {
@@ -221,7 +221,7 @@ impl Local {
         }
     }
 
-    /// Adds to `row` what the values around the token at `place` give; beyond the map there is nothing.
+    /// Adds to `row` the convolution of the values around the token at `place`; beyond the map there is nothing.
     fn add_at(&self, place: usize, [rows, columns]: [usize; 2], keys_values: &[f32], row: &mut [f32]) {
         let width = row.len();
         row.iter_mut().zip(&self.bias).for_each(|(r, b)| *r += b);

@@ -14,29 +14,29 @@ use crate::ops::OpsError;
 /// Most bytes of a weight file that is read: 2 GiB, some hundred times the largest that ships.
 pub const MOST_BYTES: u64 = 1 << 31;
 
-/// Why weights were refused. Every message is one line that names the file.
+/// Error of weights that were refused. Every message is one line that names the file.
 #[derive(Debug, Error)]
 pub enum WeightsError {
     /// The file could not be read.
     #[error("{}: {source}", path.display())]
     Read {
-        /// Where it was looked for.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// A folder, a device, a pipe.
     #[error("{}: expected a regular file of weights, found {found}", path.display())]
     NotAFile {
-        /// Where it was looked for.
+        /// Path that was given.
         path: PathBuf,
-        /// What stands there.
+        /// Kind of thing at the path.
         found: &'static str,
     },
     /// More than any network of this program can use.
     #[error("{}: expected weights of at most {MOST_BYTES} bytes, found {found}", path.display())]
     TooLarge {
-        /// Where it was looked for.
+        /// Path of the file.
         path: PathBuf,
         /// Its size, bytes.
         found: u64,
@@ -46,7 +46,7 @@ pub enum WeightsError {
     Backend {
         /// Name of the file.
         file: String,
-        /// What the backend said.
+        /// Reason that the backend gave.
         reason: OpsError,
     },
     /// The bytes end before or after the place that the header names.
@@ -56,9 +56,9 @@ pub enum WeightsError {
     Size {
         /// Name of the file.
         file: String,
-        /// What header and tensors take, bytes.
+        /// Size that header and tensors take, bytes.
         expected: u64,
-        /// What is there, bytes.
+        /// Size of the file, bytes.
         found: u64,
     },
     /// Not a safetensors file, or a damaged one.
@@ -66,7 +66,7 @@ pub enum WeightsError {
     Malformed {
         /// Name of the file.
         file: String,
-        /// What the reader said.
+        /// Reason that the reader gave.
         reason: String,
     },
     /// The metadata does not describe a network that this build can run.
@@ -74,9 +74,9 @@ pub enum WeightsError {
     Config {
         /// Name of the file.
         file: String,
-        /// Which entry.
+        /// Name of the entry.
         field: &'static str,
-        /// What is wrong with it.
+        /// Fault of the entry.
         reason: String,
     },
     /// A tensor that the network needs is not there.
@@ -122,7 +122,7 @@ pub enum WeightsError {
         index: usize,
         /// That value.
         value: f32,
-        /// How many there are.
+        /// Number of such values.
         count: usize,
     },
     /// A tensor that the network does not know: the file belongs to another version.
@@ -207,7 +207,7 @@ impl<'data> WeightFile<'data> {
         }
     }
 
-    /// What a backend said of weights of this file.
+    /// Error of a backend about weights of this file.
     pub fn backend_error(&self, reason: OpsError) -> WeightsError {
         WeightsError::Backend {
             file: self.name.clone(),
@@ -266,7 +266,7 @@ impl<'data> WeightFile<'data> {
         Ok(values)
     }
 
-    /// Fails if the file holds a tensor that nobody took.
+    /// Fails if the file holds a tensor that was not taken.
     pub fn finish(self) -> Result<(), WeightsError> {
         let mut names = self.tensors.names();
         names.sort_unstable();
@@ -294,7 +294,7 @@ fn size_by_header(bytes: &[u8]) -> Option<u64> {
     Some(8 + length + ends.max().unwrap_or(0))
 }
 
-/// Reads a file whole. Refuses what is no regular file, and more than [`MOST_BYTES`], before reading.
+/// Reads a whole file. Refuses anything but a regular file, and more than [`MOST_BYTES`], before reading.
 pub fn read(path: &Path) -> Result<Vec<u8>, WeightsError> {
     let refused = |source| WeightsError::Read {
         path: path.to_owned(),
@@ -304,7 +304,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, WeightsError> {
         path: path.to_owned(),
         found,
     };
-    // Before opening: that of a pipe waits until somebody writes.
+    // Before opening, since opening a pipe waits for a writer.
     let kind = fs::metadata(path).map_err(refused)?;
     if !kind.is_file() {
         return Err(WeightsError::NotAFile {

@@ -18,7 +18,7 @@ pub struct Block {
 }
 
 impl Block {
-    /// Of its parts.
+    /// The block of its parts.
     pub(super) fn new(parts: BlockParts<Linear>, device: &Device) -> Result<Self> {
         let local = match parts.local {
             Some((weight, bias)) => {

@@ -15,7 +15,7 @@ pub struct Messages {
 }
 
 impl Messages {
-    /// Of its parts.
+    /// The round of its parts.
     pub(super) fn new(parts: MessageParts<Linear>, device: &Device) -> Result<Self> {
         let width = parts.out.weight.dim(1)?;
         let relations = parts.relation.len() / width;
@@ -63,7 +63,7 @@ pub struct NodeBlock {
 }
 
 impl NodeBlock {
-    /// Of its parts.
+    /// The block of its parts.
     pub(super) fn new(parts: NodeBlockParts<Linear>, device: &Device) -> Result<Self> {
         let count = parts.shift.len();
         Ok(Self {

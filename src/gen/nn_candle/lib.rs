@@ -27,13 +27,13 @@ const EPSILON: f64 = nn::layers::NORM_EPS;
 pub struct Candle(Device);
 
 impl Candle {
-    /// On the processor.
+    /// The backend on the processor.
     pub fn cpu() -> Self {
         Self(Device::Cpu)
     }
 
-    /// On the first card that this build has a feature for; on the processor where there is none. Errors if the card cannot
-    /// be opened.
+    /// The backend on the first card that this build has a feature for; on the processor where there is none. Errors if
+    /// the card cannot be opened.
     pub fn best() -> Result<Self, OpsError> {
         let device = if cfg!(feature = "cuda") {
             Device::new_cuda(0)
@@ -72,7 +72,7 @@ impl Values for CandleMap {
 }
 
 impl CandleMap {
-    /// The same places with other values `[places, width]`.
+    /// A map of the same places with other values `[places, width]`.
     fn with(&self, data: Tensor) -> CandleResult<Self> {
         let (_, width) = data.dims2()?;
         Ok(Self { data, width, ..*self })
@@ -103,14 +103,14 @@ impl Norm {
     }
 }
 
-/// Every place to mean 0 and variance 1.
+/// Norms every place to mean 0 and variance 1.
 fn unit(x: &Tensor) -> CandleResult<Tensor> {
     let centered = x.broadcast_sub(&x.mean_keepdim(D::Minus1)?)?;
     let variance = centered.sqr()?.mean_keepdim(D::Minus1)?;
     centered.broadcast_div(&(variance + EPSILON)?.sqrt()?)
 }
 
-/// Times 1 + scale, plus shift.
+/// x times 1 + scale, plus shift.
 fn modulated(x: &Tensor, shift: &Tensor, scale: &Tensor) -> CandleResult<Tensor> {
     unit(x)?.broadcast_mul(&(scale + 1.0)?)?.broadcast_add(shift)
 }
@@ -122,7 +122,7 @@ fn by_head(x: &Tensor, heads: usize) -> CandleResult<Tensor> {
     x.transpose(0, 1)?.contiguous()
 }
 
-/// Of every row.
+/// Softmax of every row.
 fn softmax(scores: &Tensor) -> CandleResult<Tensor> {
     let scores = scores.broadcast_sub(&scores.max_keepdim(D::Minus1)?)?.exp()?;
     scores.broadcast_div(&scores.sum_keepdim(D::Minus1)?)

@@ -26,7 +26,7 @@ struct Across {
 }
 
 impl RingBlock {
-    /// Of its parts.
+    /// The block of its parts.
     pub(super) fn new(parts: RingBlockParts<Linear, Norm>, device: &Device) -> Result<Self> {
         let (weight, bias) = parts.local;
         let width = bias.len();
@@ -94,7 +94,7 @@ impl RingBlock {
 }
 
 impl Across {
-    /// What a map hears of the maps on its left and right.
+    /// Attention of a map to the maps on its left and right.
     fn heard(&self, own: &Tensor, [left, right]: [&Tensor; 2], heads: usize) -> Result<Tensor> {
         let width = own.dim(1)? / 3;
         let keys = |qkv: &Tensor, side: usize| {

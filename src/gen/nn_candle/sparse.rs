@@ -12,7 +12,7 @@ pub struct Convolution {
 }
 
 impl Convolution {
-    /// `weight` is `[tap][input][output]`.
+    /// The convolution of `weight`, `[tap][input][output]`.
     pub(super) fn new(weight: &[f32], bias: Vec<f32>, taps: usize, device: &Device) -> Result<Self> {
         let outputs = bias.len();
         let each = weight.chunks_exact(weight.len() / taps);

@@ -1,6 +1,6 @@
-//! What a LiDAR sees of the town around a scene: the roads that leave the grid go on, lined like those at the edge, and
-//! the blocks between them. Without it every pulse that leaves the grid would be one without an echo, which real sweeps
-//! do not show (`real_statistics.md`, section 3: a hundredth of the echoes come from beyond 49 to 71 m).
+//! The town around a scene as a LiDAR sees it: roads that leave the grid continue, lined like those at the edge, with
+//! blocks between them. Without it every pulse that leaves the grid would have no echo, which real sweeps do not show
+//! (`real_statistics.md`, section 3: a hundredth of the echoes come from beyond 49 to 71 m).
 
 use glam::{DVec2, DVec3};
 
@@ -13,11 +13,11 @@ use world::World;
 
 /// How far the continuation reaches from the edge, m.
 pub const REACH_M: f64 = 88.0;
-/// How far its bare ground does, m.
+/// How far its bare ground reaches from the edge, m.
 const GROUND_REACH_M: f64 = 216.0;
-/// Bins of solids.
+/// Edge of a bin of solids, m.
 const BIN_M: f64 = 8.0;
-/// Instances of the continuation begin here: boxes are below, scenery of the world is in the other half.
+/// First instance number of the continuation: boxes have lower numbers, scenery of the world has the upper half.
 const INSTANCES: u32 = 1 << 30;
 /// Ground that varies by more than this is searched along the ray, m.
 const FLAT_M: f64 = 0.6;
@@ -31,15 +31,15 @@ pub const SCENE_SEED: u64 = 0x6ac4_d0b1;
 pub struct Behind {
     /// Distance along the ray, m.
     pub range_m: f64,
-    /// What was hit.
+    /// Class of the surface.
     pub class: Class,
     /// Outward unit normal.
     pub normal: DVec3,
-    /// Names the house, tree or car, never 0; the ground is 0.
+    /// Number of the house, tree or car, never 0; 0 for the ground.
     pub instance: u32,
     /// Which of the thing's solids.
     pub part: u8,
-    /// A window, a lamp post or the like is told by the solid; `None` is the ground.
+    /// Index of the solid that was hit, which tells a window from a lamp post; `None` for the ground.
     pub solid: Option<u32>,
 }
 
@@ -48,7 +48,7 @@ pub struct Behind {
 pub(super) struct Things {
     /// The solids.
     pub solids: Vec<Solid>,
-    /// Number of the thing that each belongs to, and which of its solids it is.
+    /// Number of the thing that each solid belongs to, and the solid's number within the thing.
     pub owners: Vec<(u32, u8)>,
     things: u32,
 }
@@ -68,7 +68,7 @@ pub struct Backdrop {
     border: Border,
     exits: Vec<Exit>,
     things: Things,
-    /// What it reaches.
+    /// Rectangle that the continuation reaches.
     reached: Covered,
     /// Bins along x and y.
     along: [usize; 2],
@@ -78,12 +78,12 @@ pub struct Backdrop {
 }
 
 impl Backdrop {
-    /// That of a procedural world.
+    /// The continuation of a procedural world.
     pub fn of_world(world: &World) -> Self {
         Self::new(Border::of_world(world), &world.layout.polylines, world.seed())
     }
 
-    /// That of voxels; `lift_m` is what labels put the ground too low.
+    /// The continuation of a voxel grid; `lift_m` is the height by which labels put the ground too low.
     pub fn of_grid(grid: &VoxelGrid, lift_m: f64) -> Self {
         Self::new(Border::of_grid(grid, lift_m), &[], SCENE_SEED)
     }
@@ -263,7 +263,7 @@ impl Backdrop {
         let nearest = self.border.nearest_ground(p);
         match nearest {
             Class::Free => None,
-            // What is at the edge goes on for a few metres, so that a road along it is not cut off.
+            // The ground at the edge continues for a few metres, so that a road along the edge is not cut off.
             _ if self.border.covered().out_m(p) < 3.0 => Some(nearest),
             _ => Some(Class::Terrain),
         }

@@ -1,20 +1,20 @@
-//! What a scene is like at the edge of the grid: ground, its height, what stands near. The continuation beyond the grid
-//! ([`super::backdrop`]) is drawn up from this, so it is the same for a procedural world and for voxels.
+//! The edge of the grid of a scene: its ground, the ground's height, and what stands near. The continuation beyond the
+//! grid ([`super::backdrop`]) is drawn up from this, so it is the same for a procedural world and for voxels.
 
 use glam::{DVec2, DVec3};
 
 use scene::{Class, Extent, VoxelGrid};
 use world::World;
 
-/// Depths, in cells from the edge, at which the ground is looked at.
+/// Depths at which the ground is sampled, in cells from the edge.
 pub const DEPTHS: [usize; 5] = [0, 5, 10, 15, 20];
-/// Every so many cells it is looked what stands there.
+/// Spacing of the samples of what stands there, cells.
 const STRIDE: usize = 5;
-/// Cells from the edge inward up to which it is looked what stands there.
+/// Depth from the edge up to which samples are taken, cells.
 const DEEP: usize = 20;
-/// A solid lower than this is none that a street is lined with, m.
+/// Least height of a solid that counts as lining a street, m.
 const LOW_M: f64 = 0.5;
-/// Where the search for the highest thing over a point begins, m.
+/// Height over the ground at which the search for the highest thing begins, m.
 const SKY_M: f64 = 60.0;
 
 /// One side of the grid.
@@ -45,7 +45,7 @@ impl Side {
         [extent.ny(), extent.nx()][self.axis]
     }
 
-    /// The cell at a depth and a place along the side; the last one across at a depth that the grid has not.
+    /// The cell at a depth and a place along the side; beyond the depth of the grid the last cell across.
     pub fn cell(self, extent: Extent, depth: usize, along: usize) -> [usize; 2] {
         let last = [extent.nx(), extent.ny()][self.axis] - 1;
         let depth = depth.min(last);
@@ -84,7 +84,7 @@ pub struct Covered {
 }
 
 impl Covered {
-    /// That of an extent.
+    /// The rectangle of an extent.
     pub fn by(extent: Extent) -> Self {
         Self {
             low: extent.min_m().truncate(),
@@ -92,7 +92,7 @@ impl Covered {
         }
     }
 
-    /// The same, wider on every side.
+    /// The rectangle grown by `by_m` on every side.
     pub fn wider(self, by_m: f64) -> Self {
         Self {
             low: self.low - by_m,
@@ -110,7 +110,7 @@ impl Covered {
         self.beyond_m(p).max_element()
     }
 
-    /// Distance at which a ray is out of it for good; 0 for one that begins beyond it, infinite for a vertical one.
+    /// Distance at which a ray leaves it for good; 0 for a ray that begins beyond it, infinite for a vertical one.
     pub fn left_by(&self, origin: DVec3, dir: DVec3) -> f64 {
         let side = |axis: usize| match dir[axis] {
             d if d.abs() < 1e-12 => f64::INFINITY,
@@ -128,9 +128,9 @@ impl Covered {
 /// A thing near the edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stands {
-    /// Where, m.
+    /// Position, m.
     pub at: DVec2,
-    /// What.
+    /// Class; free if nothing stands there.
     pub class: Class,
     /// Its height above the ground, m.
     pub height_m: f64,
@@ -143,11 +143,11 @@ pub struct Border {
     covered: Covered,
     ground: Vec<Class>,  // [side][depth][along], free where nothing is known
     height_m: Vec<f64>,  // [side][along], at the very edge
-    stands: Vec<Stands>, // sampled; also those that are nothing, class free
+    stands: Vec<Stands>, // samples, also of places where nothing stands (class free)
 }
 
 impl Border {
-    /// That of a procedural world.
+    /// The edge of a procedural world.
     pub fn of_world(world: &World) -> Self {
         let extent = world.layout.extent();
         Self::new(
@@ -158,7 +158,7 @@ impl Border {
             },
             |x, y, ground_m| {
                 let at = extent.center(x, y, 0).truncate().extend(ground_m + SKY_M);
-                // The ground itself is the class of a ground.
+                // A hit without a solid is the ground.
                 let hit = world.cast(at, DVec3::NEG_Z, SKY_M)?;
                 hit.solid?;
                 Some((hit.class, SKY_M - hit.range_m))
@@ -166,7 +166,7 @@ impl Border {
         )
     }
 
-    /// That of voxels; `lift_m` is what labels put the ground too low.
+    /// The edge of a voxel grid; `lift_m` is the height by which labels put the ground too low.
     pub fn of_grid(grid: &VoxelGrid, lift_m: f64) -> Self {
         let top = |z: usize| Extent::BOTTOM_M + Extent::VOXEL_M * (z + 1) as f64;
         let known = |label: u8| Class::from_id(label).filter(|c| *c != Class::Free);
@@ -184,7 +184,7 @@ impl Border {
                 let column = grid.column(x, y);
                 (0..Extent::NZ).rev().find_map(|z| {
                     let class = known(column[z]).filter(|c| !c.is_ground())?;
-                    // Nobody knows how far what reaches the ceiling goes on: some storeys.
+                    // The height of a thing that reaches the ceiling is unknown: some storeys are added.
                     let more = if z + 1 == Extent::NZ { 4.0 } else { 0.0 };
                     Some((class, top(z) + more - ground_m))
                 })
@@ -248,12 +248,12 @@ impl Border {
         (0..2).any(|axis| low[axis] <= deep || high[axis] >= inner[axis])
     }
 
-    /// The grid that it is the edge of.
+    /// Extent of the grid.
     pub fn extent(&self) -> Extent {
         self.extent
     }
 
-    /// The ground that this grid covers.
+    /// The ground that the grid covers.
     pub fn covered(&self) -> Covered {
         self.covered
     }
@@ -272,7 +272,7 @@ impl Border {
         self.ground[self.at_edge(side, 0) * DEPTHS.len() + depth * side.cells(self.extent) + along]
     }
 
-    /// True if nothing is known of the ground at the edge: then nothing goes on beyond it.
+    /// True if nothing is known of the ground at the edge: then there is no continuation.
     pub fn is_empty(&self) -> bool {
         let is_free = |side: &Side| {
             (0..side.cells(self.extent)).all(|along| self.ground(*side, 0, along) == Class::Free)
@@ -298,7 +298,7 @@ impl Border {
         [fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY)]
     }
 
-    /// What stands near the edge, sampled evenly; free where nothing does.
+    /// Things near the edge, sampled evenly; class free where nothing stands.
     pub fn stands(&self) -> &[Stands] {
         &self.stands
     }

@@ -1,5 +1,5 @@
 //! A LiDAR sweep that is kept: after an edit only the rays whose free path or hit touches a changed voxel are cast
-//! again. The result is that of a fresh sweep, ray by ray.
+//! again. The result equals a fresh sweep, ray by ray.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ const TASK: usize = 16;
 const TESTS: usize = 8192;
 const RAYS: usize = 512;
 
-/// How far a ray is free, m, and what it returns.
+/// Free length of a ray, m, and its return.
 type Found = (f32, Option<LidarPoint>);
 
 /// One LiDAR, the voxels that it saw last and what each ray found.
@@ -37,7 +37,7 @@ pub struct Caster {
     normals: Vec<DVec3>,
     grid: VoxelGrid,
     masks: ColumnMasks,
-    /// Per ray: how far it is free, m, and what it returns.
+    /// Free length, m, and return of each ray.
     found: Vec<Found>,
     cast: usize,
     /// The own vehicle and what lies beyond the grid.
@@ -52,8 +52,8 @@ struct Changed {
 }
 
 impl Caster {
-    /// Casts every ray of a pattern on a vehicle that drives at `velocity_mps`. Voxels whose centre
-    /// lies in `exclude` are looked through.
+    /// Casts every ray of a pattern on a vehicle that drives at `velocity_mps`. Rays pass through voxels whose centre
+    /// lies in `exclude`.
     pub fn new(
         grid: &VoxelGrid,
         pattern: &LidarPattern,
@@ -146,11 +146,11 @@ impl Caster {
         self.cast = again.len();
     }
 
-    /// Returns in beam-major order.
+    /// The sweep, with returns in beam-major order.
     pub fn sweep(&self) -> LidarSweep {
         let end = |(ray, (free_m, point)): (usize, &Found)| {
             let met = free_m.is_finite();
-            // Nothing is known of the strength of exact echoes.
+            // The strength of exact echoes is not known.
             let strengthless = |p| LidarPoint {
                 intensity: 0.0,
                 drop_probability: 0.0,
@@ -232,7 +232,7 @@ impl Caster {
         self.found(ray, met.map(|(t, voxel)| (t, voxel.map(|v| v as u16))))
     }
 
-    /// What a ray returns that met a voxel, or none.
+    /// Result of a ray that met a voxel or nothing: its reach in m, and its point if it met one within range.
     #[inline]
     fn found(&self, ray: usize, met: Met) -> Found {
         let Some((t, voxel)) = met else {
@@ -292,7 +292,7 @@ fn changed_in(before: &VoxelGrid, after: &VoxelGrid, brick: usize) -> Option<Cha
     })
 }
 
-/// 1 / d; of an axis at rest a number so large that only what lies on its way counts, and no NaN comes of it.
+/// 1 / d. For an axis at rest the number is so large that only boxes in the ray's way count, and no NaN arises.
 fn inverse(d: f64) -> f64 {
     if d == 0.0 { 1e300 } else { 1.0 / d }
 }

@@ -15,28 +15,28 @@ const LINES: [(BevLayer, RenderId); 3] = [
     (BevLayer::LaneDivider, 19),
 ];
 
-/// What the splat renderer draws.
+/// Gaussians that the splat renderer draws.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GaussianCloud {
     gaussians: Vec<Gaussian>,
 }
 
 impl GaussianCloud {
-    /// Any Gaussians, for tests and imports.
+    /// A cloud of any Gaussians, for tests and imports.
     pub fn from_gaussians(gaussians: Vec<Gaussian>) -> Self {
         Self { gaussians }
     }
 
-    /// Every voxel that is not free. `bev` holds one bit per [`BevLayer`] for each cell of the grid, `[x][y]`;
-    /// driveable voxels under a crossing or a divider become render ids 17 to 19.
-    /// Cells that `bev` lacks have no lines, so an empty slice draws none.
+    /// The cloud of every voxel that is not free. `bev` holds one bit per [`BevLayer`] for each cell of the grid,
+    /// `[x][y]`; driveable voxels under a crossing or a divider become render ids 17 to 19. Cells that `bev` lacks have
+    /// no lines, so an empty slice draws none.
     pub fn from_grid(grid: &VoxelGrid, bev: &[u32]) -> Self {
         Self::build(grid, &ColumnMasks::from_grid(grid), bev, |_, _, mask| mask)
     }
 
-    /// Only the voxels at most `layers` steps (over faces) from a free one. Space around and above
-    /// the grid counts as free, below as solid. Voxels deeper inside get little light, so this draws
-    /// almost the same picture sooner: gaps between Gaussians let some 15 % of the light past each layer.
+    /// The cloud of the voxels at most `layers` steps (over faces) from a free one. Space around and above the grid
+    /// counts as free, below as solid. Voxels deeper inside get little light, so this draws almost the same picture
+    /// sooner: gaps between Gaussians let some 15 % of the light past each layer.
     pub fn from_grid_shell(grid: &VoxelGrid, bev: &[u32], layers: usize) -> Self {
         let masks = ColumnMasks::from_grid(grid);
         let extent = grid.extent();

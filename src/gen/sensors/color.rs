@@ -105,8 +105,8 @@ pub fn ramp(t: f32) -> [u8; 3] {
     std::array::from_fn(|c| (STOPS[i][c] + (STOPS[i + 1][c] - STOPS[i][c]) * f).round() as u8)
 }
 
-/// One plane of a multi-plane image as RGBA, 4 bytes per pixel, opaque: what the plane cuts in the classes' colours,
-/// over a dark image of what is seen first.
+/// One plane of a multi-plane image as RGBA, 4 bytes per pixel, opaque: the voxels that the plane cuts in the classes'
+/// colours, over a dark image of the first surfaces.
 pub fn plane_rgba(image: &MultiPlaneImage, plane: u16) -> Vec<u8> {
     let first = image.first_visible();
     let mut out = Vec::with_capacity(first.len() * 4);

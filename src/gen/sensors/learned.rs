@@ -1,5 +1,5 @@
-//! One revolution of a spinning LiDAR through the learned field: sub-voxel ranges, echo strength, lost echoes. The field
-//! covers 80 m around the vehicle; what lies in the rest of a larger map comes from the exact ray cast.
+//! One revolution of a spinning LiDAR through the learned field: sub-voxel ranges, echo strength, lost echoes. The
+//! field covers 80 m around the vehicle; returns from the rest of a larger map come from the exact ray cast.
 
 use std::borrow::Cow;
 
@@ -15,14 +15,14 @@ use scene::moved::Columns;
 use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, Pose, SensorRig, VoxelGrid};
 use world::draw::{Draw, hash};
 
-/// What happens to echoes that a real sensor may lose.
+/// Treatment of echoes that a real sensor may lose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drops {
-    /// All stay; their probability stands in the points.
+    /// Keeps all; their probability stands in the points.
     Keep,
-    /// Those more likely lost than not go.
+    /// Removes those more likely lost than not.
     Likely,
-    /// Each goes with its probability; the draw depends on the seed, beam and column.
+    /// Removes each with its probability; the draw depends on the seed, beam and column.
     Drawn(u64),
 }
 
@@ -36,10 +36,10 @@ pub fn field(net: &LidarNet, grid: &VoxelGrid, exclude: Option<EgoBox>) -> Resul
     net.field(&seen(grid, exclude))
 }
 
-/// What the network sees of a grid.
+/// Part of a grid that the network sees.
 pub(super) const SEEN: Extent = Extent::WINDOW;
 
-/// What the network sees of a grid, without what stands in the place of the own vehicle.
+/// The part of a grid that the network sees. Voxels in the place of the own vehicle are free there, apart from ground.
 pub fn seen(grid: &VoxelGrid, exclude: Option<EgoBox>) -> VoxelGrid {
     let mut seen = grid.crop(SEEN);
     let Some(ego) = exclude else {
@@ -70,11 +70,11 @@ fn class_is_ground(label: impl Into<u8>) -> bool {
     Class::from_id(label.into()).is_some_and(Class::is_ground)
 }
 
-/// A rig in the middle of what the network sees: moved there by whole columns, with the grid that it looks at.
+/// A rig in the middle of the window of the network. Rig and grid are moved there by whole columns.
 pub(super) struct Centred<'a> {
-    /// The rig there.
+    /// The moved rig.
     pub rig: Cow<'a, SensorRig>,
-    /// Brings the map there.
+    /// Moves the map there.
     pub from_map: Columns,
 }
 
@@ -103,12 +103,12 @@ impl<'a> Centred<'a> {
         Self { rig, from_map: by }
     }
 
-    /// A grid of the map there.
+    /// The grid of the map, moved.
     pub fn grid(&self, grid: &VoxelGrid) -> VoxelGrid {
         self.from_map.grid(grid)
     }
 
-    /// The way back, m.
+    /// The way back onto the map, m.
     pub fn back_m(&self) -> DVec3 {
         self.from_map.back().way_m().extend(0.0)
     }
@@ -119,7 +119,7 @@ pub fn rays(pattern: &LidarPattern, velocity_mps: DVec3) -> Vec<Ray> {
     rays_of(pattern, &Rays::new(pattern, velocity_mps))
 }
 
-/// The same for rays that are there already.
+/// The rays of a pattern, beam-major, made from rays that are computed already.
 pub fn rays_of(pattern: &LidarPattern, rays: &Rays) -> Vec<Ray> {
     let ray = |i| {
         let (origin, direction) = rays.get(i);
@@ -132,7 +132,7 @@ pub fn rays_of(pattern: &LidarPattern, rays: &Rays) -> Vec<Ray> {
     (0..rays.directions.len()).map(ray).collect()
 }
 
-/// Casts the pattern through the grid alone, beam-major; only what was met and not dropped becomes a point. Errors if the
+/// Casts the pattern through the grid alone, beam-major. Only hits that are not dropped become points. Errors if the
 /// network cannot compute.
 pub fn sweep(
     net: &LidarNet,
@@ -170,7 +170,8 @@ pub fn rig_sweep(
     Ok(points(&rays, &answers, columns, drops, Some(&around), back_m))
 }
 
-/// The points of answered rays, and of those that end on what is `around` the grid, all moved by `back_m`.
+/// The points of answered rays, and of those that end on the surroundings of the grid (`around`), all moved by
+/// `back_m`.
 pub fn points(
     rays: &[Ray],
     answers: &[LearnedRay],

@@ -1,5 +1,5 @@
-//! A learned sweep that is kept: after an edit the field is brought up to date around it, and only rays that sample
-//! there are shot again. The result is that of a fresh sweep, ray by ray.
+//! A learned sweep that is kept: after an edit the field is updated around it, and only rays that sample there are shot
+//! again. The result equals a fresh sweep, ray by ray.
 
 use std::sync::Arc;
 
@@ -38,7 +38,7 @@ pub struct LearnedCaster {
     from_map: Columns,
 }
 
-/// What of some rays the network looked at.
+/// Work of the last update, and the places where some of its rays were sampled.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sampled {
     /// Rays shot by the last update.
@@ -145,7 +145,7 @@ impl LearnedCaster {
         self.shot.len()
     }
 
-    /// Where those rays were sampled, of `most` of them, spread evenly.
+    /// Work of the last update, with the places where up to `most` of its rays, spread evenly, were sampled.
     pub fn sampled(&self, most: usize) -> Sampled {
         let step = self.shot.len().div_ceil(most.max(1)).max(1);
         let (mut segments, mut sampled_m, mut way_m) = (Vec::new(), 0.0, 0.0);
@@ -154,7 +154,7 @@ impl LearnedCaster {
                 &self.rays[i as usize],
                 f64::from(self.answers[i as usize].met.reach_m),
             );
-            // NaN for a ray of which nothing is known.
+            // NaN for a ray whose result is not known.
             if reach_m.is_nan() || reach_m <= ray.range_m[0] {
                 continue;
             }
@@ -186,7 +186,7 @@ impl LearnedCaster {
     }
 }
 
-/// Corners of all points that the voxels of a region have a say in, voxel units.
+/// Corners of the box of all points that the voxels of a region influence, voxel units.
 fn reached(region: &Region) -> [DVec3; 2] {
     let corner = |xy: [usize; 2], z: usize, by: f64| DVec3::new(xy[0] as f64, xy[1] as f64, z as f64) + by;
     [
@@ -195,7 +195,7 @@ fn reached(region: &Region) -> [DVec3; 2] {
     ]
 }
 
-/// True if a ray comes into a box at most `reach` voxels from its origin. Also for a ray of which nothing is known
+/// True if a ray comes into a box at most `reach` voxels from its origin. Also true for a ray whose result is not known
 /// (NaN): it is shot again to no effect.
 fn meets(ray: &Ray, [low, high]: &[DVec3; 2], reach: f64) -> bool {
     let o = SEEN.to_voxel_units(ray.origin);

@@ -13,7 +13,7 @@ pub struct EgoBox {
     pub center_m: DVec3,
     /// Length, width, height, m.
     pub size_m: DVec3,
-    /// Where the ego frame is in the frame of the grid and the sensors.
+    /// Pose of the ego frame in the frame of the grid and the sensors.
     pub vehicle: Pose,
 }
 
@@ -65,7 +65,7 @@ pub struct Rays {
 }
 
 impl Rays {
-    /// Those of a pattern; the vehicle drives at `velocity_mps` while the sensor spins.
+    /// Rays of a pattern; the vehicle drives at `velocity_mps` while the sensor spins.
     pub fn new(pattern: &LidarPattern, velocity_mps: DVec3) -> Self {
         let ego_from_sensor = pattern.ego_from_sensor();
         let columns = pattern.columns_in_sector();
@@ -101,14 +101,14 @@ impl Rays {
     }
 }
 
-/// Casts one ray per beam and column, beam-major, and returns those that meet a voxel within the
-/// pattern's range limits. Voxels whose centre lies in `exclude` (the ego vehicle) are looked through.
-/// The result does not depend on the number of threads.
+/// Casts one ray per beam and column, beam-major, and returns those that meet a voxel within the pattern's range
+/// limits. Rays pass through voxels whose centre lies in `exclude` (the ego vehicle). The result does not depend on the
+/// number of threads.
 pub fn sweep(grid: &VoxelGrid, pattern: &LidarPattern, exclude: Option<EgoBox>) -> LidarSweep {
     Caster::new(grid, pattern, DVec3::ZERO, exclude).sweep()
 }
 
-/// The first LiDAR of a rig, if it has any, on its moving vehicle.
+/// Sweep of the first LiDAR of a rig on its moving vehicle; `None` if it has none.
 pub fn rig_sweep(grid: &VoxelGrid, rig: &SensorRig) -> Option<LidarSweep> {
     let pattern = rig.lidars.first()?;
     Some(Caster::new(grid, pattern, rig.velocity_mps(), Some(EgoBox::of_rig(rig))).sweep())

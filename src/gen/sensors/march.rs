@@ -33,16 +33,16 @@ const PIECE: usize = 16;
 /// Rows that are turned from hits into maps at a time.
 const BAND: usize = 256;
 
-/// What is marched.
+/// Options of the marched maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarchOptions {
     /// Where the ground lies.
     pub ground: GroundHeight,
-    /// Draw analytic solids instead of the voxels of boxes.
+    /// True to draw analytic solids instead of the voxels of boxes.
     pub boxes: bool,
-    /// Draw lines and crossings on the road as render ids 17 to 19.
+    /// True to draw lines and crossings on the road as render ids 17 to 19.
     pub lines: bool,
-    /// Varies the solids of a box together with its id.
+    /// Number that varies the solids of a box together with its id.
     pub seed: u64,
 }
 
@@ -68,7 +68,7 @@ pub struct MarchScene {
     paint: Paint,
 }
 
-/// What a ray met first.
+/// First surface on a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarchHit {
     /// Distance in units of the direction's length (m for a unit vector); 0 inside a voxel.
@@ -81,7 +81,7 @@ pub struct MarchHit {
     pub box_id: Option<BoxId>,
 }
 
-/// Everything known per pixel of one camera, row-major, `height * width` values each.
+/// Hits of all pixels of one camera, row-major, `height * width` values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarchMaps {
     /// Pixels per row.
@@ -153,8 +153,8 @@ impl MarchScene {
             let id = s.solid.class.id();
             hit = Some((id, s.solid.normal_at(s.origin + unit * s.t_m), s.box_id));
         }
-        // Last, since it is the dearest and ends at what was found. A voxel at the very distance of that
-        // lies in front of nothing.
+        // Last, since it costs most and ends at the hit found so far. A voxel at exactly that distance does not replace
+        // it.
         if let Some((t, voxel)) = self.masks.cast_in_voxels(origin, unit, best)
             && (t < best || hit.is_none())
         {
@@ -289,7 +289,7 @@ impl MarchMaps {
     }
 }
 
-/// Takes the voxels out that a box's solids stand for, up to `margin_m` outside its footprint.
+/// Removes the voxels that a box's solids stand for, up to `margin_m` outside its footprint.
 pub(crate) fn remove_voxels(
     grid: &mut VoxelGrid,
     ground: &mut Ground,
@@ -305,7 +305,7 @@ pub(crate) fn remove_voxels(
         b.center_m.z + b.size_m.z / 2.0 + HEIGHT_MARGIN_M,
     );
     let bottom = match height {
-        // What the labels smear below the object stays: it joins the solids to the low ground.
+        // The smear of the labels below the object stays: it joins the solids to the low ground.
         GroundHeight::AsLabelled => bottom,
         GroundHeight::Physical => bottom - SMEAR_M - HEIGHT_MARGIN_M,
     };

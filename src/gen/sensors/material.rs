@@ -1,5 +1,5 @@
-//! How surfaces answer a LiDAR's pulse: strength of the echo and how likely it is lost, by class, paint, place, angle and
-//! distance. Targets: section 3 of `real_statistics.md`.
+//! Answers of surfaces to a LiDAR's pulse: strength of the echo and probability that it is lost, by class, paint,
+//! place, angle and distance. Targets: section 3 of `real_statistics.md`.
 
 use glam::{DVec2, DVec3};
 
@@ -9,14 +9,14 @@ use scene::{BevLayer, Class, Form};
 use world::draw::{Draw, hash, noise};
 use world::{Surface, World};
 
-/// Surfaces that scatter light report at most this; only what sends it back to where it came from reports more.
+/// Largest echo strength of surfaces that scatter light; only retro-reflective surfaces report more.
 pub const DIFFUSE_MOST: f64 = 100.0;
-/// Where ordinary echoes begin to sink under the threshold, m.
+/// Distance at which ordinary echoes begin to sink under the threshold, m.
 const REACH_M: f64 = 66.0;
 /// Share of worlds whose roads are wet.
 const WET: f64 = 0.2;
 
-/// How a surface answers a pulse.
+/// Answer of a surface to a pulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Echo strength at normal incidence.
@@ -27,7 +27,7 @@ pub struct Material {
     pub lost: f64,
     /// Share of the pulse that is mirrored or let through at grazing incidence, as glass and water do.
     pub mirror: f64,
-    /// It sends light back to where it came from: signs, plates, collars, vests.
+    /// True for retro-reflective surfaces, which send light back to where it came from: signs, plates, collars, vests.
     pub retro: bool,
 }
 
@@ -63,15 +63,15 @@ const fn glass(strength: f64, lost: f64, mirror: f64) -> Material {
 
 /// A place that a pulse met.
 pub struct Met<'a> {
-    /// What it is.
+    /// Class of the surface.
     pub class: Class,
-    /// Normal, whose it is, and which part.
+    /// Normal, instance and part of the surface.
     pub surface: &'a Surface,
     /// The solid; `None` is the ground.
     pub solid: Option<&'a Solid>,
-    /// Where, ego frame, m.
+    /// Position, ego frame, m.
     pub at: DVec3,
-    /// From where, m.
+    /// Distance from the sensor, m.
     pub range_m: f64,
     /// Cosine of the angle between pulse and normal.
     pub cosine: f64,
@@ -80,9 +80,9 @@ pub struct Met<'a> {
 /// Materials of one world.
 pub struct Materials<'a> {
     seed: u64,
-    /// For what is painted on its roads; without it nothing is.
+    /// World whose road paint counts; without one nothing is painted.
     world: Option<&'a World>,
-    /// Brightness of everything, and of this world's roads, in logarithms.
+    /// Brightness of all surfaces, and of this world's roads, in logarithms.
     gain: f64,
     road: f64,
     /// Share of light that a wet road mirrors away, 0 where it is dry.
@@ -90,7 +90,7 @@ pub struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    /// Those of a world; its seed says how bright and wet its roads are.
+    /// Materials of a world; its seed decides how bright and wet its roads are.
     pub fn new(world: &'a World) -> Self {
         let mut draw = Draw::new(world.seed(), "road surface");
         let road = gaussian(&mut draw);
@@ -108,7 +108,7 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// Those of a scene without a world behind it: dry, of ordinary brightness, nothing painted.
+    /// Materials of a scene without a world behind it: dry, of ordinary brightness, nothing painted.
     pub fn ordinary(seed: u64) -> Materials<'static> {
         Materials {
             seed,
@@ -119,7 +119,7 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// Strength of the echo, 0 to 255; `noise` is about normal.
+    /// Strength of the echo, 0 to 255; `noise` is approximately normal.
     pub fn strength(&self, material: &Material, cosine: f64, noise: f64) -> f64 {
         let bright = material.strength * (material.spread * noise).exp();
         match material.retro {
@@ -151,7 +151,7 @@ impl<'a> Materials<'a> {
         1.0 - (1.0 - material.lost) * (1.0 - weak) * (1.0 - mirrored.clamp(0.0, 1.0))
     }
 
-    /// The material of a place; `detail` is uniform in 0..1 and stands for what is finer than a solid.
+    /// The material of a place; `detail` is uniform in 0..1 and stands for detail finer than a solid.
     pub fn of(&self, met: &Met, detail: f64) -> Material {
         let (seed, surface, p) = (self.seed, met.surface, met.at);
         let mut own = Draw::new(hash(seed ^ u64::from(surface.instance)), "paint");
@@ -278,7 +278,7 @@ pub fn range_sigma_m(class: Class, range_m: f64) -> f64 {
     }
 }
 
-/// About normal: four uniform numbers; bounded, so that no draw is absurd.
+/// Approximately normal number, made of four uniform ones; bounded, so that no draw is absurd.
 pub fn gaussian(draw: &mut Draw) -> f64 {
     (draw.unit() + draw.unit() + draw.unit() + draw.unit() - 2.0) * 3f64.sqrt()
 }

@@ -29,7 +29,7 @@ pub struct RenderIds {
 }
 
 impl RenderIds {
-    /// Those of a grid; `bev` holds one bit per layer for each column (an empty slice has no lines).
+    /// Render ids of a grid; `bev` holds one bit per layer for each column (an empty slice has no lines).
     pub fn new(grid: &VoxelGrid, bev: &[u32]) -> Self {
         let extent = grid.extent();
         let mut ids = vec![NONE; extent.voxels()];
@@ -104,7 +104,7 @@ pub fn render(ids: &RenderIds, camera: &Camera, width: u32, height: u32, planes:
     }
 }
 
-/// Runs along one ray; `ray` is what one metre of depth adds, voxel units.
+/// The runs of planes along one ray; `ray` is the step for one metre of depth, voxel units.
 fn trace(ids: &RenderIds, origin: DVec3, ray: DVec3, planes: Planes, runs: &mut Vec<PlaneRun>) {
     let Some(span) = grid_span(ids.extent, origin, ray) else {
         return;

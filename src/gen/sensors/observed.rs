@@ -1,5 +1,5 @@
-//! Which voxels the sensors of a vehicle observe: those that a ray passes, and the one that it ends in. So Occ3D defines its
-//! masks (arXiv 2304.14365); there the LiDAR's is of all sweeps of a drive, here of one.
+//! Voxels that the sensors of a vehicle observe: those that a ray passes, and the one that it ends in. Occ3D defines
+//! its masks in this way (arXiv 2304.14365); there the LiDAR's mask is of all sweeps of a drive, here of one.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -15,18 +15,19 @@ const APART_M: f64 = Extent::VOXEL_M / 2.0;
 /// Rays that one thread works on in a row.
 const RAYS: usize = 4096;
 
-/// What is observed: per column `[x][y]` of the grid one bit per bin, the lowest bin in bit 0. All zero without a sensor.
+/// Observed voxels: for each column `[x][y]` of the grid one bit per bin, the lowest bin in bit 0. All zero without a
+/// sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observed {
-    /// By the rays of all LiDARs, one turn each. A pulse that nothing sends back within the range observes the free voxels
-    /// on its way; one that ends nearer than the least range observes nothing.
+    /// Voxels observed by the rays of all LiDARs, one turn each. A pulse without an echo within the range observes the
+    /// free voxels on its way; one that ends nearer than the least range observes nothing.
     pub lidar: Vec<u16>,
-    /// By the pixels of all cameras.
+    /// Voxels observed by the pixels of all cameras.
     pub camera: Vec<u16>,
 }
 
-/// What a rig without a [problem](SensorRig::problem) observes of a grid, both in the same frame. Voxels in the own vehicle are
-/// looked through. The result does not depend on the number of threads.
+/// Voxels of a grid that a rig without a [problem](SensorRig::problem) observes, both in the same frame. Rays pass
+/// through voxels in the own vehicle. The result does not depend on the number of threads.
 pub fn observed(grid: &VoxelGrid, rig: &SensorRig) -> Observed {
     let mut masks = ColumnMasks::from_grid(grid);
     let ego = EgoBox::of_rig(rig);
@@ -91,14 +92,14 @@ fn of_camera(masks: &ColumnMasks, camera: &Camera) -> Vec<u16> {
     })
 }
 
-/// A ray in the grid's frame: a unit direction, and between which distances something on it is noticed.
+/// A ray in the grid's frame: a unit direction, and the distances between which it observes voxels.
 struct Ray {
     origin: DVec3,
     direction: DVec3,
     range_m: [f64; 2],
 }
 
-/// The voxels that so many rays observe.
+/// The voxels that the rays 0 to `rays` - 1 observe.
 fn marked(masks: &ColumnMasks, rays: usize, ray: impl Fn(usize) -> Ray + Sync) -> Vec<u16> {
     let extent = masks.extent();
     let nothing = || vec![0; extent.columns()];

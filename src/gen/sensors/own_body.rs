@@ -40,9 +40,9 @@ const WIDTH_M: f64 = 1.73;
 const MAST_BEHIND_M: f64 = 0.056;
 /// Mean height of the roof under the top of the vehicle's box, m: hits lie 0.33 m below the sensor.
 const ROOF_BELOW_TOP_M: f64 = 0.05;
-/// A LiDAR higher above the roof than this stands on something else, m.
+/// Largest height of a LiDAR above the roof, m: a higher one does not stand on this roof.
 const HIGHEST_M: f64 = 1.5;
-/// Nearer than this an echo may come back too early to be timed, m; the share grows with nearness.
+/// Distance below which an echo may come back too early to be timed, m; the share of such echoes grows with nearness.
 const BLIND_M: f64 = 0.75;
 const BLIND_PER_M: f64 = 2.9;
 const MOST_BLIND: f64 = 0.45;

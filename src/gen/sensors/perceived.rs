@@ -1,5 +1,5 @@
-//! What a small network makes out in the pictures of the program's own renderer, beside what they show: things that it
-//! misses, and things that it sees where there are none.
+//! Predictions of a small network for pictures of the program's own renderer, compared with the ground truth: things
+//! that it misses, and things that it sees where there are none.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use scene::{BoxId, Camera, CameraTruth, Frame, Scene};
 
 /// A box of fewer pixels is too small to be missed.
 pub const LEAST_PX: usize = 24;
-/// A box of which less than this share is taken for a thing is missed.
+/// Share of a box's pixels that are predicted to be a thing, below which the box is missed.
 pub const MISSED_BELOW: f64 = 0.25;
 /// Share of the class's colour in the picture.
 const TINT: f32 = 0.55;
@@ -21,13 +21,13 @@ pub const MISSED: [u8; 3] = [255, 40, 40];
 /// Colour of things where there are none.
 pub const GHOST: [u8; 3] = [255, 225, 40];
 
-/// One camera's picture, what it shows, and what the network makes of it.
+/// One camera's picture, its ground truth, and the prediction of the network.
 pub struct Perceived {
     /// The picture.
     pub image: CameraImage,
-    /// What it shows.
+    /// Ground truth of the picture.
     pub truth: CameraTruth,
-    /// Class of each pixel as the network says, as in [`scene::truth`].
+    /// Predicted class of each pixel, as in [`scene::truth`].
     pub classes: Vec<TruthClass>,
 }
 
@@ -38,12 +38,12 @@ pub struct SeenThing {
     pub id: BoxId,
     /// Pixels that show it.
     pub visible_px: usize,
-    /// Share of them that the network takes for a thing.
+    /// Share of them that the network predicts to be a thing.
     pub share: f64,
 }
 
 impl SeenThing {
-    /// True if it is plain to see and the network takes it for no thing.
+    /// True if it is large enough to be missed and the network does not predict a thing there.
     pub fn is_missed(&self) -> bool {
         self.visible_px >= LEAST_PX && self.share < MISSED_BELOW
     }
@@ -62,8 +62,8 @@ impl Perceived {
         })
     }
 
-    /// The same of another picture that shows the same at the same size, such as a learned one. Errors if it is of another size, or
-    /// the network cannot be read.
+    /// Compares another picture that shows the same at the same size, such as a learned one. Errors if it is of another
+    /// size, or if the network cannot be read.
     pub fn with_picture(self, image: CameraImage) -> Result<Self, PaintError> {
         let sizes = [&self.image, &image].map(|i| [i.width, i.height]);
         if sizes[0] != sizes[1] {
@@ -97,14 +97,14 @@ impl Perceived {
         boxes
     }
 
-    /// Boxes that are plain to see and that the network takes for no thing, the largest first.
+    /// Boxes that are missed, the largest first.
     pub fn missed(&self) -> Vec<SeenThing> {
         let mut boxes = self.boxes();
         boxes.retain(SeenThing::is_missed);
         boxes
     }
 
-    /// Pixels of a box, and the share of them that the network takes for a thing; none if the picture does not show it.
+    /// Pixels of a box, and the share of them that is predicted to be a thing; `None` if the picture does not show it.
     pub fn seen(&self, id: BoxId) -> Option<(usize, f64)> {
         let boxes = self.boxes().into_iter();
         boxes
@@ -113,7 +113,7 @@ impl Perceived {
             .next()
     }
 
-    /// Pixels that the network takes for a thing where there is none.
+    /// Number of pixels that are predicted to be a thing where there is none.
     pub fn ghost_px(&self) -> usize {
         let pairs = self.truth.pixels.iter().zip(&self.classes);
         pairs
@@ -121,7 +121,7 @@ impl Perceived {
             .count()
     }
 
-    /// Share of the pixels whose class the network says rightly; 1 where the lens sees nothing.
+    /// Share of the pixels whose class is predicted correctly; 1 where the lens sees nothing.
     pub fn right(&self) -> f64 {
         let pairs = self.truth.pixels.iter().zip(&self.classes);
         let valid = pairs.filter(|(p, _)| p.class != OUTSIDE);
@@ -132,8 +132,8 @@ impl Perceived {
         }
     }
 
-    /// The picture in the colours of the classes that the network sees. Where it misses a thing every other pixel is red, where
-    /// it sees one that is none every other pixel is yellow.
+    /// The picture in the colours of the predicted classes. Where a thing is missed every other pixel is red, where a
+    /// thing is predicted that is not there every other pixel is yellow.
     pub fn shown(&self) -> CameraImage {
         let mut image = self.image.clone();
         let width = image.width.max(1);
@@ -172,14 +172,14 @@ fn classes(image: &CameraImage) -> Result<Vec<TruthClass>, PaintError> {
         .map_err(|e| network(&e))
 }
 
-/// What the network makes of all cameras of a rig.
+/// Predictions for all cameras of a rig, compared with the ground truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Boxes that are plain to see in a camera, those that are missed in all of them first, then the largest first.
+    /// Boxes that are large enough in a camera. Those that are missed in all cameras come first, then the largest.
     pub boxes: Vec<SeenByRig>,
-    /// Of each camera, pixels that are taken for a thing where there is none.
+    /// Pixels of each camera that are predicted to be a thing where there is none.
     pub ghost_px: Vec<usize>,
-    /// Share of all pixels whose class the network says rightly.
+    /// Share of all pixels whose class is predicted correctly.
     pub right: f64,
 }
 
@@ -188,8 +188,8 @@ pub struct Report {
 pub struct SeenByRig {
     /// Index of the camera that shows most of it.
     pub camera: usize,
-    /// The box, its pixels there, and the largest share of its pixels that is taken for a thing in a camera where it is
-    /// plain to see.
+    /// The box, its pixels there, and the largest share of its pixels that is predicted to be a thing in a camera where
+    /// it is large enough.
     pub thing: SeenThing,
 }
 

@@ -1,5 +1,5 @@
-//! What a small network makes out in the LiDAR sweep of a scene, beside what is there: boxes that it misses, and boxes that it
-//! sees where there are none.
+//! Predictions of a small network for the LiDAR sweep of a scene, compared with its boxes: boxes that it misses, and
+//! boxes that it sees where there are none.
 
 use crate::painter::PaintError;
 use crate::rolling;
@@ -10,19 +10,19 @@ use nets::perceiver::stands::{Stands, standing};
 use nets::perceiver::{LidarPerceiver, Perceived};
 use scene::{BoxId, Extent, LidarSweep, Pose, Scene, SceneBox};
 
-/// A return tells of columns so far around it: 1.2 m.
+/// Radius around a return within which columns count, columns: 1.2 m.
 const NEAR_COLUMNS: usize = 3;
 
-/// What the network makes of a scene's sweep.
+/// Predictions for a scene's sweep, compared with the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepReport {
     /// Boxes with [`LEAST_RETURNS`] returns or more: missed ones first, then those with the most returns first.
     pub boxes: Vec<SeenBySweep>,
-    /// What the network sees, the surest first.
+    /// Boxes that the network detects, the surest first.
     pub detections: Vec<Detected>,
-    /// Share of the columns within 1.2 m of a return that are taken for what stands there.
+    /// Share of the columns within 1.2 m of a return whose kind is predicted correctly.
     pub right: f64,
-    /// The window that the network looked at: its columns `[x][y]`, what it sees in each, and where the vehicle is.
+    /// Prediction for each column `[x][y]` of the window around the vehicle.
     pub stands: Vec<Stands>,
     /// Map from the vehicle.
     pub map_from_vehicle: Pose,
@@ -37,25 +37,25 @@ pub struct SeenBySweep {
     pub id: BoxId,
     /// Returns on it.
     pub returns: usize,
-    /// How sure the network is of it; none if it sees nothing there.
+    /// Score of the box's detection; `None` if it is not detected.
     pub score: Option<f32>,
 }
 
 impl SeenBySweep {
-    /// True if the network does not see it.
+    /// True if the network does not detect it.
     pub fn is_missed(&self) -> bool {
         self.score.is_none()
     }
 }
 
-/// A box that the network sees.
+/// A box that the network detects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detected {
     /// Place, size, heading and class on the map.
     pub thing: SceneBox,
-    /// How sure it is, 0 to 1.
+    /// Score, 0 to 1.
     pub score: f32,
-    /// The box of the scene that it belongs to; none where there is nothing of the kind.
+    /// The box of the scene that it belongs to; `None` where there is none of its kind.
     pub of: Option<BoxId>,
 }
 
@@ -82,7 +82,7 @@ pub fn report(scene: &Scene) -> Result<SweepReport, PaintError> {
         .enumerate()
         .map(detected)
         .collect();
-    // What stands around the vehicle, in its own frame, where returns tell of it.
+    // Ground truth of the columns around the vehicle, in its own frame, near returns.
     let around = scene.in_ego();
     let truth = standing(&around.frame().occupancy.crop(Extent::WINDOW));
     let told = truth
@@ -101,14 +101,14 @@ pub fn report(scene: &Scene) -> Result<SweepReport, PaintError> {
     })
 }
 
-/// How the sweep shows one box; none if it is not in the window.
+/// Result for one box; `None` if it is not in the window.
 pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenBySweep>, PaintError> {
     let seen = Seen::of(scene)?;
     let beside = seen.besides.iter().find(|b| b.id == id);
     Ok(beside.map(|b| seen.score(b)))
 }
 
-/// A sweep, what the network sees in it, and the boxes beside that.
+/// A sweep, the predictions for it, and the boxes of the scene to compare with.
 struct Seen {
     perceived: Perceived,
     besides: Vec<Beside>,
@@ -144,7 +144,7 @@ impl Seen {
     }
 }
 
-/// Of each column of the window whether a return of a sweep on the map is near.
+/// For each column of the window, whether a return of a sweep on the map is near.
 pub(crate) fn near(sweep: &LidarSweep, map_from_vehicle: &Pose) -> Vec<bool> {
     let to_vehicle = map_from_vehicle.inverse();
     let [nx, ny] = [Extent::WINDOW.nx(), Extent::WINDOW.ny()];

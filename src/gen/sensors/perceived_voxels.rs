@@ -1,5 +1,5 @@
-//! Which voxels a small network tells from the LiDAR sweep and the camera pictures of a scene, beside those that are there:
-//! boxes that it misses, and things that it sees where there are none.
+//! Voxels that a small network predicts from the LiDAR sweep and the camera pictures of a scene, compared with those
+//! that are there: boxes that it misses, and things that it sees where there are none.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,14 +21,14 @@ use scene::{BoxId, BoxLabel, Camera, Class, Extent, LidarSweep, Pose, Scene, Sce
 
 /// A box of fewer voxels is too small to be missed.
 pub const LEAST_VOXELS: usize = 2;
-/// Voxels that stand together where no thing is count as one from so many on.
+/// Least number of connected voxels that count as a thing where there is none.
 pub const LEAST_GHOST: usize = 6;
-/// What a camera shows nearer than this it does not see, m.
+/// Least distance at which a camera shows a voxel, m.
 const NEAR_M: f64 = 0.5;
-/// A thing that is told beside a box within so many columns belongs to it.
+/// Distance from a box within which a predicted thing belongs to it, columns.
 const BESIDE: usize = 2;
 
-/// Which sensors the network hears.
+/// Sensors that the network uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hears {
     /// LiDAR and cameras.
@@ -40,16 +40,16 @@ pub enum Hears {
     Cameras,
 }
 
-/// What the network makes of a scene's sensors.
+/// Predictions from a scene's sensors, compared with the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VoxelReport {
-    /// The voxels that it tells, in the window around the vehicle, in the vehicle's frame.
+    /// Predicted voxels in the window around the vehicle, in the vehicle's frame.
     pub voxels: VoxelGrid,
-    /// Of the columns within 1.2 m of a return: solid voxels that it tells and that are there, as a share of those that are either.
+    /// Intersection over union of the solid voxels, predicted and true, in the columns within 1.2 m of a return.
     pub iou: f64,
-    /// Share of the voxels which are both whose class it tells rightly.
+    /// Share of the voxels solid in both whose class is predicted correctly.
     pub right: f64,
-    /// Boxes that a sensor plainly sees, missed ones first, then the largest first.
+    /// Boxes that a sensor sees well enough to be judged, missed ones first, then the largest first.
     pub boxes: Vec<SeenInVoxels>,
     /// Things where there are none, the largest first.
     pub ghosts: Vec<Ghost>,
@@ -62,9 +62,9 @@ pub struct VoxelReport {
 pub struct SeenInVoxels {
     /// The box.
     pub id: BoxId,
-    /// Voxels that are its own; 0 if neither LiDAR nor cameras see enough of it to tell.
+    /// Voxels that are its own; 0 if neither LiDAR nor cameras see enough of it to judge it.
     pub voxels: usize,
-    /// Share of them that the network takes for a thing.
+    /// Share of them that are predicted to be a thing.
     pub share: f64,
 }
 
@@ -74,30 +74,30 @@ impl SeenInVoxels {
         self.voxels >= LEAST_VOXELS
     }
 
-    /// True if it is plain to see and the network takes it for no thing.
+    /// True if there is enough of it to be judged and the network does not predict a thing there.
     pub fn is_missed(&self) -> bool {
         self.is_judged() && self.share < MISSED_BELOW
     }
 }
 
-/// A thing that the network sees where there is none.
+/// A thing that is predicted where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ghost {
-    /// A box on the map around its voxels, of the class that it is taken for.
+    /// A box on the map around its voxels, of the predicted class.
     pub thing: SceneBox,
-    /// How many they are.
+    /// Number of its voxels.
     pub voxels: usize,
 }
 
-/// What the sensors of a scene give the network.
+/// Input of the network from the sensors of a scene.
 pub struct Heard {
     /// Returns in the vehicle's frame with their echo strengths.
     returns: Vec<[f32; 4]>,
     painted: Vec<u8>,
     sweep: LidarSweep,
-    /// Pixels of the boxes in the camera that shows most of each.
+    /// Pixels of each box in the camera that shows most of it.
     pixels: BTreeMap<BoxId, usize>,
-    /// Share of the pixels whose class the segmenter says rightly, mean over the cameras.
+    /// Share of the pixels whose class the segmenter predicts correctly, mean over the cameras.
     pub pixels_right: f64,
 }
 
@@ -107,8 +107,8 @@ impl Heard {
         Self::seeing(scene, None)
     }
 
-    /// The same where the cameras see learned pictures, in the order of the rig, by [`Painter`](crate::painter::Painter). Errors also if they are
-    /// of another size.
+    /// Sweeps a scene whose cameras see learned pictures, in the order of the rig, by
+    /// [`Painter`](crate::painter::Painter). Errors also if they are of another size.
     pub fn of_pictures(scene: &Scene, pictures: &[Arc<CameraImage>]) -> Result<Self, PaintError> {
         Self::seeing(scene, Some(pictures))
     }
@@ -160,7 +160,8 @@ impl Heard {
         })
     }
 
-    /// The voxels that the network tells from some of it, in the vehicle's frame. Errors if the network cannot be read.
+    /// Voxels that the network predicts from the chosen sensors, in the vehicle's frame. Errors if the network cannot
+    /// be read.
     pub fn voxels(&self, hears: Hears) -> Result<VoxelGrid, PaintError> {
         let network = |e: &dyn std::fmt::Display| PaintError::Network(e.to_string());
         let net = SensorOccupancy::bundled().map_err(|e| network(&e))?;
@@ -173,7 +174,7 @@ impl Heard {
     }
 }
 
-/// What a camera shows.
+/// Classes that a camera shows.
 pub struct Shown<'a> {
     /// The camera, in the vehicle's frame.
     pub camera: &'a Camera,
@@ -183,8 +184,9 @@ pub struct Shown<'a> {
     pub classes: &'a [TruthClass],
 }
 
-/// What cameras show at the middle of each voxel of the window around the vehicle, `[x][y][16]`: of the camera that sees it nearest to its axis; of
-/// two that see it equally near the first one counts. Twin of `painted` in `training/models/sensor_occupancy.py`.
+/// Classes that cameras show at the middle of each voxel of the window around the vehicle, `[x][y][16]`. The camera
+/// that sees the voxel nearest to its axis counts; on a tie the first one. Twin of `painted` in
+/// `training/models/sensor_occupancy.py`.
 pub fn painted(shown: &[Shown<'_>]) -> Vec<u8> {
     let views = shown.iter().map(|s| {
         let [w, h] = s.size_px;
@@ -226,7 +228,7 @@ pub fn report(scene: &Scene, hears: Hears) -> Result<VoxelReport, PaintError> {
     report_of(scene, &heard, hears)
 }
 
-/// The same of what was heard already.
+/// The report of a scene whose input is gathered already.
 pub fn report_of(scene: &Scene, heard: &Heard, hears: Hears) -> Result<VoxelReport, PaintError> {
     let voxels = heard.voxels(hears)?;
     let map_from_vehicle = scene.frame().world_from_ego;
@@ -261,7 +263,7 @@ pub fn report_of(scene: &Scene, heard: &Heard, hears: Hears) -> Result<VoxelRepo
     })
 }
 
-/// How the network sees one box; none if it is not in the window.
+/// Result for one box; `None` if it is not in the window.
 pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenInVoxels>, PaintError> {
     let around = scene.in_ego();
     let inside = |b: &&SceneBox| Window::column_at(b.center_m.x, b.center_m.y).is_some();
@@ -278,7 +280,7 @@ pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenInVoxels>, PaintErro
     )))
 }
 
-/// A box of the vehicle's frame among true and told voxels.
+/// Result for a box of the vehicle's frame, from true and predicted voxels.
 fn seen(b: &SceneBox, scene: &Scene, heard: &Heard, [truth, told]: [&VoxelGrid; 2]) -> SeenInVoxels {
     let returns = scene
         .frame()
@@ -304,7 +306,7 @@ fn seen(b: &SceneBox, scene: &Scene, heard: &Heard, [truth, told]: [&VoxelGrid; 
     }
 }
 
-/// Voxels of things that stand together, farther than 0.8 m from any thing that is there and from the own vehicle.
+/// Connected voxels of predicted things, farther than 0.8 m from any true thing and from the own vehicle.
 fn ghosts(truth: &VoxelGrid, told: &VoxelGrid, scene: &Scene) -> Vec<Ghost> {
     let (map_from_vehicle, vehicle) = (&scene.frame().world_from_ego, &scene.rig);
     let own = |x: usize, y: usize| {
@@ -364,7 +366,7 @@ fn ghosts(truth: &VoxelGrid, told: &VoxelGrid, scene: &Scene) -> Vec<Ghost> {
     out
 }
 
-/// A box on the map from the middle of its voxels in the vehicle's frame and how far apart the outer ones are, m.
+/// A box on the map from the middle of its voxels in the vehicle's frame and the distances between the outer ones, m.
 fn around_ghost(class: Class, center_m: DVec3, apart_m: DVec3, map_from_vehicle: &Pose) -> SceneBox {
     let there = SceneBox {
         id: BoxId(0),
@@ -383,7 +385,8 @@ fn is_thing(label: u8) -> bool {
     Class::from_id(label).is_some_and(Class::is_object)
 }
 
-/// What is told around a vehicle, as voxels of a map: each takes the voxel of the window in which its middle lies, at the same height.
+/// Copies voxels around a vehicle onto a map: each column of the map takes the column of the window in which its middle
+/// lies, at the same height.
 pub fn on_map(voxels: &VoxelGrid, extent: Extent, map_from_vehicle: &Pose) -> VoxelGrid {
     let mut out = VoxelGrid::over(extent);
     let to_vehicle = map_from_vehicle.inverse();

@@ -1,4 +1,4 @@
-//! Perspective maps of boxes and lanes: what of the layout lies where in a camera's picture, hidden or not, as
+//! Perspective maps of boxes and lanes: where each part of the layout lies in a camera's picture, hidden or not, as
 //! image models take it for a condition (X-Scene 6.6, MagicDrive).
 
 use glam::{DVec2, DVec3};
@@ -8,15 +8,15 @@ use scene::{BevLayer, BevLayout, Camera, Class, PerspectiveMap, PolylineKind, Po
 
 /// Width of a painted line on the ground, m.
 const LINE_M: f64 = 0.2;
-/// Nothing nearer to the camera than this is drawn, m along the optical axis.
+/// Distance nearer than which nothing is drawn, m along the optical axis.
 const NEAR_M: f64 = 0.1;
-/// Farther ground is left out, m along the optical axis.
+/// Distance beyond which ground is left out, m along the optical axis.
 const FAR_M: f64 = 120.0;
 /// Longest piece of a line that is drawn as one quad, m: clipping a short piece keeps its width.
 const PIECE_M: f64 = 4.0;
 /// How often a piece is halved along both sides where a lens bends it.
 const SPLITS: u32 = 5;
-/// A side is straight if its middle is no farther from where it would be, px.
+/// Largest bend of a side that counts as straight: distance of its middle from the straight line, px.
 const STRAIGHT_PX: f64 = 0.3;
 /// Bit of the drivable area and of the first object class.
 const DRIVABLE: u32 = 3;
@@ -93,7 +93,7 @@ struct Canvas {
     camera: Camera,
     camera_from_ego: Pose,
     rays: CameraRays,
-    /// Velocity of what is drawn, for shutters that roll, m/s.
+    /// Velocity of the drawn thing, for shutters that roll, m/s.
     velocity: DVec3,
     width: usize,
     height: usize,

@@ -1,29 +1,30 @@
-//! What voxels and boxes tell of each pixel of a camera: what the network that draws pictures hears.
+//! Hints of voxels and boxes for each pixel of a camera: the condition of the network that draws pictures.
 
 use glam::DVec3;
 
 use crate::march::{GroundHeight, MarchOptions, MarchScene};
 use scene::{Camera, Frame, SceneBox};
 
-/// Directions that a box may face, as seen along a ray.
+/// Number of directions in which a box may face, as seen along a ray.
 const FACINGS: f64 = 16.0;
-/// A voxel of a box lies in it, or this far outside, m.
+/// Largest distance of a box's voxel from the box, m.
 const MARGIN_M: f64 = 0.35;
 /// Flag of a pixel whose left or upper neighbour shows another box.
 pub const EDGE: u8 = 0x80;
 
-/// What the voxels, and the boxes around them, tell of a picture; planes are row-major, `height * width` values each.
+/// Hints for a picture from the voxels and the boxes around them; planes are row-major, `height * width` values each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PictureHints {
-    /// Render id of what the ray through a pixel's middle meets, 0 where it meets nothing.
+    /// Render id of the surface on the ray through a pixel's middle; 0 where there is none.
     pub class: Vec<u8>,
-    /// Depth of it along the optical axis, m; 0 where there is nothing.
+    /// Its depth along the optical axis, m; 0 where there is none.
     pub depth_m: Vec<f32>,
-    /// Of a box's voxels 1 + how it faces: its heading against the ray in sixteenths of a turn; and [`EDGE`]. 0 elsewhere.
+    /// Heading at a box's voxels: 1 + the box's heading against the ray in sixteenths of a turn, and [`EDGE`]. 0
+    /// elsewhere.
     pub facing: Vec<u8>,
 }
 
-/// What a rig's cameras are told of a frame.
+/// A frame made ready to give hints for a rig's cameras.
 pub struct HintedFrame<'a> {
     scene: MarchScene,
     boxes: Vec<&'a SceneBox>,
@@ -44,7 +45,7 @@ impl<'a> HintedFrame<'a> {
         }
     }
 
-    /// Of each pixel of a camera at a size in px.
+    /// Hints for each pixel of a camera at a size in px.
     pub fn of(&self, camera: &Camera, [width, height]: [u32; 2]) -> PictureHints {
         let (w, maps) = (width as usize, self.scene.render(camera, width, height));
         let sized = camera.resized(width, height);

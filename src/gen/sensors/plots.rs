@@ -1,5 +1,5 @@
-//! What stands beyond the grid: facades and trees along the roads that leave it, cars on them, blocks between them. Of
-//! each kind about as much, as high and as far from the road as near the edge of the scene.
+//! Things beyond the grid: facades and trees along the roads that leave it, cars on them, blocks between them. Each
+//! kind is about as frequent, as high and as far from the road as near the edge of the scene.
 
 use glam::{DVec2, DVec3};
 
@@ -11,18 +11,18 @@ use scene::{BoxId, Class, SceneBox};
 use world::draw::{Draw, hash};
 use world::objects;
 
-/// Roads are lined up to this far from the edge, m.
+/// Distance from the edge up to which things line the roads, m.
 const LINED_M: f64 = 70.0;
 /// Length of a plot along a road, and edge of one between the roads, m.
 const FRONT_M: [f64; 2] = [9.0, 20.0];
 const BLOCK_M: f64 = 12.0;
-/// Blocks between the roads are up to this far from the edge, m.
+/// Distance from the edge up to which there are blocks between the roads, m.
 const BLOCKS_M: f64 = 52.0;
-/// Samples of the edge this near to the road's side tell what lines it, m.
+/// Distance from the road's side within which samples of the edge decide what lines the road, m.
 const NEAR_M: f64 = 22.0;
 /// Depth of a house, m.
 const DEPTH_M: [f64; 2] = [7.0, 12.0];
-/// Nothing stands nearer to the grid than this, m.
+/// Least distance of a thing from the grid, m.
 const CLEAR_M: f64 = 0.4;
 /// Share of plots with something on them.
 const FILLED: f64 = 0.85;
@@ -31,10 +31,10 @@ const LANE_GAP_M: f64 = 17.0;
 const PARKED_GAP_M: f64 = 6.6;
 const DRIVING: f64 = 0.22;
 const PARKED: f64 = 0.3;
-/// A road is as wide as this on each side before cars park on it, m.
+/// Least width of a road on each side for cars to park on it, m.
 const ROOM_TO_PARK_M: f64 = 4.6;
 
-/// What a stretch of the edge is like.
+/// Character of a stretch of the edge.
 #[derive(Clone, Copy, Debug)]
 struct Character {
     built: f64, // share of samples
@@ -44,7 +44,7 @@ struct Character {
     setback_m: f64, // from the outer edge of the sidewalk
 }
 
-/// Puts everything up.
+/// Builds all things beyond the grid.
 pub(super) fn draw_up(border: &Border, exits: &[Exit], seed: u64, things: &mut Things) {
     let usual = character(border, |_| Some(0.0));
     for i in 0..exits.len() {
@@ -57,7 +57,7 @@ pub(super) fn draw_up(border: &Border, exits: &[Exit], seed: u64, things: &mut T
     blocks(border, exits, usual, seed, things);
 }
 
-/// Shares and heights of what stands where `off` says how far it is from the sidewalk.
+/// Shares and heights of the things for which `off` gives a distance from the sidewalk.
 fn character(border: &Border, off: impl Fn(DVec2) -> Option<f64>) -> Character {
     let (mut all, mut built, mut green) = (0usize, 0usize, 0usize);
     let (mut houses_m, mut trees_m, mut setback_m) = (Vec::new(), Vec::new(), f64::INFINITY);
@@ -97,7 +97,7 @@ fn character(border: &Border, off: impl Fn(DVec2) -> Option<f64>) -> Character {
     }
 }
 
-/// Which kind of plot: built on, planted, open.
+/// Kind of a plot: built on, planted, open.
 #[derive(Clone, Copy, PartialEq)]
 enum Plot {
     House,
@@ -137,7 +137,7 @@ fn line(
         let off_m = sign * q.y - exit.reach_m(left);
         (q.x > -18.0 && (0.0..NEAR_M).contains(&off_m)).then_some(off_m)
     });
-    // What is seen of one side is little: mixed with the rest.
+    // One side has few samples: mixed with the rest.
     let mix = |a: f64, b: f64| 0.6 * a + 0.4 * b;
     let c = Character {
         built: mix(here.built, usual.built),
@@ -328,7 +328,7 @@ fn car(
     draw: &mut Draw,
     things: &mut Things,
 ) {
-    // On no other road, where it would stand across.
+    // A car stands on no other road, where it would stand across.
     let alone = exits.iter().enumerate().all(|(i, exit)| {
         let q = exit.local(at);
         i == own || q.x < -4.0 || q.y.abs() > exit.half_m + 3.0
@@ -344,7 +344,7 @@ fn car(
         class: Class::Car,
         center_m: at.extend(border.height_m(at) + size_m.z / 2.0),
         size_m,
-        // Right-hand traffic: what drives on the left of the way out comes in.
+        // Right-hand traffic: cars on the left of the way out drive inwards.
         yaw_rad: heading.to_angle() + if sign > 0.0 { std::f64::consts::PI } else { 0.0 },
         velocity_mps: DVec2::ZERO,
         label: Default::default(),

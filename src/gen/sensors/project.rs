@@ -12,11 +12,12 @@ pub struct View {
     ego_in_camera: DVec3,
     focal_px: [f64; 2],
     center_px: [f64; 2],
-    /// Where x/z and y/z are held for the Jacobian.
+    /// Limits of x/z and y/z for the Jacobian.
     limit: [f64; 2],
-    /// What bends rays or reads them one after another; none for a plain pinhole.
+    /// Rays of a lens that bends them or a shutter that reads them one after another; `None` for a plain pinhole.
     bent: Option<CameraRays>,
-    /// For such a lens: the picture and a rim around it, where the derivative is taken; lower and upper corner, px.
+    /// The picture and a rim around it, within which the derivative of such a lens is taken; lower and upper corner,
+    /// px.
     rim_px: [DVec2; 2],
 }
 
@@ -31,14 +32,14 @@ pub struct Footprint {
     pub covariance_px2: [f64; 3],
 }
 
-/// What a picture shows around a point, to first order.
+/// Projection of the surroundings of a point, to first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Around {
     /// Depth along the optical axis, m.
     pub depth_m: f64,
     /// The point, px.
     pub mean_px: [f64; 2],
-    /// How its two coordinates change along the axes of the ego frame, px/m.
+    /// Derivatives of its two coordinates along the axes of the ego frame, px/m.
     pub px_per_m: [DVec3; 2],
 }
 
@@ -71,14 +72,14 @@ pub struct Conic {
     pub shear: f64,
     /// Weight of y, 1/px^2.
     pub across: f64,
-    /// sqrt(det / det') of the covariance before and after the low-pass: what opacity is multiplied
-    /// by so that a splat far below a pixel does not gain weight (Mip-Splatting, arXiv 2311.16493).
+    /// sqrt(det / det') of the covariance before and after the low-pass: factor of the opacity, so that a splat far
+    /// below a pixel does not gain weight (Mip-Splatting, arXiv 2311.16493).
     pub compensation: f64,
     /// Standard deviations along the image axes after the low-pass, px.
     pub extent_px: [f64; 2],
 }
 
-/// Covariances never get closer to singular than this, px^4.
+/// Least determinant of a covariance, px^4.
 const MIN_DETERMINANT: f64 = 1e-12;
 
 impl View {
@@ -107,8 +108,8 @@ impl View {
         self.camera_from_ego * p_in_ego + self.ego_in_camera
     }
 
-    /// The same by a lens of any kind: the covariance by the lens's own derivative (EWA to first order), taken at the border of
-    /// the picture's rim for what lies beyond.
+    /// Projects a Gaussian by a lens of any kind. The covariance comes from the lens's own derivative (EWA to first
+    /// order), taken at the border of the picture's rim for points beyond.
     fn bent(
         &self,
         rays: &CameraRays,
@@ -214,7 +215,7 @@ impl View {
     }
 }
 
-/// The picture with a rim, as many times as large as `clamp` says.
+/// The picture with a rim, `clamp` times as large.
 fn rim(width: u32, height: u32, clamp: f64) -> [DVec2; 2] {
     let half = DVec2::new(f64::from(width), f64::from(height)) / 2.0;
     // Not below the picture, nor NaN.

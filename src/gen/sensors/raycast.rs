@@ -71,13 +71,13 @@ impl ColumnMasks {
         masks
     }
 
-    /// Which part of the ground they cover.
+    /// Part of the ground that they cover.
     pub fn extent(&self) -> Extent {
         self.extent
     }
 
-    /// Brings the masks of the listed bricks (see [`VoxelGrid::changed_bricks`]) up to date with
-    /// `grid`; indices beyond the last brick are ignored. Of a grid with another extent all masks are made anew.
+    /// Updates the masks of the listed bricks (see [`VoxelGrid::changed_bricks`]) to `grid`; indices beyond the last
+    /// brick are ignored. For a grid with another extent all masks are made anew.
     pub fn update(&mut self, grid: &VoxelGrid, changed_bricks: &[usize]) {
         if grid.extent() != self.extent {
             *self = Self::from_grid(grid);
@@ -161,8 +161,8 @@ impl ColumnMasks {
         })
     }
 
-    /// The same in voxel units: 0 is the grid's lower corner and a voxel has edge 1. Returns the
-    /// distance in units of the direction's length, and the voxel.
+    /// Casts a ray given in voxel units: 0 is the grid's lower corner and a voxel has edge 1. Returns the distance in
+    /// units of the direction's length, and the voxel.
     pub fn cast_in_voxels(&self, origin: DVec3, direction: DVec3, max_t: f64) -> Option<(f64, [usize; 3])> {
         let start = Start::new(self.shape, origin, direction, max_t)?;
         let Some(mut scan) = Scan::new(self, &start) else {
@@ -186,7 +186,8 @@ impl ColumnMasks {
         None
     }
 
-    /// The same, voxel by voxel: `visit` sees every voxel on the way, in order, and the one that is met.
+    /// Casts a ray given in voxel units, voxel by voxel: `visit` sees every voxel on the way, in order, and the one
+    /// that is met.
     pub fn walk_in_voxels(
         &self,
         origin: DVec3,

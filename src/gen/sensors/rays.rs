@@ -1,4 +1,5 @@
-//! The rays of a camera: through its lens, and where a rolling shutter reads the picture, from where the vehicle is by then.
+//! The rays of a camera: through its lens and, with a rolling shutter, from the place that the vehicle has reached when
+//! the row is read.
 
 use std::f64::consts::PI;
 
@@ -12,9 +13,9 @@ use scene::{Camera, Lens, Optics, Shutter};
 pub struct Ray {
     /// The camera's optical centre, m.
     pub origin: DVec3,
-    /// Its way; a step of it adds 1 m of depth. Zero where the lens sees nothing.
+    /// Direction; its length is that of 1 m of depth. Zero where the lens sees nothing.
     pub direction: DVec3,
-    /// When it is seen, s after the moment of the picture.
+    /// Time at which it is seen, s after the moment of the picture.
     pub after_s: f64,
 }
 
@@ -30,11 +31,11 @@ pub struct CameraRays {
     is_pinhole: bool,
 }
 
-/// Points on the border of what a sphere covers.
+/// Number of points on the border of the area that a sphere covers.
 const AROUND: usize = 32;
 
 impl CameraRays {
-    /// For pictures of `width` x `height` pixels.
+    /// The rays for pictures of `width` x `height` pixels.
     pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
         let camera = camera.resized(width.max(1), height.max(1));
         let pose = camera.ego_from_camera();
@@ -121,13 +122,14 @@ impl CameraRays {
         px.extend(self.optics.depth_m(q))
     }
 
-    /// Image point of a point that moves; none where the camera does not see it, or outside the picture by more than its size.
+    /// Image point of a point that moves; `None` where the camera does not see it, or outside the picture by more than
+    /// its size.
     pub fn seen_at(&self, p: DVec3, velocity_mps: DVec3) -> Option<DVec2> {
         self.optics.project(self.to_camera(p, velocity_mps))
     }
 
-    /// Pixels that a sphere may cover: lower and upper corner, infinite where it cannot be told; none if the lens cannot see it.
-    /// `velocity_mps` bounds its speed.
+    /// Pixels that a sphere may cover: lower and upper corner, infinite where they cannot be determined; `None` if the
+    /// lens cannot see it. `speed_mps` bounds its speed.
     pub fn bounds(&self, middle: DVec3, radius_m: f64, speed_mps: f64) -> Option<[DVec2; 2]> {
         const ANYWHERE: Option<[DVec2; 2]> = Some([DVec2::NEG_INFINITY, DVec2::INFINITY]);
         let q = self.rotation.conjugate() * (middle - self.origin);

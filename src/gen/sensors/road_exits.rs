@@ -5,14 +5,14 @@ use glam::DVec2;
 use super::border::{Border, Covered, DEPTHS, SIDES, Side};
 use scene::{Class, Extent, Polyline, PolylineKind};
 
-/// Narrower ground is no road, wider is one along the edge, cells.
+/// Least and largest width of a road, cells: narrower ground is no road, wider ground is a road along the edge.
 const LEAST: usize = 7;
 const MOST: usize = 90;
-/// A lane ends at the edge if its last vertex is at most this far from it, m.
+/// Largest distance of a lane's last vertex from the edge at which the lane ends there, m.
 const AT_EDGE_M: f64 = 2.5;
-/// Length of lane that tells its direction, m.
+/// Length of lane that gives its direction, m.
 const TANGENT_M: f64 = 6.0;
-/// A road leaves the grid at most this much at a slant: cosine to the normal.
+/// Least cosine between a road that leaves the grid and the normal of the side.
 const LEAST_COSINE: f64 = 0.3;
 /// Widest sidewalk, cells.
 const MOST_WALK: usize = 15;
@@ -22,7 +22,7 @@ const MOST_WALK: usize = 15;
 pub struct Exit {
     /// Middle of the road at the edge, m.
     pub at: DVec2,
-    /// Where it goes: a unit vector, outward.
+    /// Direction in which it goes: a unit vector, outward.
     pub heading: DVec2,
     /// Half its width, m.
     pub half_m: f64,
@@ -42,7 +42,7 @@ impl Exit {
         self.at + self.heading * along_m + self.heading.perp() * left_m
     }
 
-    /// From the middle to the outer edge of the sidewalk on the right or left, m.
+    /// Distance from the middle to the outer edge of the sidewalk on the right or left, m.
     pub fn reach_m(&self, left: bool) -> f64 {
         self.half_m + self.walk_m[usize::from(left)]
     }
@@ -62,8 +62,8 @@ impl Exit {
     }
 }
 
-/// The roads that leave the grid. Lanes tell the direction; where there is none, the road's course over its last eight
-/// metres does.
+/// The roads that leave the grid. Lanes give the direction; without any, the road's course over its last eight metres
+/// does.
 pub fn exits(border: &Border, lines: &[Polyline]) -> Vec<Exit> {
     let ends: Vec<[DVec2; 2]> = lines
         .iter()
@@ -118,7 +118,7 @@ fn inside_m(covered: Covered, p: DVec2, side: Side) -> f64 {
     }
 }
 
-/// Both ends of a lane with the unit vectors that lead out of it.
+/// Ends of a lane with the unit vectors that lead out of it.
 fn lane_ends(points: &[DVec2]) -> Vec<[DVec2; 2]> {
     let end = |mut back: Box<dyn Iterator<Item = DVec2> + '_>| -> Option<[DVec2; 2]> {
         let last = back.next()?;
@@ -146,7 +146,7 @@ fn runs(border: &Border, side: Side, depth: usize) -> Vec<[usize; 2]> {
     out
 }
 
-/// Direction of a road from its middle at several depths; none where its width changes, as in a junction.
+/// Direction of a road from its middle at several depths; `None` where its width changes, as in a junction.
 fn course(border: &Border, side: Side, run: [usize; 2]) -> Option<DVec2> {
     let middle = |depth: usize, run: [usize; 2]| {
         let point = |along: usize| side.point(border.extent(), DEPTHS[depth], along);

@@ -13,7 +13,7 @@ use scene::{LidarSweep, Scene, SceneBox};
 
 /// Parts of a revolution. While one of them is swept, things stand still and the own vehicle drives straight on.
 const PARTS: u32 = 8;
-/// What of a label sticks out of its box, m: a voxel.
+/// Distance by which a voxel may stick out of its box, m: one voxel.
 const AROUND_M: f64 = 0.4;
 
 /// The exact sweep of a scene's first LiDAR ([`lidar::rig_sweep`]) with returns on the shapes of boxes ([`onto_shapes`]), as
@@ -27,7 +27,7 @@ pub fn exact(scene: &Scene) -> LidarSweep {
     made.unwrap_or_default()
 }
 
-/// The same of the voxels alone: what the networks of perception learned from.
+/// The exact sweep of the voxels alone, without [`onto_shapes`]: the networks of perception learned from it.
 pub fn of_voxels(scene: &Scene) -> LidarSweep {
     let whole = |s: &Scene| lidar::rig_sweep(&s.frame().occupancy, &s.rig).unwrap_or_default();
     let made: Result<_, std::convert::Infallible> = sweep(scene, |s| Ok(whole(s)));
@@ -119,7 +119,7 @@ fn tell_velocity(sweep: &mut LidarSweep, scene: &Scene) {
     }
 }
 
-/// True if a place is in a box or near enough to be of its label.
+/// True if a place is in a box, or near enough to belong to its label.
 fn holds(b: &SceneBox, at_m: DVec2) -> bool {
     let local = DVec2::from_angle(-b.yaw_rad).rotate(at_m - b.center_m.truncate());
     let reach = b.size_m.truncate() / 2.0 + AROUND_M;

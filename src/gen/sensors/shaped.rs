@@ -1,5 +1,6 @@
-//! Returns on the shapes of boxes: rays are cast through voxels of 0.4 m, which stick out of the boxes that they stand for. Here what
-//! a ray met of a box's voxels becomes what it meets of the box's solids, those that pictures show, and lies within the box.
+//! Returns on the shapes of boxes: rays are cast through voxels of 0.4 m, which stick out of the boxes that they stand
+//! for. Here a return on a box's voxels becomes the return on the box's solids, those that pictures show, and lies
+//! within the box.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -17,33 +18,34 @@ use scene::{
 };
 use world::objects;
 
-/// Voxels whose middle is this far beside or above a box may be its own, m.
+/// Distance beside or above a box within which the middle of a voxel may be its own, m.
 const BESIDE_M: f64 = 0.5;
-/// How far within its box a return lies at least, m: no rounding puts it outside.
+/// Least depth of a return within its box, m: no rounding puts it outside.
 const WITHIN_M: f64 = 1e-3;
-/// How far behind its place a return of the network may belong, m: voxels stick out by less.
+/// Largest distance behind its place at which a return of the network may belong, m: voxels stick out by less.
 const BEHIND_M: f64 = 1.5;
-/// How far below its box an echo of the network may be one of the box, m.
+/// Largest depth below its box at which an echo of the network may belong to it, m.
 const BELOW_M: f64 = 0.4;
-/// How far beyond a point the voxel is looked for that it lies on, m.
+/// Distance beyond a point at which the voxel that it lies on is looked up, m.
 const INTO_M: f64 = 1e-3;
-/// Voxels of boxes that a ray goes through at most.
+/// Most voxels of boxes that a ray goes through.
 const MOST_VOXELS: usize = 256;
 /// Step out of a voxel, in voxels.
 const OUT: f64 = 1e-6;
 /// Rays that one thread works on in a row.
 const RAYS: usize = 512;
 
-/// Puts the returns of boxes where their rays meet the boxes' solids, in a sweep of the first LiDAR of a rig that stands in the
-/// frame's coordinates. A ray that goes past the solids of a box goes on to what is behind; one that finds nothing there, and
-/// an echo of the network whose strength nobody knows there, is left out. What a ray met behind the solids of a box moves onto
-/// them. Boxes whose voxels are their own, and classes without solids, keep their voxels as far as they are within the box.
-/// `seed` is the scene's: it varies the solids.
+/// Puts the returns of boxes where their rays meet the boxes' solids, in a sweep of the first LiDAR of a rig that
+/// stands in the frame's coordinates. A ray that passes the solids of a box goes on to what is behind. A return is left
+/// out if the ray finds nothing there, or if it is an echo of the network, whose strength there is unknown. A return
+/// from behind the solids of a box moves onto them. Boxes whose voxels are their own, and classes without solids, keep
+/// their voxels as far as they are within the box. `seed` is the scene's: it varies the solids.
 pub fn onto_shapes(sweep: &mut LidarSweep, frame: &Frame, rig: &SensorRig, seed: u64) {
     place(sweep, frame, rig, seed, None);
 }
 
-/// The same with the masks of the frame's voxels, those in the own vehicle left out; made here if there are none.
+/// Places returns as [`onto_shapes`] does, with the masks of the frame's voxels, those in the own vehicle left out; the
+/// masks are made here if `None`.
 pub(super) fn place(
     sweep: &mut LidarSweep,
     frame: &Frame,
@@ -102,14 +104,14 @@ pub(super) fn place(
         .collect();
 }
 
-/// A ray and how far it went, m.
+/// A ray and its length up to the hit, m.
 struct Ray {
     origin: DVec3,
     direction: DVec3,
     met_m: f64,
 }
 
-/// What becomes of a return.
+/// New place of a return.
 enum Found {
     Same,
     Nothing,
@@ -125,17 +127,17 @@ struct Shapes<'a> {
     /// Boxes whose voxels may stand over a column.
     columns: HashMap<usize, Vec<usize>>,
     solids: SolidIndex,
-    /// A bit per class of the boxes.
+    /// Classes of the boxes, one bit each.
     classes: u32,
 }
 
 struct Shaped<'a> {
     of: &'a SceneBox,
-    /// Solids stand for its voxels.
+    /// True if solids stand for its voxels.
     solid: bool,
 }
 
-/// Whose a voxel is.
+/// Owner of a voxel.
 enum Owner<'a> {
     /// A box that solids stand for: the voxel is looked through.
     Solids,
@@ -176,8 +178,8 @@ impl<'a> Shapes<'a> {
         }
     }
 
-    /// Whose a voxel is that was met at a height, m; nobody's where that is more than `below_m` below the box: there labels go
-    /// down to their ground.
+    /// Owner of a voxel that was met at a height, m. `None` if this is more than `below_m` below the box: there labels
+    /// go down to their ground.
     fn owner(&self, [x, y, z]: [usize; 3], label: u8, met_m: f64, below_m: f64) -> Option<Owner<'_>> {
         if label >= Class::FREE || self.classes >> label & 1 == 0 {
             return None;
@@ -202,7 +204,7 @@ impl<'a> Shapes<'a> {
         }
     }
 
-    /// Where a ray meets a solid within the solid's box, nearer than `limit_m`.
+    /// Hit of a ray on a solid within the solid's box, nearer than `limit_m`: distance, m, and class.
     fn on_solid(&self, ray: &Ray, limit_m: f64) -> Option<(f64, Class)> {
         let hit = self.solids.cast(ray.origin, ray.direction, limit_m)?;
         let b = self.boxes[*self.by_id.get(&hit.box_id?)?].of;
@@ -292,8 +294,8 @@ impl<'a> Shapes<'a> {
     }
 }
 
-/// Between which distances a ray is in a box, at least [`WITHIN_M`] from its faces, m; `None` where it passes, and of a box
-/// thinner than that.
+/// Distances between which a ray is in a box, at least [`WITHIN_M`] from its faces, m; `None` if it passes the box, or
+/// if the box is thinner than that.
 fn through(b: &SceneBox, ray: &Ray) -> Option<[f64; 2]> {
     let (from, to) = (b.to_local(ray.origin), b.to_local(ray.origin + ray.direction));
     let (way, half) = (to - from, b.size_m / 2.0 - DVec3::splat(WITHIN_M));
@@ -311,7 +313,7 @@ fn through(b: &SceneBox, ray: &Ray) -> Option<[f64; 2]> {
     (half.min_element() > 0.0 && near <= far).then_some([near, far])
 }
 
-/// How far along a ray in voxel units a voxel is left.
+/// Distance along a ray at which it leaves a voxel, voxel units.
 fn left_at(origin: DVec3, direction: DVec3, voxel: [usize; 3]) -> f64 {
     let side = |axis: usize| match direction[axis] {
         d if d > 0.0 => (voxel[axis] as f64 + 1.0 - origin[axis]) / d,

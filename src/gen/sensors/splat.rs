@@ -211,7 +211,7 @@ pub(super) struct Bins {
 }
 
 impl Bins {
-    /// Of splats that are sorted near to far.
+    /// Bins of splats that are sorted near to far.
     pub fn new(splats: &[SplatPixels], width: usize, height: usize) -> Bins {
         let (tiles_x, tiles_y) = (width.div_ceil(TILE), height.div_ceil(TILE));
         let tiles = |&[x, y]: &[[u16; 2]; 2]| {

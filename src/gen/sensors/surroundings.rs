@@ -1,5 +1,5 @@
-//! What ends a pulse outside the voxels: the own vehicle's roof, and the continuation of the scene beyond the grid. Exact
-//! and learned sweeps put it around what they find in the grid.
+//! Surfaces outside the voxels that end a pulse: the own vehicle's roof, and the continuation of the scene beyond the
+//! grid. Exact and learned sweeps add them to what they find in the grid.
 
 use std::collections::BTreeMap;
 
@@ -21,17 +21,17 @@ const RAYS: usize = 512;
 /// Echo strength of the own paintwork, white, of 255.
 const OWN_STRENGTH: f64 = 18.0;
 
-/// Where the ground of the sweep lies.
+/// Height of the ground in the sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Height {
-    /// Where labels have it, two bins too low.
+    /// At the height of the labels, two bins too low.
     AsLabelled,
-    /// Where it is.
+    /// At its physical height.
     Physical,
 }
 
 impl Height {
-    /// What is added to the top of a label's ground voxel, m.
+    /// Height that is added to the top of a label's ground voxel, m.
     fn lift_m(self) -> f64 {
         match self {
             Height::AsLabelled => 0.0,
@@ -41,7 +41,7 @@ impl Height {
     }
 }
 
-/// What a ray meets outside the voxels.
+/// Hit of a ray outside the voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Outside {
     Nothing,
@@ -51,21 +51,21 @@ enum Outside {
     Own(Option<LidarPoint>),
 }
 
-/// What lies outside the voxels for every ray of one pattern.
+/// Hits outside the voxels for every ray of one pattern.
 #[derive(Clone, Debug)]
 pub struct Around {
     height: Height,
     body: Option<OwnBody>,
     /// The edge that the continuation was drawn up from; `None` without one.
     border: Option<Border>,
-    /// The grid and what of it the sweep sees itself, if that is not all.
+    /// The grid and the part of it that the sweep covers itself; `None` if it covers all.
     partly: Option<(VoxelGrid, Extent)>,
     outside: Vec<Outside>,
 }
 
 impl Around {
-    /// That of a pattern in a scene; `ego` is the vehicle that carries it, if it is known. Of the grid the sweep sees what
-    /// lies in `seen` itself: the voxels outside count to what is around.
+    /// Surroundings of a pattern in a scene; `ego` is the vehicle that carries it, if it is known. The sweep itself
+    /// covers the part of the grid in `seen`: voxels outside it count as surroundings.
     pub fn new(
         grid: &VoxelGrid,
         seen: Extent,
@@ -89,8 +89,8 @@ impl Around {
         around
     }
 
-    /// Brings it up to date with the voxels; true if what is around changed, which only what is near the edge or is not
-    /// seen by the sweep can bring about.
+    /// Updates the surroundings to the voxels; true if they changed. Only voxels near the edge or outside `seen` can
+    /// change them.
     pub fn update(&mut self, grid: &VoxelGrid, seen: Extent, pattern: &LidarPattern, rays: &Rays) -> bool {
         let known = self.border.as_ref();
         let border = known.map(|_| Border::of_grid(grid, self.height.lift_m()));
@@ -103,8 +103,8 @@ impl Around {
         true
     }
 
-    /// What a ray returns instead of what it finds in the grid, of which the grid says that it `met` something there: the
-    /// outer `None` is "nothing else", the inner one an echo that does not come back.
+    /// The return of a ray in place of what it finds in the grid; `met` says whether it meets a voxel there. The outer
+    /// `None` is "nothing else", the inner one an echo that does not come back.
     #[inline]
     pub fn instead(&self, ray: usize, met: bool) -> Option<Option<LidarPoint>> {
         match self.outside.get(ray) {
@@ -154,7 +154,7 @@ impl Around {
             }
             let beyond = || {
                 let backdrop = backdrop.as_ref()?;
-                // Of what is higher than the voxels nobody knows how far it reaches.
+                // The height of things above the voxels is not known.
                 let left_m = backdrop.border().covered().left_by(origin, direction);
                 if origin.z + direction.z * left_m > Extent::TOP_M {
                     return None;
@@ -198,7 +198,7 @@ impl Around {
     }
 }
 
-/// The grid and what of it a sweep sees, unless that is all.
+/// The grid and the part of it that a sweep covers itself; `None` if it covers all.
 fn partly(grid: &VoxelGrid, seen: Extent) -> Option<(VoxelGrid, Extent)> {
     let extent = grid.extent();
     let all = extent
@@ -207,7 +207,7 @@ fn partly(grid: &VoxelGrid, seen: Extent) -> Option<(VoxelGrid, Extent)> {
     (!all).then(|| (grid.clone(), seen))
 }
 
-/// True if two grids hold the same outside of what sweeps see of them.
+/// True if two grids are equal outside the parts that sweeps cover themselves.
 fn is_same_around(a: &Option<(VoxelGrid, Extent)>, b: &Option<(VoxelGrid, Extent)>) -> bool {
     let (Some((a, seen)), Some((b, also))) = (a, b) else {
         return a.is_none() && b.is_none();
@@ -231,7 +231,7 @@ fn is_same_around(a: &Option<(VoxelGrid, Extent)>, b: &Option<(VoxelGrid, Extent
     })
 }
 
-/// The first voxel along a ray from where it leaves what a sweep sees itself.
+/// The first voxel along a ray beyond the part that a sweep covers itself.
 fn unseen(scene: &MarchScene, seen: Covered, origin: DVec3, direction: DVec3) -> Option<Behind> {
     let left_m = seen.left_by(origin, direction);
     let hit = scene.cast(origin + direction * left_m, direction)?;

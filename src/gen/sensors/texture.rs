@@ -1,5 +1,5 @@
-//! Echo strengths as uneven as real ones around what the network expects of a place: it gives the usual strength of a
-//! class there, which leaves out paint, sheet metal, plates and reflectors that no voxel shows.
+//! Echo strengths that vary as those of real sensors do. The network gives the usual strength of a class at a place,
+//! without paint, sheet metal, plates and reflectors, which no voxel shows.
 
 use glam::DVec3;
 
@@ -11,8 +11,8 @@ use world::draw::{Draw, hash};
 const PATCH_M: f64 = 0.3;
 const SEED: u64 = 0x7e87_0e5e;
 
-/// How uneven a class is: spread of patches and of single echoes, in logarithms; share of patches that send light back
-/// to where it came from, and their strength.
+/// Variation of a class: spread of patches and of single echoes, in logarithms; share of retro-reflective patches, and
+/// their strength.
 struct Uneven {
     patches: f64,
     echoes: f64,

@@ -35,7 +35,7 @@ pub(super) struct Limits {
 /// A splat and the pixels that it may touch: first and one past the last, x then y.
 pub(super) type SplatPixels = (Splat, [[u16; 2]; 2]);
 
-/// What is summed per pixel, `[row][column]`.
+/// Sums per pixel, `[row][column]`.
 pub(super) struct Tile {
     transmittance: [Row; TILE],
     expected_m: [Row; TILE],
@@ -45,7 +45,7 @@ pub(super) struct Tile {
     used: u32,
 }
 
-/// What a row of pixels has come to.
+/// Results of a row of pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Resolved {
     /// Sum of weights.
@@ -56,9 +56,9 @@ pub(super) struct Resolved {
     pub median_m: Row,
     /// Heaviest id, the lowest on a tie; -1 where nothing was drawn.
     pub label: [i16; TILE],
-    /// By how much it leads the second.
+    /// Lead of that id over the second.
     pub margin: Row,
-    /// What light is left.
+    /// Light that is left.
     pub transmittance: Row,
 }
 

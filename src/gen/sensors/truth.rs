@@ -1,4 +1,4 @@
-//! What a real LiDAR would measure of a procedural world: analytic surfaces, range noise, echo strength, lost echoes.
+//! Measurements of a real LiDAR in a procedural world: analytic surfaces, range noise, echo strength, lost echoes.
 //! Targets: section 3 of `real_statistics.md` (three nuScenes sweeps, one of them labelled by class).
 
 use glam::DVec3;
@@ -13,11 +13,11 @@ use scene::{Class, LidarPattern, SensorRig};
 use world::draw::{Draw, hash};
 use world::{Surface, World};
 
-/// What became of a pulse.
+/// Outcome of a pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Echo {
-    /// It came back.
+    /// The pulse came back.
     Return = 0,
     /// It met a surface and was lost: too weak, mirrored away, passed through glass.
     Lost = 1,
@@ -38,7 +38,7 @@ pub struct TruthRay {
     pub intensity: u8,
     /// Cosine of the angle between pulse and surface normal, 0 (grazing) to 1.
     pub cos_incidence: f32,
-    /// What became of it.
+    /// Outcome of the pulse.
     pub echo: Echo,
     /// Measured distance to the own vehicle, m; 0 if it was not in the way, or if its echo came too early to be timed.
     pub own_body_m: f32,

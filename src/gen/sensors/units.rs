@@ -1,9 +1,9 @@
-//! Voxel units of one map with its corner worked out once: for what is done for every ray.
+//! Voxel units of one map with its corner computed once, for work that is done for every ray.
 
 use glam::{DVec2, DVec3};
 use scene::Extent;
 
-/// The same as [`Extent`]'s, bit for bit.
+/// Conversions between m and voxel units, bit for bit those of [`Extent`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Units {
     min_m: DVec3,
@@ -19,7 +19,7 @@ impl Default for Units {
 }
 
 impl Units {
-    /// Those of an extent.
+    /// The conversions of an extent.
     pub fn of(extent: Extent) -> Self {
         Self {
             min_m: extent.min_m(),

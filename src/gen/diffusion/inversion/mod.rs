@@ -84,7 +84,7 @@ impl Refinement {
     }
 }
 
-/// How an inversion went.
+/// Report of an inversion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InversionReport {
     /// Network calls.
@@ -115,8 +115,8 @@ impl InversionReport {
         }
     }
 
-    /// True if the noise could be a draw: standard deviation in 0.9 to 1.1 and nothing at 6 or beyond.
-    /// Where it could not, edits that start from it are likely to look wrong.
+    /// True if the noise could be a draw: standard deviation in 0.9 to 1.1 and nothing at 6 or beyond. If it is false,
+    /// edits that start from the noise are likely to look wrong.
     pub fn moments_ok(&self) -> bool {
         (0.9..=1.1).contains(&self.std) && self.max_abs < 6.0
     }

@@ -5,10 +5,10 @@ use super::{Branch, Denoiser, check_length};
 /// Classifier-free guidance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guidance {
-    /// 0 = without condition, 1 = the conditional prediction itself, above 1 = exaggerated.
+    /// Weight: 0 = without condition, 1 = the conditional prediction itself, above 1 = exaggerated.
     pub weight: f64,
-    /// 0 = as it comes, 1 = scaled back to the spread of the conditional prediction
-    /// (Lin et al. 2023, section 3.4, about 0.7 there). Guidance grows the variance as weight squared.
+    /// Rescaling: 0 = none, 1 = scaled back to the spread of the conditional prediction (Lin et al. 2023, section 3.4,
+    /// about 0.7 there). Guidance grows the variance as weight squared.
     pub rescale: f64,
 }
 

@@ -18,7 +18,7 @@ pub use sampler::{Sampler, StepView};
 
 use super::schedule::ScheduleError;
 
-/// What a network's output means.
+/// Meaning of a network's output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Prediction {
     /// The noise in the state.
@@ -27,7 +27,7 @@ pub enum Prediction {
     V,
 }
 
-/// With or without the condition (layout, text) of the scene.
+/// Branch of a prediction, with or without the condition (layout, text) of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Branch {
     /// The condition is shown.
@@ -38,7 +38,7 @@ pub enum Branch {
 
 /// A network as a solver sees it.
 pub trait Denoiser {
-    /// What may go wrong inside; solvers add their own errors to it.
+    /// Error of the network; solvers add their own errors to it.
     type Error: From<SolverError>;
 
     /// The prediction for state `x` at training step `t`, as long as `x`. Must be deterministic:
@@ -46,7 +46,7 @@ pub trait Denoiser {
     fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, Self::Error>;
 }
 
-/// What a solver refuses.
+/// Error of a solver.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum SolverError {
     /// See [`ScheduleError`].

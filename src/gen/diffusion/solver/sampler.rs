@@ -1,4 +1,4 @@
-//! A sampler: everything about sampling but the network.
+//! A sampler: all of sampling but the network.
 
 use super::{DdimStep, Denoiser, Guidance, Prediction, SolverKind, Stepper, check_finite, clean_estimate};
 use crate::schedule::{Level, Schedule, ScheduleError, Spacing};
@@ -6,7 +6,7 @@ use crate::schedule::{Level, Schedule, ScheduleError, Spacing};
 /// Training steps that O-BELM uses: above, the signal (6 % here) is too weak to divide by.
 const OBELM_TRAIN_STEPS: usize = 960;
 
-/// What a caller sees after each network call of a solver.
+/// State of a solver after each of its network calls.
 #[derive(Clone, Copy, Debug)]
 pub struct StepView<'a> {
     /// Steps done, from 1.
@@ -43,7 +43,7 @@ impl<'a> StepView<'a> {
         }
     }
 
-    /// The clean data that this step's prediction implies: what a preview shows.
+    /// The clean data that this step's prediction implies, for previews.
     pub fn clean_estimate(&self) -> Vec<f64> {
         let pairs = self.x.iter().zip(self.predicted);
         pairs
@@ -52,22 +52,21 @@ impl<'a> StepView<'a> {
     }
 }
 
-/// Everything about a sampler but the network: method, levels from noise to data, what the network
-/// predicts, guidance.
+/// Settings of a sampler, without the network: method, levels from noise to data, what the network predicts, guidance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampler {
-    /// How a prediction becomes the next state.
+    /// Method by which a prediction becomes the next state.
     pub solver: SolverKind,
     /// `steps + 1` levels, from noise to clean data.
     pub levels: Vec<Level>,
-    /// What the network's output means.
+    /// Meaning of the network's output.
     pub prediction: Prediction,
     /// How its two branches are combined.
     pub guidance: Guidance,
 }
 
 impl Sampler {
-    /// For this project's networks: the standard schedule, trailing steps, v prediction. O-BELM, which
+    /// The sampler for this project's networks: the standard schedule, trailing steps, v prediction. O-BELM, which
     /// divides by the signal, starts a little below pure noise.
     pub fn standard(solver: SolverKind, steps: usize, guidance: Guidance) -> Result<Self, ScheduleError> {
         let schedule = Schedule::standard();
@@ -99,13 +98,13 @@ impl Sampler {
         Stepper::new(self.solver, self.prediction, &self.levels)
     }
 
-    /// How many states make up the noise of an inverted latent: O-BELM needs the two noisiest.
+    /// Number of states that make up the noise of an inverted latent: O-BELM needs the two noisiest.
     pub fn states_of_noise(&self) -> usize {
         if self.solver == SolverKind::OBelm { 2 } else { 1 }
     }
 
-    /// From the noise `start` to data: all `steps + 1` states. `on_step` runs after each step and
-    /// may end the run with an error (a newer job waits).
+    /// Samples from the noise `start` to data; returns all `steps + 1` states. `on_step` runs after each step and may
+    /// end the run with an error (a newer job waits).
     pub fn sample<D: Denoiser + ?Sized>(
         &self,
         start: Vec<f64>,
@@ -115,7 +114,7 @@ impl Sampler {
         self.sample_from(vec![start], model, on_step)
     }
 
-    /// The same from the first one or two states.
+    /// Samples as [`Self::sample`] does, from the first one or two states.
     pub fn sample_from<D: Denoiser + ?Sized>(
         &self,
         given: Vec<Vec<f64>>,

@@ -1,4 +1,4 @@
-//! What the layout network is shown: nodes, edges and the map as numbers. Training data and inference share this file.
+//! Input of the layout network: nodes, edges and the map as numbers. Training data and inference share this file.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub const MAP_CHANNELS: usize = 8;
 /// Kinds of nodes; 0 is none.
 pub const KINDS: usize = 27;
 
-/// What geometry a node has.
+/// Kind of geometry of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Shape {
@@ -35,7 +35,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Which of a node's numbers it uses.
+    /// The part of a node's numbers that it uses.
     pub fn channels(self) -> Range<usize> {
         match self {
             Shape::None => 0..0,
@@ -48,14 +48,14 @@ impl Shape {
 /// A node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeInput {
-    /// 1 ego, 2 to 11 objects in the order of [`Class::OBJECTS`], 12 to 24 lanes in the order of [`LaneRole::ALL`],
-    /// 25 crossing, 26 junction.
+    /// Kind: 1 ego, 2 to 11 objects in the order of [`Class::OBJECTS`], 12 to 24 lanes in the order of
+    /// [`LaneRole::ALL`], 25 crossing, 26 junction.
     pub kind: u8,
-    /// 0 unknown, else 1 + the state's place in its list.
+    /// State: 0 unknown, else 1 + the state's place in its list.
     pub state: u8,
-    /// 0 nothing said, 1 small, 2 large.
+    /// Size: 0 not stated, 1 small, 2 large.
     pub size: u8,
-    /// What geometry it has.
+    /// Kind of its geometry.
     pub shape: Shape,
     /// True if `values` are given and stay.
     pub locked: bool,
@@ -63,7 +63,7 @@ pub struct NodeInput {
     pub values: [f32; VALUES],
 }
 
-/// An edge; `between` is two of them.
+/// An edge; a relation `between` is two edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeInput {
     /// Index of a node.
@@ -76,7 +76,7 @@ pub struct EdgeInput {
     pub distance_m: Option<f32>,
 }
 
-/// Everything but the noise.
+/// Complete input apart from the noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayoutInput {
     /// Nodes, in the order of the graph.

@@ -21,15 +21,15 @@ pub const FILE: &str = "layout.safetensors";
 pub const MOST_NODES: usize = 512;
 
 const RELATIONS: usize = RelationKind::ALL.len();
-/// States and sizes that a node may have, 0 for unknown.
+/// Numbers of states and sizes that a node may have, 0 for unknown.
 const STATES: usize = 4;
 const SIZES: usize = 3;
-/// Cells of a map token along one side, and the means it is seen as.
+/// Side of a map token, cells, and means along a side that encode it.
 const PATCH: usize = 20;
 const SUB: usize = 10;
 const TOKENS_PER_SIDE: usize = MAP_SIDE / PATCH;
 const TOKENS: usize = TOKENS_PER_SIDE * TOKENS_PER_SIDE;
-/// The map under a box, the place within the cell, whether there is a map.
+/// Numbers of a box's place: the map under it, the place within the cell, whether there is a map.
 const LOCAL: usize = MAP_CHANNELS + 3;
 /// Rows that go through a layer in one piece.
 const PIECE: usize = 32;
@@ -80,7 +80,7 @@ impl LayoutConfig {
     }
 }
 
-/// A block of the denoiser, what it sees of the map, and how edges bias its attention.
+/// A block of the denoiser, with its attention to the map and its biases by edges.
 struct Block<B: Ops> {
     block: B::NodeBlock,
     map_kv: B::Linear,
@@ -108,7 +108,7 @@ pub struct LayoutNet<B: Ops = Cpu> {
     hash: u64,
 }
 
-/// What does not change while one layout is sampled. `T` is the backend's tensor.
+/// State that stays the same while one layout is sampled. `T` is the backend's tensor.
 pub struct Embedded<'a, T = Map> {
     input: &'a LayoutInput,
     nodes: T,               // [N][width]
@@ -137,14 +137,14 @@ impl LayoutNet {
         )?)?))
     }
 
-    /// On the processor. Takes all tensors of the file.
+    /// Loads the network onto the processor. Takes all tensors of the file.
     pub fn new(file: WeightFile<'_>) -> Result<Self, WeightsError> {
         Self::on(Cpu, file)
     }
 }
 
 impl<B: Ops> LayoutNet<B> {
-    /// The same on a backend.
+    /// Loads the network onto a backend; otherwise as [`LayoutNet::new`].
     pub fn on(ops: B, mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
         let c: LayoutConfig = file.config("config")?;
         c.check().map_err(|reason| file.config_error("config", reason))?;
@@ -242,7 +242,7 @@ impl<B: Ops> LayoutNet<B> {
         })
     }
 
-    /// What the edges add to the scores of attention, for each block.
+    /// Bias that the edges add to the scores of attention, for each block.
     fn biases(&self, n: usize, edges: &[Edge]) -> Result<Vec<B::Tensor>, OpsError> {
         let heads = self.config.heads;
         let bias = |block: &Block<B>| {
@@ -277,7 +277,7 @@ impl<B: Ops> LayoutNet<B> {
         ops.norm(&self.plain, ops.gelu(ops.add(tokens, &self.place)?)?)
     }
 
-    /// v for the state `x` `[N][24]` at training step `t`; locked nodes show their own values whatever `x` says.
+    /// v for the state `x` `[N][24]` at training step `t`; locked nodes keep their own values whatever `x` holds.
     pub fn predict(
         &self,
         embedded: &Embedded<'_, B::Tensor>,
@@ -339,7 +339,7 @@ fn told_of(node: &NodeInput) -> [usize; 3] {
     ]
 }
 
-/// Takes a round of messages.
+/// Takes the tensors of a round of messages.
 fn round<B: Ops>(
     ops: &B,
     w: &mut WeightFile<'_>,

@@ -1,4 +1,4 @@
-//! The signed distance field of a scene and what a ray sees of it. Every voxel holds a plane and sixteen numbers; between
+//! The signed distance field of a scene and the rays through it. Every voxel holds a plane and sixteen numbers; between
 //! eight voxel centres they are blended, and a small network corrects the blend.
 
 use glam::DVec3;
@@ -11,16 +11,16 @@ use scene::{Class, Window};
 
 /// Hidden numbers of a voxel, and of the network behind them.
 pub const HIDDEN: usize = 16;
-/// Numbers of a voxel that say what it looks like.
+/// Numbers of a voxel for its appearance.
 pub const APPEARANCE: usize = 16;
-/// What the heads of a ray are told: appearance, slope, and three facts about the ray.
+/// Inputs of a ray's heads: appearance, slope, and three facts about the ray.
 pub const RAY_INPUTS: usize = APPEARANCE + 4;
-/// Where no voxel is near it is this far to the next surface, m.
+/// Distance to the next surface where no voxel is near, m.
 const FREE_SDF_M: f32 = 0.4;
 const LEAST_SUPPORT: f32 = 0.05;
-/// Of an interval, to be looked at for its appearance.
+/// Weight from which on the appearance of an interval counts.
 const LEAST_WEIGHT: f32 = 0.01;
-/// ln of what must pass for a ray to go on.
+/// ln of the share that must pass for a ray to go on.
 const OPAQUE: f32 = -6.9;
 /// Samples of a ray at most; one in a wood or along a hedge may want more.
 const MOST_SAMPLES: usize = 160;
@@ -48,50 +48,50 @@ pub struct SdfHead {
 #[repr(align(64))]
 pub struct Line(pub [f32; HIDDEN]);
 
-/// What the UNet found in a scene, ready for rays. After the last site all lists but `keys` and `classes` hold one more
-/// of zeros, for the corners where no voxel is.
+/// Features of a scene by the UNet, ready for rays. After the last site all lists but `keys` and `classes` hold one
+/// more entry of zeros, for the corners where no voxel is.
 pub struct Field {
     /// The voxels in rising order.
     pub keys: Vec<u32>,
     /// Where the voxels are.
     pub volume: Volume,
-    /// Where samples are worth it.
+    /// Cells where samples are worth it.
     pub cells: Cells,
     /// Label of each site.
     pub classes: Vec<u8>,
-    /// `[site]`.
+    /// Hidden numbers, `[site]`.
     pub hidden: Vec<Line>,
-    /// `[site]`: offset in m, slopes in m per voxel.
+    /// Planes, `[site]`: offset in m, slopes in m per voxel.
     pub planes: Vec<[f32; 4]>,
-    /// `[site]`.
+    /// Appearance, `[site]`.
     pub appearance: Vec<Line>,
 }
 
-/// Where samples are taken.
+/// Placement of the samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sampling {
-    /// Where the prior wants them, refined at the surface, until the ray is opaque.
+    /// Samples where the prior wants them, refined at the surface, until the ray is opaque.
     Prior,
-    /// This many at equal distances on the whole ray.
+    /// Samples in this number at equal distances on the whole ray.
     Uniform(usize),
 }
 
-/// What a ray met.
+/// Hit of a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Met {
-    /// Mean distance of what was met, m; 0 if nothing was.
+    /// Mean distance of the hit, m; 0 if nothing was met.
     pub mean_m: f32,
-    /// Distance of the surface in the middle of what was met, m: it lies on one of the surfaces.
+    /// Median distance of the hit, m: it lies on one of the surfaces.
     pub median_m: f32,
-    /// ln of what passes.
+    /// ln of the share that passes.
     pub log_pass: f32,
     /// Label of the nearest voxel there; free if nothing was met.
     pub class: u8,
-    /// For the heads.
+    /// Inputs of the heads.
     pub inputs: [f32; RAY_INPUTS],
     /// Samples that were taken.
     pub samples: u16,
-    /// What lies farther away did not matter, m.
+    /// Distance beyond which nothing influenced the result, m; infinite unless the ray was stopped early.
     pub reach_m: f32,
 }
 
@@ -137,7 +137,7 @@ impl Field {
         let site = self.volume.sites[c.base + bits[0] * steps[0] + bits[1] * steps[1] + bits[2]] as usize;
         let offset = [0, 1, 2].map(|a| c.share[a] - bits[a] as f32);
         let weight = c.weights[0][bits[0]] * c.weights[1][bits[1]] * c.weights[2][bits[2]];
-        // No branch: which corners are there is anybody's guess.
+        // No branch: which corners exist cannot be predicted.
         (site, if site < self.classes.len() { weight } else { 0.0 }, offset)
     }
 
@@ -221,8 +221,8 @@ impl Field {
         class
     }
 
-    /// What a ray meets whose samples lie at `t` (m, rising) with signed distances `f` and [`neus::tail`] of s f, s being
-    /// the steepness. Twin of `Lidar.render`.
+    /// The hit of a ray whose samples lie at `t` (m, rising) with signed distances `f` and [`neus::tail`] of s f, s
+    /// being the steepness. Twin of `Lidar.render`.
     #[inline(always)]
     pub fn render(
         &self,
@@ -349,11 +349,11 @@ impl Field {
 /// A ray of the ego frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
-    /// Where it starts, m.
+    /// Origin, m.
     pub origin: DVec3,
     /// Unit direction.
     pub direction: DVec3,
-    /// From where to where it looks, m.
+    /// Distances between which it looks, m.
     pub range_m: [f64; 2],
 }
 
@@ -372,7 +372,7 @@ fn along(origin: [f32; 3], direction: [f32; 3], t: f32) -> [f32; 3] {
 }
 
 vectorised! {
-    /// What some rays meet, one after another.
+    /// Hits of some rays, one after another.
     pub fn shoot_all(field: &Field, head: &SdfHead, rays: &[Ray], sampling: Sampling, room: &mut Room, out: &mut [Met]) {
         for (ray, met) in rays.iter().zip(out) {
             *met = field.shoot(head, ray, sampling, room);

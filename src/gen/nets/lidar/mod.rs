@@ -77,11 +77,11 @@ pub struct LidarNet<B: Ops = Cpu> {
 /// One ray's answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnedRay {
-    /// What it met, and where.
+    /// Hit of the ray.
     pub met: Met,
     /// Strength of the echo, 0 to 255.
     pub intensity: f32,
-    /// A real sensor gets no echo if this is 0 or more, says the network.
+    /// Logit of losing the echo: at 0 or more the network predicts that a real sensor gets none.
     pub drop_logit: f32,
 }
 
@@ -134,14 +134,14 @@ impl LidarNet {
         Ok(Arc::new(Self::new(WeightFile::parse(FILE, &bytes)?)?))
     }
 
-    /// On the processor. Takes every tensor of the file.
+    /// Loads the network onto the processor. Takes every tensor of the file.
     pub fn new(w: WeightFile<'_>) -> Result<Self, WeightsError> {
         Self::on(Cpu, w)
     }
 }
 
 impl<B: Ops> LidarNet<B> {
-    /// The same on a backend.
+    /// Loads the network onto a backend; otherwise as [`LidarNet::new`].
     pub fn on(ops: B, mut w: WeightFile<'_>) -> Result<Self, WeightsError> {
         let config: LidarConfig = w.config("config")?;
         let w0 = config.widths[0];
@@ -194,7 +194,7 @@ impl<B: Ops> LidarNet<B> {
         Ok(net)
     }
 
-    /// Which weights these are.
+    /// Name of the weights.
     pub fn name(&self) -> &str {
         &self.trained
     }
@@ -211,7 +211,7 @@ impl<B: Ops> LidarNet<B> {
         self.field_of(keys, classes)
     }
 
-    /// The same of sorted, unique voxels at their physical height, and their classes.
+    /// The field of sorted, unique voxels at their physical height, and their classes.
     pub fn field_of(&self, keys: Vec<u32>, classes: Vec<u8>) -> Result<Field, ModelError> {
         let mut field = Field {
             hidden: vec![Line([0.0; HIDDEN]); keys.len() + 1],
@@ -234,7 +234,7 @@ impl<B: Ops> LidarNet<B> {
         Ok(field)
     }
 
-    /// What the field holds of each voxel: hidden numbers and appearance, planes. The lists may be longer.
+    /// Computes the field's numbers of each voxel: hidden numbers and appearance, planes. The lists may be longer.
     fn fill(
         &self,
         keys: &[u32],
@@ -271,7 +271,7 @@ impl<B: Ops> LidarNet<B> {
             })
     }
 
-    /// What the UNet makes of the voxels, `[site][channel]`.
+    /// Features of the voxels by the UNet, `[site][channel]`.
     fn features(&self, keys: &[u32], classes: &[u8]) -> Result<B::Tensor, OpsError> {
         let width = self.config.widths[0];
         let mut x = vec![0.0; keys.len() * width];
@@ -295,7 +295,8 @@ impl<B: Ops> LidarNet<B> {
         }
     }
 
-    /// What rays meet, in their order, on all cores; the same on any number of threads. Errors if the backend cannot compute.
+    /// Hits of rays, in their order, on all cores; the same on any number of threads. Errors if the backend cannot
+    /// compute.
     pub fn shoot(
         &self,
         field: &Field,

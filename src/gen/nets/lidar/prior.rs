@@ -1,5 +1,6 @@
-//! Where along a ray samples are worth their time: inside the cells between eight voxel centres of which at least one
-//! is occupied, found by an exact walk (UniScene's prior-guided sampling, section 3.3, without its uniform samples).
+//! Places along a ray where samples are worth their time: inside the cells between eight voxel centres of which at
+//! least one is occupied, found by an exact walk (UniScene's prior-guided sampling, section 3.3, without its uniform
+//! samples).
 
 use glam::DVec3;
 
@@ -26,11 +27,11 @@ pub struct Cells {
 /// A piece of a ray inside one active cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// Where it begins, m from the ray's origin.
+    /// Start, m from the ray's origin.
     pub from_m: f64,
-    /// Where it ends.
+    /// End, m from the ray's origin.
     pub to_m: f64,
-    /// Samples are this dense in it, 0 to 1.
+    /// Density of samples in it, 0 to 1.
     pub density: f64,
     /// True if the ray came out of inactive space.
     pub begins_run: bool,
@@ -41,7 +42,7 @@ pub struct Segment {
 pub struct Walk<'a> {
     density: &'a [u8],
     place: usize,
-    /// To the next cell along each axis, wrapping, and how many there are.
+    /// Steps to the next cell along each axis, wrapping, and the number of cells left.
     steps: [usize; 3],
     left: [usize; 3],
     next: [f64; 3],
@@ -133,7 +134,7 @@ impl Segment {
 }
 
 impl Cells {
-    /// Around these voxels of the grid.
+    /// The cells around these voxels of the grid.
     pub fn new(keys: &[u32], classes: &[u8]) -> Self {
         let mut density = vec![0u8; N[0] * N[1] * N[2]];
         for (key, class) in keys.iter().zip(classes) {
@@ -152,7 +153,7 @@ impl Cells {
         Self { density }
     }
 
-    /// True if one of the eight voxels around a cell is there.
+    /// True if one of the eight voxels around a cell is occupied.
     #[inline(always)]
     pub fn is_active(&self, [x, y, z]: [usize; 3]) -> bool {
         self.density[(x * N[1] + y) * N[2] + z] > 0

@@ -1,5 +1,5 @@
-//! Which voxels the sparse network works on, and who is whose neighbour: sorted unique keys, tables of site numbers.
-//! Twin of the first half of training/models/lidar.py.
+//! Sites of the sparse network: the voxels that it works on and their neighbours, as sorted unique keys and tables of
+//! site numbers. Twin of the first half of training/models/lidar.py.
 
 use rayon::prelude::*;
 
@@ -65,8 +65,8 @@ fn raise(from: &[u8; Window::NZ], to: &mut [u8], kinds: &[Kind; 256]) {
     }
 }
 
-/// Keys in rising order of the voxels of `[x][y][z]` labels that have a free neighbour: of six, the one below only above
-/// bin 3, since nothing looks at a building from underground.
+/// Keys, in rising order, of the voxels of `[x][y][z]` labels that have a free neighbour. Of the six neighbours the one
+/// below counts only above bin 3, since no sensor looks at a building from underground.
 pub fn surface(labels: &[u8]) -> Vec<u32> {
     let (nx, ny, nz) = (Window::NX, Window::NY, Window::NZ);
     // Bit z of a column is a voxel that is not free.
@@ -100,13 +100,13 @@ pub fn surface(labels: &[u8]) -> Vec<u32> {
     slices.concat()
 }
 
-/// One level: sites in rising order of their keys, and who feeds whom.
+/// One level: sites in rising order of their keys, and the rule books of their neighbours.
 pub struct Level {
     /// Places along each axis.
     pub shape: [usize; 3],
     /// Keys, (x * ny + y) * nz + z.
     pub keys: Vec<u32>,
-    /// Where they are.
+    /// Site numbers by place.
     pub volume: Volume,
     /// 27 taps (dx, dy, dz) with dz fastest.
     pub around: RuleBook,
@@ -152,12 +152,12 @@ pub struct Volume {
     shape: [usize; 3],
     /// Places from one x to the next and from one y to the next.
     pub steps: [usize; 2],
-    /// Numbers; the number of sites where there is none.
+    /// Site numbers; the number of sites where there is none.
     pub sites: Vec<u32>,
 }
 
 impl Volume {
-    /// Of sites in this order.
+    /// Site numbers for these keys, in their order.
     pub fn new(shape: [usize; 3], keys: &[u32]) -> Self {
         let steps = [(shape[1] + 2) * (shape[2] + 2), shape[2] + 2];
         let mut volume = Self {
@@ -191,7 +191,7 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// Of these voxels of a grid of `shape`; duplicates count once, keys beyond the grid not at all.
+    /// Levels for these voxels of a grid of `shape`; duplicates count once, keys beyond the grid are ignored.
     pub fn new(shape: [usize; 3], mut keys: Vec<u32>) -> Self {
         let end = shape.iter().product::<usize>() as u32;
         keys.retain(|k| *k < end);

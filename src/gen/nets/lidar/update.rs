@@ -1,5 +1,5 @@
-//! The field after an edit: only voxels within the network's sight of a changed one are computed again, with what lies
-//! within sight of those; all others keep their numbers. Bit for bit the field of a fresh run.
+//! The field after an edit: only voxels within the network's sight of a changed one are computed again, from the voxels
+//! within sight of those; all others keep their numbers. The result equals the field of a fresh run, bit for bit.
 
 use super::field::{Field, HIDDEN, Line};
 use super::prior::Cells;
@@ -16,7 +16,7 @@ const SIGHT: usize = 17;
 const CELL: usize = 4;
 /// Changes of one square of this many columns are looked at together.
 const SQUARE: usize = 16;
-/// With more than this share of the columns to be looked at, a fresh run costs no more.
+/// Share of the columns to be computed above which a fresh run costs no more.
 const MOST: f64 = 0.6;
 
 /// Columns, half-open.
@@ -24,11 +24,11 @@ const MOST: f64 = 0.6;
 pub struct Region {
     /// First along x and y.
     pub low: [usize; 2],
-    /// Behind the last.
+    /// One past the last along x and y.
     pub high: [usize; 2],
 }
 
-/// Where a field differs from the one before.
+/// Places where a field differs from the one before.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Changed {
     /// Anywhere.
@@ -50,7 +50,7 @@ impl Region {
         }
     }
 
-    /// All that lies within sight.
+    /// The region grown by the network's sight.
     fn around(&self) -> Self {
         Self {
             low: self.low.map(|v| v.saturating_sub(SIGHT)),
@@ -58,7 +58,7 @@ impl Region {
         }
     }
 
-    /// Whole cells of the coarsest level.
+    /// The region grown to whole cells of the coarsest level.
     fn whole(&self) -> Self {
         Self {
             low: self.low.map(|v| v / CELL * CELL),
@@ -77,7 +77,7 @@ impl Region {
 }
 
 impl<B: Ops> LidarNet<B> {
-    /// Brings a field up to date with a grid, see [`LidarNet::field`].
+    /// Updates a field to a grid, see [`LidarNet::field`].
     pub fn update(&self, field: &mut Field, grid: &VoxelGrid) -> Result<Changed, ModelError> {
         let (keys, classes) = voxels(grid);
         let changed = changed([&field.keys, &keys], [&field.classes, &classes]);
@@ -117,7 +117,7 @@ impl<B: Ops> LidarNet<B> {
     }
 }
 
-/// Regions around the voxels that are not the same in both lists; regions that are better looked at as one are one.
+/// Regions around the voxels that differ between the two lists; regions that cost less together are joined.
 fn changed([old, new]: [&[u32]; 2], [old_classes, new_classes]: [&[u8]; 2]) -> Vec<Region> {
     let squares = [SHAPE[0].div_ceil(SQUARE), SHAPE[1].div_ceil(SQUARE)];
     let mut found: Vec<Option<Region>> = vec![None; squares[0] * squares[1]];
@@ -152,7 +152,7 @@ fn changed([old, new]: [&[u32]; 2], [old_classes, new_classes]: [&[u8]; 2]) -> V
         }
     }
     let mut regions: Vec<Region> = found.into_iter().flatten().collect();
-    // Joined until no two cost less together.
+    // Joins regions until no two cost less together.
     while let Some((i, j, both)) = cheaper(&regions) {
         regions[i] = both;
         regions.swap_remove(j);

@@ -1,4 +1,4 @@
-//! What an occupancy is generated from, and how each token of the transformer is told of it.
+//! Condition of generating an occupancy, and its form for each token of the transformer.
 
 use rayon::prelude::*;
 
@@ -16,16 +16,16 @@ const LAYOUT: usize = COLUMNS * COLUMNS * LAYERS;
 const HEADING: usize = 2;
 /// Columns of a cell.
 const CELL_COLUMNS: usize = COLUMNS * COLUMNS;
-/// Of a group of the background in a cell: mask, base and top in each column.
+/// Numbers of a group of the background in a cell: mask, base and top in each column.
 const STANDING: usize = 3 * CELL_COLUMNS;
-/// Mask, context, draft, layout, heading; whether the groups of the background are given, and what they are; whether the
-/// ground's height is given, and that in each column.
+/// Numbers of a cell's condition: mask, context, draft, layout, heading; whether the groups of the background are
+/// given, and what they are; whether the ground's height is given, and that in each column.
 pub(super) const CONDITION: usize =
     1 + 2 * CHANNELS + LAYOUT + HEADING + GROUPS + GROUPS * STANDING + 1 + CELL_COLUMNS;
 /// Numbers given by name.
 pub(super) const NAMED: usize = 4;
 
-/// What a scene is generated from.
+/// Condition that a scene is generated from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DitCondition {
     /// Bits of the 18 layers, `[x][y]`, 200x200.
@@ -41,7 +41,7 @@ pub struct DitCondition {
     pub given: Vec<[f32; GROUPS]>,
     /// Background and ground of each column, 200x200.
     pub columns: Vec<ColumnHeights>,
-    /// The ground's height is given.
+    /// True if the ground's height is given.
     pub ground: bool,
     /// 1 where a cell is to be generated, 0 where it is kept, 50x50.
     pub mask: Vec<f32>,
@@ -50,7 +50,7 @@ pub struct DitCondition {
 }
 
 impl DitCondition {
-    /// The condition without all that is asked for, for guidance: what training shows one time in fourteen.
+    /// The condition for guidance, without everything that is asked for, as training shows it one time in fourteen.
     pub fn without_wishes(&self) -> Self {
         Self {
             bev: vec![0; self.bev.len()],
@@ -102,7 +102,7 @@ impl DitCondition {
         [&values[..], &told[..], &[drafted]].concat()
     }
 
-    /// What is said of one cell, in the order of [`CONDITION`].
+    /// Features of one cell, in the order of [`CONDITION`].
     fn cell_features(&self, cell: usize, values: &mut [f32]) {
         values[0] = self.mask[cell];
         let of = |latent: &[f32], to: &mut [f32]| to.copy_from_slice(&latent[cell * CHANNELS..][..CHANNELS]);

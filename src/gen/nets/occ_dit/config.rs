@@ -18,7 +18,7 @@ pub struct DitConfig {
     pub heads: usize,
     /// Numbers of the timestep embedding.
     pub frequencies: usize,
-    /// Blocks convolve their values.
+    /// True if blocks convolve their values.
     pub local: bool,
 }
 

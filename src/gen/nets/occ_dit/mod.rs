@@ -24,18 +24,18 @@ pub(super) use tokens::timestep_embedding;
 use tokens::{PATCH_CELLS, TOKENS_PER_SIDE, patch};
 pub use tokens::{TOKENS, tokens_of};
 
-/// What of a condition depends on neither state nor time, for some of the tokens. `T` is the backend's tensor.
+/// Parts of a condition that depend on neither state nor time, for some of the tokens. `T` is the backend's tensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prepared<T = Map> {
-    /// Which tokens, in rising order.
+    /// Tokens that are computed, in rising order.
     tokens: Vec<usize>,
-    /// `[token][width]`.
+    /// Embedded condition, `[token][width]`.
     embedded: T,
     /// Draft latent, 50x50x8.
     draft: Vec<f32>,
-    /// Where all of the background is given, 50x50.
+    /// 1 where all of the background is given, 50x50.
     given: Vec<f32>,
-    /// What the named numbers add to the embedded time, `[width]`.
+    /// Contribution of the named numbers to the embedded time, `[width]`.
     named: T,
 }
 
@@ -46,8 +46,8 @@ impl<T> Prepared<T> {
     }
 }
 
-/// Keys and values of every token in every block at one state: what tokens that are not computed show to
-/// those that are. `T` is the backend's tensor.
+/// Keys and values of every token in every block at one state: tokens that are computed attend by them to those that
+/// are not. `T` is the backend's tensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeysValues<T = Map>(Vec<T>); // [block], each [token][keys | values]
 
@@ -64,14 +64,14 @@ impl<T: Values> KeysValues<T> {
     }
 }
 
-/// What becomes of the blocks between the first and the last: what they add to the tokens changes slowly from one
-/// step to the next (Delta-DiT, 2406.01125).
+/// Handling of the blocks between the first and the last: their contribution to the tokens changes slowly from one step
+/// to the next (Delta-DiT, 2406.01125).
 pub enum Middle<'a> {
     /// They are computed.
     Computed,
-    /// They are computed, and what they added is kept here.
+    /// They are computed, and their contribution is kept here.
     Kept(&'a mut Vec<f32>),
-    /// What they added at an earlier step is added again; they are computed if that is of other tokens.
+    /// Their contribution of an earlier step is added again; they are computed if that is of other tokens.
     Reused(&'a [f32]),
 }
 
@@ -88,22 +88,23 @@ pub struct OccDit<B: Ops = Cpu> {
     blocks: Vec<B::Block>,
     final_ada: B::Linear,
     last: B::Linear,
-    /// Gates of the noisy latent and of the draft per channel: the linear part of the answer.
+    /// Gates of the noisy latent and of the draft per channel: the linear part of the prediction.
     skip: B::Linear,
-    /// What is added to them where the background is given.
+    /// Added to these gates where the background is given.
     skip_given: B::Linear,
     positions: Vec<f32>, // [token][width]
 }
 
 impl OccDit {
-    /// On the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown.
+    /// Loads the network onto the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not
+    /// finite or unknown.
     pub fn new(file: WeightFile<'_>) -> Result<Self, WeightsError> {
         Self::on(Cpu, file)
     }
 }
 
 impl<B: Ops> OccDit<B> {
-    /// The same on a backend.
+    /// Loads the network onto a backend; otherwise as [`OccDit::new`].
     pub fn on(ops: B, mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
         let config: DitConfig = file.config("config")?;
         config
@@ -144,7 +145,7 @@ impl<B: Ops> OccDit<B> {
         &self.config
     }
 
-    /// The condition without all that is asked for, for guidance: what training shows one time in fourteen.
+    /// The condition for guidance, without everything that is asked for, as training shows it one time in fourteen.
     pub fn null_condition(&self, condition: &DitCondition) -> DitCondition {
         condition.without_wishes()
     }
@@ -154,7 +155,7 @@ impl<B: Ops> OccDit<B> {
         self.prepare_some(condition, (0..TOKENS).collect())
     }
 
-    /// The same for some tokens, in rising order: only they are computed.
+    /// Embeds a condition for some tokens, in rising order: only they are computed.
     pub fn prepare_some(
         &self,
         condition: &DitCondition,
@@ -200,7 +201,8 @@ impl<B: Ops> OccDit<B> {
         self.forward_in(x, t, condition, keys_values, Precision::F32, Middle::Computed)
     }
 
-    /// The same with the blocks' products in the precision asked for, and the middle blocks computed or not.
+    /// v as [`Self::forward_some`] gives it, with the precision asked for in the blocks' products, and the middle
+    /// blocks computed or not.
     pub fn forward_in(
         &self,
         x: &[f32],
@@ -221,7 +223,7 @@ impl<B: Ops> OccDit<B> {
         self.leave(&tokens, &time, x, condition)
     }
 
-    /// A state as tokens before the first block, and what the blocks hear of the time and the named numbers.
+    /// A state as tokens before the first block, and the embedding of the time and the named numbers for the blocks.
     fn enter(
         &self,
         x: &[f32],
@@ -241,7 +243,7 @@ impl<B: Ops> OccDit<B> {
         Ok((ops.add(tokens, &condition.embedded)?, time))
     }
 
-    /// v at the tokens of `condition`, of what the last block left there; 0 elsewhere.
+    /// v at the tokens of `condition`, from the output of the last block; 0 elsewhere.
     fn leave(
         &self,
         tokens: &B::Tensor,
@@ -270,7 +272,7 @@ impl<B: Ops> OccDit<B> {
         Ok(out)
     }
 
-    /// Room for keys and values of all tokens, if there is none yet: then all must be computed.
+    /// Makes room for keys and values of all tokens, if there is none yet: then all must be computed.
     fn make_room(&self, keys_values: &mut KeysValues<B::Tensor>, tokens: usize) -> Result<(), ModelError> {
         let row = 2 * self.config.width;
         if keys_values.0.is_empty() {
@@ -282,7 +284,7 @@ impl<B: Ops> OccDit<B> {
         check_length("keys and values", keys_values.0[0].numbers(), TOKENS * row)
     }
 
-    /// The blocks, all of them or the first and the last.
+    /// Runs the blocks, all of them or the first and the last.
     fn through_blocks(
         &self,
         mut tokens: B::Tensor,

@@ -1,5 +1,5 @@
-//! Temporal blocks of the occupancy transformer: between its own blocks each token hears the tokens of all frames of a drive
-//! that lie at its place of the world. Twin of `training/models/occ_dit_time.py`.
+//! Temporal blocks of the occupancy transformer: between its own blocks each token attends to the tokens of all frames
+//! of a drive that lie at its place of the world. Twin of `training/models/occ_dit_time.py`.
 
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -24,9 +24,9 @@ pub struct TimeConfig {
     pub heads: usize,
     /// Temporal blocks.
     pub blocks: usize,
-    /// One stands behind every so many blocks of the transformer.
+    /// Number of blocks of the transformer before each temporal block.
     pub every: usize,
-    /// Keys come from the same token of each frame, not from the same place of the world.
+    /// True if keys come from the same token of each frame, instead of the same place of the world.
     pub same_cell: bool,
 }
 
@@ -198,7 +198,7 @@ impl TimeBlock {
     }
 }
 
-/// What one token hears of its place in all frames: values into `out`, offsets into `place`, both head by head.
+/// Attention of one token to its place in all frames: values into `out`, offsets into `place`, both head by head.
 fn attend(
     told: &[(Vec<f32>, Vec<f32>)],
     between: &Between,

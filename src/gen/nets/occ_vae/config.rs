@@ -16,7 +16,7 @@ pub struct VaeConfig {
     pub encoder_kernels: Vec<Vec<usize>>,
     /// Kernels (1 or 3) of the decoder's blocks at every level, coarsest first.
     pub decoder_kernels: Vec<Vec<usize>>,
-    /// The decoder gets the draft of the layout, and which voxels were observed.
+    /// True if the decoder gets the draft of the layout, and which voxels were observed.
     #[serde(default)]
     pub hears: bool,
 }

@@ -1,4 +1,4 @@
-//! What the decoder gets to know of the columns that it decodes.
+//! Additional input of the decoder about the columns that it decodes.
 
 use crate::ModelError;
 use crate::encoder::{HEIGHT, VoxelTable};
@@ -7,7 +7,7 @@ use nn::map::CellRect;
 use nn::weights::{WeightFile, WeightsError};
 use scene::{VoxelGrid, Window};
 
-/// What the decoder gets to know of the columns that it decodes.
+/// Additional input of the decoder about the columns that it decodes.
 #[derive(Clone, Copy, Default)]
 pub struct DecoderInput<'a> {
     /// The draft of the layout, with the background where that is given.

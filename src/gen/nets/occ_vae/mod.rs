@@ -42,14 +42,15 @@ pub struct OccVae<B: Ops = Cpu> {
 }
 
 impl OccVae {
-    /// On the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown.
+    /// Loads the network onto the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not
+    /// finite or unknown.
     pub fn new(file: WeightFile<'_>) -> Result<Self, WeightsError> {
         Self::on(Cpu, file)
     }
 }
 
 impl<B: Ops> OccVae<B> {
-    /// The same on a backend.
+    /// Loads the network onto a backend; otherwise as [`OccVae::new`].
     pub fn on(ops: B, mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
         let config: VaeConfig = file.config("config")?;
         config
@@ -195,13 +196,13 @@ impl<B: Ops> OccVae<B> {
         self.decode_cells(latent, &vec![true; self.cells()])
     }
 
-    /// The same for some of the cells; the others stay free. Computes only what those cells
-    /// can see, and gives them the labels that [`decode`](Self::decode) gives.
+    /// Decodes some of the cells; the others stay free. Computes only what those cells can see, and gives them the
+    /// labels that [`decode`](Self::decode) gives.
     pub fn decode_cells(&self, latent: &[f32], cells: &[bool]) -> Result<VoxelGrid, ModelError> {
         self.decode_with(latent, cells, DecoderInput::default())
     }
 
-    /// The same with a [`DecoderInput`]; networks that were trained without one ignore it.
+    /// Decodes some of the cells with a [`DecoderInput`]; networks that were trained without one ignore it.
     pub fn decode_with(
         &self,
         latent: &[f32],
@@ -324,7 +325,7 @@ impl<B: Ops> OccVae<B> {
         self.check_features(normed)
     }
 
-    /// Features that a latent far outside of what was trained may have driven to infinity.
+    /// Checks features, which a latent far outside of the training set may have driven to infinity.
     fn check_features(&self, normed: B::Tensor) -> Result<B::Tensor, ModelError> {
         let map = self.ops.download(normed)?;
         check_finite("decoder features", &map.data)?;

@@ -1,4 +1,5 @@
-//! Detections beside the boxes of a scene: what is found, what is missed, and what is seen where there is nothing.
+//! Detections compared with the boxes of a scene: boxes that are found, boxes that are missed, and detections where
+//! there is no box.
 
 use glam::DVec2;
 
@@ -7,12 +8,12 @@ use scene::{BoxId, Extent, LidarSweep, Pose, SceneBox};
 
 /// Centres nearer than this belong together, m.
 pub const NEAR_M: f64 = 2.0;
-/// A box with fewer returns on it is too little seen to be missed.
+/// Least number of returns on a box that counts as missed if it is not detected.
 pub const LEAST_RETURNS: usize = 5;
-/// How far outside its box a return of the same class may be to count as one on it, m.
+/// Largest distance of a return of the same class outside its box that still counts as on it, m.
 const MARGIN_M: f64 = 0.3;
 
-/// A box of a scene beside what the network sees.
+/// A box of a scene, compared with the detections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beside {
     /// The box.
@@ -24,13 +25,13 @@ pub struct Beside {
 }
 
 impl Beside {
-    /// True if it is plain to see and not seen.
+    /// True if it has enough returns and is not detected.
     pub fn is_missed(&self) -> bool {
         self.found.is_none() && self.returns >= LEAST_RETURNS
     }
 }
 
-/// A scene beside what the network sees of it.
+/// A scene, compared with the detections.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Against {
     /// Boxes in the window, in the order they were given.
@@ -40,7 +41,7 @@ pub struct Against {
 }
 
 impl Against {
-    /// Boxes that are plain to see and not seen, those with the most returns first.
+    /// Boxes that are missed, those with the most returns first.
     pub fn missed(&self) -> Vec<Beside> {
         let mut missed: Vec<Beside> = self.boxes.iter().copied().filter(Beside::is_missed).collect();
         missed.sort_by_key(|b| std::cmp::Reverse(b.returns));
@@ -48,8 +49,8 @@ impl Against {
     }
 }
 
-/// Holds detections, the surest first, against boxes; each takes the nearest free box of its group within [`NEAR_M`]. Detections stand in the
-/// frame of the vehicle, boxes and sweep in that of the map, `map_from_vehicle` between them.
+/// Compares detections, the surest first, with boxes; each takes the nearest free box of its group within [`NEAR_M`].
+/// Detections are in the frame of the vehicle, boxes and sweep in that of the map, `map_from_vehicle` between them.
 pub fn against<'a>(
     detections: &[Detection],
     boxes: impl IntoIterator<Item = &'a SceneBox>,

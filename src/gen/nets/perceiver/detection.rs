@@ -1,4 +1,4 @@
-//! Boxes that the perceiver sees.
+//! Boxes that the perceiver detects.
 
 use glam::{DVec2, DVec3};
 
@@ -12,17 +12,17 @@ pub const BOX: usize = 10;
 const CELL_M: f32 = 2.0 * Extent::VOXEL_M as f32;
 /// Most boxes of a sweep.
 pub const MOST: usize = 200;
-/// Logs of sizes beyond these count as these.
+/// Range of the logs of sizes; values beyond count as its ends.
 const LOG_SIZES: [f32; 2] = [-3.0, 4.0];
 
-/// Kinds of things that boxes are told of.
+/// Kinds of things for which boxes are predicted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Group {
     /// A car.
     Car,
     /// A truck, bus, trailer or construction vehicle.
     Large,
-    /// Somebody on foot.
+    /// A person on foot.
     Person,
     /// A bicycle or a motorcycle.
     Cycle,
@@ -34,7 +34,7 @@ impl Group {
     /// All, in the order of the network's outputs.
     pub const ALL: [Self; 5] = [Self::Car, Self::Large, Self::Person, Self::Cycle, Self::Barrier];
 
-    /// The group of a class; none if it is no object's.
+    /// The group of a class; `None` if it is no object.
     pub fn of(class: Class) -> Option<Self> {
         Some(match class {
             Class::Car => Self::Car,
@@ -46,7 +46,7 @@ impl Group {
         })
     }
 
-    /// A class of it: its colour stands for all.
+    /// Class whose colour stands for the group.
     pub fn class(self) -> Class {
         match self {
             Self::Car => Class::Car,
@@ -68,7 +68,7 @@ impl Group {
         }
     }
 
-    /// Of two boxes of a group nearer than this the less sure one goes, m.
+    /// Distance below which the less sure one of two boxes of the group is removed, m.
     fn apart_m(self) -> f32 {
         match self {
             Self::Car => 1.2,
@@ -79,12 +79,12 @@ impl Group {
     }
 }
 
-/// A box that the network sees.
+/// A box that the network detects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detection {
-    /// What it is taken for.
+    /// Predicted group.
     pub group: Group,
-    /// How sure it is, 0 to 1.
+    /// Score, 0 to 1.
     pub score: f32,
     /// Centre in the frame of the returns, m.
     pub center_m: [f32; 3],
@@ -95,7 +95,7 @@ pub struct Detection {
 }
 
 impl Detection {
-    /// As a box of a scene, to be drawn.
+    /// Converts it to a box of a scene, to be drawn.
     pub fn to_box(&self, id: BoxId) -> SceneBox {
         SceneBox {
             id,
@@ -109,8 +109,8 @@ impl Detection {
     }
 }
 
-/// Boxes of a map `[x][y][15]` (see [`super::Said`]) whose score is `least` or more, the surest first: cells of which no neighbour is
-/// surer of the same group, without those too near a surer one.
+/// Boxes of a map `[x][y][15]` (see [`super::Said`]) whose score is `least` or more, the surest first. They come from
+/// cells of which no neighbour is surer of the same group; boxes too near a surer one are left out.
 pub fn decode(map: &Map, least: f32) -> Vec<Detection> {
     let (rows, columns) = (map.rows, map.columns);
     let heat = |group: usize, x: usize, y: usize| map.data[(x * columns + y) * map.width + group];

@@ -29,7 +29,7 @@ use stands::Stands;
 
 /// File name of the weights.
 pub const FILE: &str = "lidar_perceiver.safetensors";
-/// A box counts as seen from this score on: what the window and its lists show.
+/// Score from which on a box counts as detected: the window and its lists show these boxes.
 pub const SCORE: f32 = 0.3;
 /// Numbers of a cell of the map of boxes: a logit of each group's centre, then those of a box.
 const CELL: usize = Group::ALL.len() + BOX;
@@ -40,7 +40,7 @@ const CELL: usize = Group::ALL.len() + BOX;
 pub struct PerceiverConfig {
     /// Channels at 0.8, 1.6 and 3.2 m.
     pub widths: [usize; 3],
-    /// Kernels of the blocks there on the way down.
+    /// Kernels of the blocks at these levels on the way down.
     pub kernels: [Vec<usize>; 3],
 }
 
@@ -56,21 +56,22 @@ impl PerceiverConfig {
     }
 }
 
-/// What the network says of a map of pillars.
+/// Output of the network for a map of pillars.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Said {
-    /// Of each column how likely it is what, as logits, `[x][y][9]` in the order of [`Stands::ALL`].
+    /// Logits of what stands in each column, `[x][y][9]` in the order of [`Stands::ALL`].
     pub stands: Map,
-    /// Of each cell of 2 x 2 columns, `[x][y][15]`: logits of centres in the order of [`Group::ALL`], then the numbers of a box.
+    /// Numbers of each cell of 2 x 2 columns, `[x][y][15]`: logits of centres in the order of [`Group::ALL`], then the
+    /// numbers of a box.
     pub boxes: Map,
 }
 
-/// What a sweep shows, as the network sees it.
+/// Predictions for a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Perceived {
-    /// What stands in each column of the window, `[x][y]`, 200 x 200 columns of 0.4 m.
+    /// Kind of thing that stands in each column of the window, `[x][y]`, 200 x 200 columns of 0.4 m.
     pub stands: Vec<Stands>,
-    /// Things, the surest first.
+    /// Detected things, the surest first.
     pub detections: Vec<Detection>,
 }
 
@@ -127,8 +128,8 @@ impl<B: Ops> LidarPerceiver<B> {
         Ok(net)
     }
 
-    /// What the network says of a map of pillars. Errors if its sides are not multiples of 8 columns, it has not 19 numbers a
-    /// column, or a number is not finite.
+    /// Output of the network for a map of pillars. Errors if its sides are not multiples of 8 columns, it has not 19
+    /// numbers a column, or a number is not finite.
     pub fn forward(&self, pillars: Map) -> Result<Said, ModelError> {
         for (what, side) in [("rows", pillars.rows), ("columns", pillars.columns)] {
             if side == 0 || side % 8 != 0 || side > 4096 {
@@ -156,9 +157,10 @@ impl<B: Ops> LidarPerceiver<B> {
         Ok(said)
     }
 
-    /// What returns show: x, y, z (m, in the frame of the vehicle that measured them) and echo strength (0 to 255) of each. Those that are
-    /// not finite or outside the window of 80 x 80 m are left out; without any nothing is near. Boxes below `score` are left out.
-    /// The same returns give the same on any number of threads.
+    /// Predictions for returns: x, y, z (m, in the frame of the vehicle that measured them) and echo strength (0 to
+    /// 255) of each. Returns that are not finite or outside the window of 80 x 80 m are left out; without any return
+    /// all pillars are empty. Boxes below `score` are left out. The same returns give the same on any number of
+    /// threads.
     pub fn perceive(
         &self,
         returns: impl IntoIterator<Item = [f32; 4]>,
@@ -172,7 +174,8 @@ impl<B: Ops> LidarPerceiver<B> {
         })
     }
 
-    /// The same for a sweep in the frame of a map, seen from its vehicle; boxes from [`SCORE`] on, in the frame of the vehicle.
+    /// Predictions for a sweep in the frame of a map, seen from its vehicle; boxes from [`SCORE`] on, in the frame of
+    /// the vehicle.
     pub fn perceive_sweep(
         &self,
         sweep: &LidarSweep,

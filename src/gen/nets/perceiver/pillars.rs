@@ -1,4 +1,4 @@
-//! Returns of a LiDAR as a map of columns: what the perceiver looks at.
+//! Returns of a LiDAR as a map of columns: the input of the perceiver.
 
 use nn::map::Map;
 use scene::{Extent, Window};
@@ -7,10 +7,10 @@ use scene::{Extent, Window};
 const BINS: usize = 12;
 /// Numbers of a column.
 pub const PILLAR: usize = BINS + 7;
-/// Where the lowest bin begins, and how high each is, m.
+/// Start of the lowest bin, and height of each, m.
 const BIN_LOW_M: f32 = -1.2;
 const BIN_M: f32 = 0.4;
-/// Heights beyond these count as these, m.
+/// Range of heights, m; heights beyond count as its ends.
 const HEIGHTS_M: [f32; 2] = [-3.0, 6.0];
 /// Half the side of the window, m.
 const HALF_M: f32 = 40.0;

@@ -1,27 +1,28 @@
-//! What may stand in a column, and what stands in those of a grid: the truth that the perceiver's map is held against.
+//! Kinds of things that stand in columns, and those of a grid: the ground truth that the perceiver's map is compared
+//! with.
 
 use rayon::prelude::*;
 
 use scene::{Class, VoxelGrid};
 
-/// What may stand in a column.
+/// Kind of thing that stands in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Stands {
-    /// Nothing, and one may drive there.
+    /// Empty ground for driving.
     Drivable,
-    /// Nothing, and one may walk there.
+    /// Empty ground for walking.
     Walkway,
-    /// Nothing: other ground.
+    /// Empty ground of another kind.
     OtherGround,
     /// A plant.
     Vegetation,
     /// A building, a wall, a pole.
     Structure,
-    /// A car, or anything else that drives on four wheels or more.
+    /// A car, or another vehicle with four wheels or more.
     Vehicle,
     /// A bicycle or a motorcycle.
     Cycle,
-    /// Somebody on foot.
+    /// A person on foot.
     Person,
     /// A barrier or a traffic cone.
     Barrier,
@@ -41,7 +42,7 @@ impl Stands {
         Self::Barrier,
     ];
 
-    /// Of a label, as [`standing`] gives them; none if nothing is known.
+    /// Kind of a label, as [`standing`] gives them; `None` if nothing is known.
     pub fn of_label(label: u8) -> Option<Self> {
         Some(match Class::from_id(label)? {
             Class::Free => return None,
@@ -59,7 +60,7 @@ impl Stands {
         })
     }
 
-    /// A class that is such: its colour and name stand for all.
+    /// Class whose colour and name stand for the kind.
     pub fn class(self) -> Class {
         match self {
             Self::Drivable => Class::DriveableSurface,
@@ -74,7 +75,7 @@ impl Stands {
         }
     }
 
-    /// What it is called, in English.
+    /// Name in English.
     pub fn label(self) -> String {
         match self {
             Self::Vehicle => "any vehicle".to_owned(),
@@ -83,7 +84,7 @@ impl Stands {
         }
     }
 
-    /// That of the largest logit; the first one keeps a tie.
+    /// Kind of the largest logit; on a tie the first one.
     pub fn likeliest(logits: &[f32; Self::ALL.len()]) -> Self {
         let mut best = 0;
         for (i, logit) in logits.iter().enumerate() {
@@ -97,11 +98,12 @@ impl Stands {
 
 /// Label of a column of which nothing is known: it holds no voxel.
 pub const UNKNOWN: u8 = Class::FREE;
-/// Voxels above the lowest one that are looked at: what hangs higher than 2 m, such as the crown of a tree, does not stand there.
+/// Voxels above the lowest one that are considered: a thing that hangs higher than 2 m, such as the crown of a tree,
+/// does not stand there.
 const LOOK: usize = 5;
 
-/// Of each column `[x][y]` the label of what stands on its ground up to 2 m: an object before a building or a plant,
-/// those before the ground itself; [`UNKNOWN`] without any voxel. Both vertical conventions give the same.
+/// Label of what stands on the ground of each column `[x][y]`, up to 2 m: an object before a building or a plant, those
+/// before the ground itself; [`UNKNOWN`] without any voxel. Both vertical conventions give the same.
 pub fn standing(grid: &VoxelGrid) -> Vec<u8> {
     let (nx, ny) = (grid.extent().nx(), grid.extent().ny());
     (0..nx * ny)

@@ -1,4 +1,4 @@
-//! What the transformer is told of a frame: classes, depths and facings of every pixel, light and weather, cameras.
+//! Condition of the transformer for a frame: classes, depths and facings of every pixel, light and weather, cameras.
 
 use super::RingSize;
 use crate::encoder::{Level, PIECE, levels, steps};
@@ -8,19 +8,19 @@ use nn::Ops;
 use nn::map::Map;
 use nn::weights::{WeightFile, WeightsError};
 
-/// Render ids: 0 nothing, 1 to 16 classes, 17 to 19 paint.
+/// Number of render ids: 0 nothing, 1 to 16 classes, 17 to 19 paint.
 const CLASSES: usize = 20;
-/// 0 none, else 1 + sixteenths of a turn.
+/// Number of facings: 0 none, else 1 + sixteenths of a turn.
 const FACINGS: usize = 17;
 /// Flag of a facing where another box begins.
 pub const EDGE: u8 = 0x80;
-/// Numbers that tell a depth.
+/// Numbers that encode a depth.
 const DEPTHS: usize = 4;
-/// Depths below this are told as this, m.
+/// Least depth whose logarithm is encoded, m; smaller depths count as this in it.
 const NEAREST_M: f32 = 0.3;
-/// Times of day that can be told.
+/// Number of times of day that can be given.
 pub const TIMES: usize = 4;
-/// Weathers that can be told.
+/// Number of weathers that can be given.
 pub const WEATHERS: usize = 6;
 /// Numbers of a camera.
 pub const CAMERA_NUMBERS: usize = 7;
@@ -34,14 +34,14 @@ pub struct Condition {
     pub classes: Vec<u8>,
     /// Its depth along the optical axis, m; 0 where there is nothing.
     pub depth_m: Vec<f32>,
-    /// Of a box's pixels 1 + how it faces in sixteenths of a turn, and [`EDGE`]; 0 elsewhere.
+    /// Heading at a box's pixels: 1 + how it faces in sixteenths of a turn, and [`EDGE`]; 0 elsewhere.
     pub facings: Vec<u8>,
-    /// Which time of day, below [`TIMES`]; none is not told.
+    /// Time of day, below [`TIMES`]; `None` if it is not given.
     pub time: Option<usize>,
-    /// Which weather, below [`WEATHERS`]; none is not told.
+    /// Weather, below [`WEATHERS`]; `None` if it is not given.
     pub weather: Option<usize>,
-    /// Of every camera: direction towards the light in the optical frame (3), third row of the rotation from the camera to
-    /// the map (3), focal length / width of the picture.
+    /// Numbers of every camera: direction towards the light in the optical frame (3), third row of the rotation from
+    /// the camera to the map (3), focal length / width of the picture.
     pub cameras: Vec<[f32; CAMERA_NUMBERS]>,
 }
 
@@ -78,17 +78,16 @@ impl Condition {
     }
 }
 
-/// What the network hears of a condition: depends on neither noise nor step, so it is made once per frame. `T` is the
-/// backend's tensor.
+/// Encoded condition: depends on neither noise nor step, so it is made once per frame. `T` is the backend's tensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Told<T = Map> {
     /// Cameras and the size of their pictures.
     pub size: RingSize,
-    /// Of every view, one place per cell.
+    /// Encoded pixels of every view, one place per cell.
     pub(super) cells: Vec<T>,
-    /// Of every view, one place: time of day, weather and camera.
+    /// Encoded time of day, weather and camera of every view, one place.
     pub(super) light: Vec<T>,
-    /// Where tokens stand, one place each.
+    /// Positions of tokens, one place each.
     pub(super) positions: T,
 }
 
@@ -112,11 +111,11 @@ impl<B: Ops> super::PictureDit<B> {
         })
     }
 
-    /// The same condition without classes, depths and facings, for guidance; time of day, weather and cameras stay.
+    /// The encoded condition without classes, depths and facings, for guidance; time of day, weather and cameras stay.
     pub fn silent(&self, told: &Told<B::Tensor>) -> Result<Told<B::Tensor>, ModelError> {
         let (size, pixels) = (told.size, told.size.view_pixels());
         let (nothing, no_depth) = (vec![0; pixels], vec![0.0; pixels]);
-        // All views hear the same.
+        // All views get the same.
         let cells = self
             .teller
             .cells(&self.ops, &nothing, &no_depth, &nothing, size)?;
@@ -127,7 +126,7 @@ impl<B: Ops> super::PictureDit<B> {
     }
 }
 
-/// Pixels to cells.
+/// Encoder of the pixels of a view to cells.
 pub(super) struct Teller<B: Ops> {
     table: B::Table, // classes, then facings, then the edge
     depth: B::Linear,
@@ -165,7 +164,7 @@ impl<B: Ops> Teller<B> {
         })
     }
 
-    /// Of one view.
+    /// Encodes the pixels of one view.
     fn cells(
         &self,
         ops: &B,
@@ -198,7 +197,8 @@ impl<B: Ops> Teller<B> {
     }
 }
 
-/// Is there something, how far in logarithms, how near, and saw teeth of a metre; all 0 where there is nothing.
+/// Encoded depth: whether there is a surface, the logarithm of its depth, its nearness, and a sine with a period of a
+/// metre that fades with depth; all 0 where there is nothing.
 fn depth_numbers(depth_m: f32) -> [f32; DEPTHS] {
     if depth_m <= 0.0 {
         return [0.0; DEPTHS];
@@ -211,7 +211,7 @@ fn depth_numbers(depth_m: f32) -> [f32; DEPTHS] {
     ]
 }
 
-/// Time of day, weather and camera to one vector per view.
+/// Encoder of time of day, weather and camera to one vector per view.
 pub(super) struct Light<B: Ops> {
     times: Vec<f32>,    // [time, or not told][width]
     weathers: Vec<f32>, // [weather, or not told][width]

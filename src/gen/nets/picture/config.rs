@@ -32,7 +32,7 @@ pub struct PictureDitConfig {
     pub depth: usize,
     /// Attention heads.
     pub heads: usize,
-    /// Blocks that hear the neighbours.
+    /// Blocks that attend to the neighbours.
     pub across: Vec<usize>,
     /// Numbers of the timestep embedding.
     pub frequencies: usize,
@@ -43,9 +43,9 @@ pub struct PictureDitConfig {
     /// Kernel over such planes.
     #[serde(rename = "plane_kernel")]
     _plane_kernel: usize,
-    /// Hears depths; only an ablation does not.
+    /// True if depths are an input; false only in an ablation.
     depths: bool,
-    /// Hears the frame before; only an ablation does not.
+    /// True if the frame before is an input; false only in an ablation.
     before: bool,
 }
 

@@ -1,5 +1,5 @@
-//! Latent diffusion transformer for the pictures of a ring of cameras: residual blocks on cells, transformer blocks on tokens
-//! of 2x2 cells, some of which hear the neighbours in the ring.
+//! Latent diffusion transformer for the pictures of a ring of cameras: residual blocks on cells, transformer blocks on
+//! tokens of 2x2 cells, some of which attend to the neighbours in the ring.
 
 use std::path::Path;
 
@@ -41,7 +41,7 @@ pub struct PictureDit<B: Ops = Cpu> {
 }
 
 impl PictureDit {
-    /// On the processor, from a file. Errors name the file, in one line.
+    /// Loads the network of a file onto the processor. Errors name the file, in one line.
     pub fn load(path: &Path) -> Result<Self, WeightsError> {
         Self::new(WeightFile::parse(
             &path.display().to_string(),
@@ -49,14 +49,15 @@ impl PictureDit {
         )?)
     }
 
-    /// On the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown.
+    /// Loads the network onto the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not
+    /// finite or unknown.
     pub fn new(file: WeightFile<'_>) -> Result<Self, WeightsError> {
         Self::on(Cpu, file)
     }
 }
 
 impl<B: Ops> PictureDit<B> {
-    /// The same on a backend.
+    /// Loads the network onto a backend; otherwise as [`PictureDit::new`].
     pub fn on(ops: B, mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
         check_kind(&file, "picture_dit")?;
         let config: PictureDitConfig = file.config("config")?;
@@ -175,7 +176,7 @@ impl<B: Ops> PictureDit<B> {
         Ok(self.enter.apply(ops, y)?)
     }
 
-    /// v of a view, of what the last block left.
+    /// v of a view, from the output of the last block.
     fn leave(&self, tokens: &B::Tensor, kept: &B::Tensor, heard: &B::Tensor) -> Result<Vec<f32>, ModelError> {
         let ops = &self.ops;
         let y = ops.unfold(&ops.apply(&self.up, tokens, PIECE)?)?;
@@ -184,7 +185,7 @@ impl<B: Ops> PictureDit<B> {
         Ok(ops.download(ops.apply(&self.head, &normed, PIECE)?)?.data)
     }
 
-    /// Where the tokens of a view stand.
+    /// Positions of the tokens of a view.
     pub(super) fn positions(&self, size: RingSize) -> Result<B::Tensor, ModelError> {
         let [rows, columns] = size.cells().map(|n| n / TOKEN);
         Ok(self.ops.upload(Map {
@@ -196,7 +197,7 @@ impl<B: Ops> PictureDit<B> {
     }
 }
 
-/// Of every view, on all cores.
+/// Computes a value for every view, on all cores.
 pub(super) fn each_view<T: Send>(
     size: RingSize,
     of: impl Fn(usize) -> Result<T, ModelError> + Sync + Send,

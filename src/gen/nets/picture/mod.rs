@@ -1,5 +1,5 @@
-//! Camera pictures by latent diffusion: a VAE of pictures, and a transformer that draws the pictures of a ring of cameras at
-//! once, told what the voxels tell of every pixel and what the frame before looked like. Twins of
+//! Camera pictures by latent diffusion: a VAE of pictures, and a transformer that draws the pictures of a ring of
+//! cameras at once, from the hints of the voxels for every pixel and from the frame before. Twins of
 //! `training/models/picture_vae.py` and `training/models/picture_dit.py`.
 
 mod condition;
@@ -48,7 +48,7 @@ pub struct RingSize {
 }
 
 impl RingSize {
-    /// Of `views` cameras (1 to 64) whose pictures are so high and wide, px: multiples of 16 up to 8192.
+    /// Size for `views` cameras (1 to 64) whose pictures have this height and width, px: multiples of 16 up to 8192.
     pub fn new(views: usize, [height, width]: [usize; 2]) -> Result<Self, ModelError> {
         if !(1..=MOST_VIEWS).contains(&views) {
             return Err(ModelError::OutOfRange {
@@ -92,7 +92,7 @@ impl RingSize {
     }
 }
 
-/// Both networks, which belong together: the transformer knows only this VAE's latents.
+/// The two networks, which belong together: the transformer knows only this VAE's latents.
 pub struct PictureNets {
     /// Pictures to latents and back.
     pub vae: PictureVae,
@@ -120,7 +120,7 @@ impl PictureNets {
         Self::parse(&vae?, &dit?)
     }
 
-    /// The same of the bytes of both files.
+    /// Reads the networks from the bytes of both files; errors as [`Self::from_dir`].
     pub fn parse(vae: &[u8], dit: &[u8]) -> Result<Self, WeightsError> {
         let (vae, dit) = (
             WeightFile::parse(FILES[0], vae)?,

@@ -1,4 +1,4 @@
-//! From noise to latents in a few steps, and some of their cells again.
+//! Sampling of latents from noise in a few steps, and again for some of their cells.
 
 use std::ops::ControlFlow;
 
@@ -10,17 +10,19 @@ use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind, StepVie
 use nn::Ops;
 use nn::map::Map;
 
-/// What a run of the sampler needs. `T` is the backend's tensor.
+/// Input of a run of the sampler. `T` is the backend's tensor.
 pub struct Sampling<'a, T = Map> {
-    /// What the pictures shall show.
+    /// Condition of the pictures.
     pub told: &'a Told<T>,
-    /// What [`PictureDit::silent`] made of it. Needed by guidance other than 1; made where it is needed and not given.
+    /// Condition without classes, depths and facings, made by [`PictureDit::silent`]. Needed by guidance other than 1;
+    /// made where it is needed and not given.
     pub silent: Option<&'a Told<T>>,
     /// The frame before, if there is one.
     pub before: Option<&'a Before>,
     /// Steps, 1 to 1000.
     pub steps: usize,
-    /// How far to go from the silent answer to the told one: 1 takes the told one, 2 was measured best.
+    /// Guidance: how far to go from the prediction for `silent` to that for `told`. 1 takes that for `told`, 2 was
+    /// measured best.
     pub guidance: f64,
 }
 
@@ -57,9 +59,10 @@ impl<B: Ops> Denoiser for Asked<'_, B> {
 }
 
 impl<B: Ops> PictureDit<B> {
-    /// From noise `[view][row][column][8]` of unit spread to latents of the same shape: DDIM without fresh noise, trailing steps.
-    /// The last state holds the latents. `on_step` runs after each step and may stop the run, which then ends with
-    /// [`ModelError::Stopped`]. Errors also if sizes do not fit, a number is not finite, or there are no steps or too many.
+    /// Samples latents from noise `[view][row][column][8]` of unit spread, in the same shape: DDIM without fresh noise,
+    /// trailing steps. The last state holds the latents. `on_step` runs after each step and may stop the run, which
+    /// then ends with [`ModelError::Stopped`]. Errors also if sizes do not fit, a number is not finite, or there are no
+    /// steps or too many.
     pub fn sample(
         &self,
         noise: &[f32],
@@ -77,8 +80,9 @@ impl<B: Ops> PictureDit<B> {
         })
     }
 
-    /// The cells of a mask `[view][row][column]` anew, under what they are told now; the others stay as they were at every
-    /// step of `source`, to the bit. Otherwise as [`sample`](Self::sample); errors also if the steps of `source` are others.
+    /// Samples the cells of a mask `[view][row][column]` again, under the present condition; the others stay as they
+    /// were at every step of `source`, to the bit. Otherwise as [`sample`](Self::sample); errors also if the steps of
+    /// `source` are others.
     pub fn resample(
         &self,
         source: &Trajectory,

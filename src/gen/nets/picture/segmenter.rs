@@ -1,4 +1,4 @@
-//! A small network that says what each pixel of a picture shows. Twin of `training/models/segmenter.py`.
+//! A small network that predicts the class of each pixel of a picture. Twin of `training/models/segmenter.py`.
 
 use std::sync::{Arc, OnceLock};
 
@@ -16,7 +16,7 @@ use nn::{Cpu, Ops};
 const COLOURS: usize = 3;
 /// Side of a window of features, cells of 8 px.
 const WINDOW: usize = 8;
-/// What a pixel may show: the classes of `scene::truth`, 0 for sky.
+/// Number of classes that a pixel may show: those of `scene::truth`, 0 for sky.
 pub const SHOWN: usize = 22;
 
 /// The network with its weights, on a backend.
@@ -62,9 +62,8 @@ impl<B: Ops> PictureSegmenter<B> {
         Ok(net)
     }
 
-    /// Of pictures `[n][height][width][3]`, sRGB from -1 to 1, how likely each pixel shows each class, as logits
-    /// `[n][height][width][22]`. Height and width are multiples of 8 px. Errors if the sizes do not fit or a number is not
-    /// finite.
+    /// Logits `[n][height][width][22]` of each pixel's classes in pictures `[n][height][width][3]`, sRGB from -1 to 1.
+    /// Height and width are multiples of 8 px. Errors if the sizes do not fit or a number is not finite.
     pub fn logits(
         &self,
         pictures: &[f32],
@@ -101,8 +100,8 @@ impl<B: Ops> PictureSegmenter<B> {
         Ok(logits.chunks_exact(SHOWN).map(likeliest).collect())
     }
 
-    /// What it sees in one picture: the means of each channel of the coarsest map in windows of about 8 cells (of 8 px)
-    /// a side, row by row. Input and errors as of [`logits`](Self::logits).
+    /// Features of one picture: the means of each channel of the coarsest map in windows of about 8 cells (of 8 px) a
+    /// side, row by row. Input and errors as of [`logits`](Self::logits).
     pub fn features(
         &self,
         picture: &[f32],

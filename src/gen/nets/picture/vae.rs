@@ -13,7 +13,7 @@ use nn::{Cpu, Ops};
 
 /// Red, green, blue.
 const COLOURS: usize = 3;
-/// Numbers of the folded square of 2x2 px that the first and the last layer see.
+/// Numbers of the folded square of 2x2 px at the first and the last layer.
 const SQUARE: usize = 4 * COLOURS;
 
 /// The network with its weights, on a backend.
@@ -35,7 +35,7 @@ pub struct PictureVae<B: Ops = Cpu> {
 }
 
 impl PictureVae {
-    /// On the processor, from a file. Errors name the file, in one line.
+    /// Loads the network of a file onto the processor. Errors name the file, in one line.
     pub fn load(path: &Path) -> Result<Self, WeightsError> {
         Self::new(WeightFile::parse(
             &path.display().to_string(),
@@ -43,14 +43,15 @@ impl PictureVae {
         )?)
     }
 
-    /// On the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown.
+    /// Loads the network onto the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not
+    /// finite or unknown.
     pub fn new(file: WeightFile<'_>) -> Result<Self, WeightsError> {
         Self::on(Cpu, file)
     }
 }
 
 impl<B: Ops> PictureVae<B> {
-    /// The same on a backend.
+    /// Loads the network onto a backend; otherwise as [`PictureVae::new`].
     pub fn on(ops: B, mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
         check_kind(&file, "picture_vae")?;
         let config: PictureVaeConfig = file.config("config")?;
@@ -183,7 +184,7 @@ impl<B: Ops> PictureVae<B> {
     }
 }
 
-/// The whole number of parts of `size` that comes next to `length`, at least one.
+/// Rounds `length` up to a multiple of `size`, at least one.
 fn whole(length: usize, size: usize) -> usize {
     length.next_multiple_of(size).max(size)
 }

@@ -1,20 +1,20 @@
-//! The frame before, as the cells of this one see it.
+//! The frame before, as seen from the cells of this one.
 
 use rayon::prelude::*;
 
 use super::{CELL, RingSize};
 use crate::{ModelError, check_finite, check_length};
 
-/// Latents of the frame before that a cell hears, and two numbers and a flag.
+/// Number of latents of the frame before in the input of a cell; two numbers and a flag follow.
 pub(super) const BEFORE: usize = 4;
-/// Depth of what has none, m.
+/// Depth taken where there is no surface, m.
 const FAR_M: f32 = 1000.0;
-/// What is nearer to a camera than this is not projected, m.
+/// Least depth at which a surface is projected, m.
 const NEAREST_M: f32 = 0.1;
-/// A surface was hidden if something nearer than this share of its depth was seen there.
+/// Share of its depth below which a nearer surface at its place counts as hiding it.
 const HIDDEN: f32 = 0.75;
 
-/// How a camera sees, and how it moved.
+/// Optics of a camera, and its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Focal lengths along x and y, px.
@@ -25,9 +25,9 @@ pub struct Motion {
     pub then_from_now: [[f32; 4]; 3],
 }
 
-/// What cells hear of the frame before, `[view][row][column][4 * 8 + 3]`: the four latents around the place where their
-/// surface was seen (row by row), how far the place is between them (row, column; 0 to 1), and 1; all 0 where the surface was
-/// outside of the picture or hidden.
+/// Input of cells from the frame before, `[view][row][column][4 * 8 + 3]`: the four latents around the place where
+/// their surface was seen (row by row), how far the place is between them (row, column; 0 to 1), and 1; all 0 where the
+/// surface was outside of the picture or hidden.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Before(Vec<f32>);
 
@@ -37,16 +37,16 @@ impl Before {
         &self.0
     }
 
-    /// Those of a view.
+    /// Numbers of a view.
     pub(super) fn view(&self, view: usize, size: RingSize) -> &[f32] {
         let numbers = self.0.len() / size.views();
         &self.0[view * numbers..][..numbers]
     }
 }
 
-/// Latents of the frame before, `[view][row][column][numbers]`, as the cells of this one see them. Depths are of pixels now and
-/// then, `[view][height][width]`, m along the optical axis, 0 where there is nothing; one motion per view. Errors if the sizes
-/// do not fit or a number is not finite.
+/// Latents of the frame before, `[view][row][column][numbers]`, as the input of the cells of this one. Depths are of
+/// pixels now and then, `[view][height][width]`, m along the optical axis, 0 where there is nothing; one motion per
+/// view. Errors if the sizes do not fit or a number is not finite.
 pub fn warp(
     size: RingSize,
     latents_before: &[f32],
@@ -86,7 +86,7 @@ pub fn warp(
     Ok(Before(out))
 }
 
-/// Depth of each cell of a view: that of the pixel right below its middle; what has none is far away.
+/// Depth of each cell of a view: that of the pixel right below its middle; far away where there is none.
 fn cell_depths(depth_m: &[f32], size: RingSize) -> Vec<f32> {
     let [rows, columns] = size.cells();
     let middle = |cell: usize| cell * CELL + CELL / 2;
@@ -95,17 +95,17 @@ fn cell_depths(depth_m: &[f32], size: RingSize) -> Vec<f32> {
     all.map(|d| if d <= 0.0 { FAR_M } else { d }).collect()
 }
 
-/// Where a cell's surface was seen in the frame before.
+/// Place where a cell's surface was seen in the frame before.
 struct Seen {
     /// The cell above and left of the place; may be one outside.
     low: [f32; 2],
-    /// From there to the place, 0 to 1.
+    /// Offset from there to the place, 0 to 1.
     part: [f32; 2],
 }
 
 impl Seen {
-    /// None if it was outside or hidden. `depths_then_m` are of cells. All in 32 bits and in the order of the twin, since a
-    /// rounding may decide.
+    /// The place where a cell's surface was seen; `None` if it was outside or hidden. `depths_then_m` are of cells. All
+    /// in 32 bits and in the order of the twin, since a rounding may decide.
     fn of(
         [row, column]: [usize; 2],
         depth_m: f32,
@@ -126,7 +126,7 @@ impl Seen {
         let ahead = z.max(NEAREST_M);
         let (at_v, at_u) = (y / ahead * fy + cy - 0.5, x / ahead * fx + cx - 0.5);
         let [rows, columns] = size.cells().map(|n| n as f32);
-        // Not so for what is not a number.
+        // Written so that NaN is outside.
         let inside = at_u > -0.5 && at_u < columns - 0.5 && at_v > -0.5 && at_v < rows - 0.5 && z > NEAREST_M;
         if !inside {
             return None;
@@ -138,7 +138,7 @@ impl Seen {
         (depths_then_m[seen.cell(nearest, size)] > HIDDEN * z).then_some(seen)
     }
 
-    /// The cell so far from [`low`](Self::low), or the one at the rim.
+    /// The cell at an offset from [`low`](Self::low), or the one at the rim.
     fn cell(&self, off: [f32; 2], size: RingSize) -> usize {
         let [row, column] = [0, 1].map(|i| {
             let last = size.cells()[i] - 1;
@@ -147,7 +147,7 @@ impl Seen {
         row * size.columns + column
     }
 
-    /// What the cell hears.
+    /// Writes the cell's numbers.
     fn write(&self, latents: &[f32], size: RingSize, out: &mut [f32]) {
         let numbers = (out.len() - 3) / BEFORE;
         let around = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];

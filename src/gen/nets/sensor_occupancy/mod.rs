@@ -1,6 +1,6 @@
-//! A network that tells voxels from one LiDAR sweep and the pictures of the cameras, or from either alone. Twin of
-//! `training/models/sensor_occupancy.py`, trained by `training/train_sensor_occupancy.py` on procedural worlds. What the segmenter
-//! of pictures sees comes painted on the voxels, see `sensors::perceived_voxels`.
+//! A network that predicts voxels from one LiDAR sweep and the pictures of the cameras, or from either alone. Twin of
+//! `training/models/sensor_occupancy.py`, trained by `training/train_sensor_occupancy.py` on procedural worlds. The
+//! classes that the segmenter predicts in pictures are painted on the voxels, see `sensors::perceived_voxels`.
 
 #[cfg(test)]
 mod tests;
@@ -23,11 +23,11 @@ use scene::{Class, VoxelGrid, Window};
 
 /// File name of the weights.
 pub const FILE: &str = "sensor_occupancy.safetensors";
-/// Painted on a voxel that no camera sees.
+/// Class painted on a voxel that no camera sees.
 pub const UNSEEN: u8 = SHOWN as u8;
 /// Labels of a voxel, free included.
 const LABELS: usize = Class::FREE as usize + 1;
-/// Numbers that tell a column where rays come from.
+/// Numbers of a column's direction from the vehicle, from which rays come.
 const WAY: usize = 2;
 
 /// Sizes of the network, as its weight file names them.
@@ -36,7 +36,7 @@ const WAY: usize = 2;
 pub struct SensorOccupancyConfig {
     /// Channels at 0.8, 1.6 and 3.2 m.
     pub widths: [usize; 3],
-    /// Kernels of the blocks there on the way down.
+    /// Kernels of the blocks at these levels on the way down.
     pub kernels: [Vec<usize>; 3],
     /// Numbers of a painted class.
     pub paint: usize,
@@ -111,7 +111,7 @@ impl<B: Ops> SensorOccupancy<B> {
         PILLAR + WAY + HEIGHT * self.paint.len() / (SHOWN + 1)
     }
 
-    /// Of a map of columns as `columns` makes them, how likely each voxel is what, as logits `[x][y][16][18]`. Errors if the sides
+    /// Logits `[x][y][16][18]` of each voxel's label for a map of columns as `columns` makes them. Errors if the sides
     /// are not multiples of 8 columns, the numbers of a column do not fit, or one is not finite.
     pub fn forward(&self, columns: Map) -> Result<Map, ModelError> {
         for (what, side) in [("rows", columns.rows), ("columns", columns.columns)] {
@@ -134,8 +134,8 @@ impl<B: Ops> SensorOccupancy<B> {
         Ok(logits)
     }
 
-    /// What the network looks at: of each column its pillar of returns, the way there from the vehicle, and what is painted on its
-    /// voxels. `painted` is `[x][y][16]`, classes as `scene::truth` counts them, or [`UNSEEN`].
+    /// Input of the network: for each column its pillar of returns, its direction from the vehicle, and the classes
+    /// painted on its voxels. `painted` is `[x][y][16]`, classes as `scene::truth` counts them, or [`UNSEEN`].
     fn columns(&self, pillars: &Map, painted: &[u8]) -> Map {
         let (inputs, paint) = (self.inputs(), self.paint.len() / (SHOWN + 1));
         let middle = |i: usize| (i as f32 + 0.5) * Window::VOXEL_M as f32 + Window::MIN_M[0] as f32;
@@ -163,9 +163,9 @@ impl<B: Ops> SensorOccupancy<B> {
         }
     }
 
-    /// The voxels of the window of 80 x 80 m, as a sweep and painted classes tell of them: returns as of [`pillars`], none where the LiDAR is not
-    /// asked; `painted` is `[x][y][16]`, all [`UNSEEN`] where the cameras are not. The same input gives the same on any number of
-    /// threads. Errors if `painted` has another length.
+    /// Predicts the voxels of the window of 80 x 80 m from a sweep and painted classes: returns as of [`pillars`], none
+    /// if the LiDAR is not used; `painted` is `[x][y][16]`, all [`UNSEEN`] if the cameras are not used. The same input
+    /// gives the same on any number of threads. Errors if `painted` has another length.
     pub fn voxels(
         &self,
         returns: impl IntoIterator<Item = [f32; 4]>,
@@ -183,7 +183,7 @@ impl<B: Ops> SensorOccupancy<B> {
     }
 }
 
-/// That of the largest logit; the first one keeps a tie.
+/// Label of the largest logit; on a tie the first one.
 fn likeliest(logits: &[f32; LABELS]) -> u8 {
     let mut best = 0;
     for (i, logit) in logits.iter().enumerate() {

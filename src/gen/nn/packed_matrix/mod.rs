@@ -23,14 +23,14 @@ pub(super) const LANES: usize = 16;
 #[repr(C, align(64))]
 struct Line([f32; LANES]);
 
-/// What a product is added to.
+/// Start value of a product's sums.
 #[derive(Clone, Copy)]
 pub enum Start<'a> {
-    /// Nothing.
+    /// Zero.
     Zero,
     /// One number per column.
     Bias(&'a [f32]),
-    /// What the output holds.
+    /// Values that the output holds.
     Add,
 }
 
@@ -43,7 +43,7 @@ pub struct PackedMatrix {
 }
 
 impl PackedMatrix {
-    /// Of the first `k` rows and `n` columns of `matrix`.
+    /// Packs the first `k` rows and `n` columns of `matrix`.
     pub fn new(matrix: View<'_>, k: usize, n: usize) -> Self {
         let mut lines = vec![Line([0.0; LANES]); k * n.div_ceil(LANES)];
         let data: &mut [f32] = bytemuck::cast_slice_mut(&mut lines);
@@ -59,7 +59,7 @@ impl PackedMatrix {
         Self { data: lines, k, n }
     }
 
-    /// The same matrix in eight bits.
+    /// The matrix in eight bits.
     pub fn to_int8(&self) -> Int8Matrix {
         let rows: Vec<f32> = (0..self.k)
             .flat_map(|row| (0..self.n).map(move |column| self.at(row, column)))

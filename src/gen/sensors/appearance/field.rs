@@ -29,9 +29,9 @@ pub struct Structure {
     pub columns: u32,
     /// Top above the ground, m.
     pub height_m: f32,
-    /// Varies its look.
+    /// Number that varies its look.
     pub id: u32,
-    /// A pole, a sign, a lamp: nothing is wider than two voxels.
+    /// True for a pole, a sign or a lamp: no part of it is wider than two voxels.
     pub thin: bool,
     /// Middle of its highest columns, ego frame, m.
     pub top: Vec2,
@@ -62,7 +62,8 @@ pub struct FieldHit {
 }
 
 impl Field {
-    /// From what stands on the ground (physical heights), and the things that own some of it.
+    /// Builds the field from the voxels that stand on the ground (physical heights) and the things that own some of
+    /// them.
     pub fn new(grid: &VoxelGrid, owners: &Owners, seed: u32) -> Self {
         let shape = FieldShape::of(grid.extent());
         let at = |x: usize, y: usize, z: usize| shape.at(x, y, z);
@@ -110,12 +111,12 @@ impl Field {
         }
     }
 
-    /// How it covers the map.
+    /// Shape by which it covers the map.
     pub fn shape(&self) -> &FieldShape {
         &self.shape
     }
 
-    /// Ego frame to field units: cell = floor, corner i is voxel i - 1.
+    /// Converts a point of the ego frame to field units: cell = floor, corner i is voxel i - 1.
     #[inline(always)]
     fn to_field(&self, p: Vec3) -> Vec3 {
         (p - self.shape.low_m) * 2.5 + 0.5
@@ -126,7 +127,7 @@ impl Field {
         q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < self.end.x && q.y < self.end.y && q.z < self.end.z
     }
 
-    /// For the graphics card.
+    /// Packs the field for the graphics card.
     pub fn pack(&self, out: &mut AppearanceData) {
         let halves = |v: &u64| [*v as u32, (*v >> 32) as u32];
         out.push_bytes(Section::Weight, &self.weight);
@@ -195,7 +196,7 @@ impl Field {
         self.blend(q, c)
     }
 
-    /// The same, but 0 in cells that hold no surface.
+    /// The field without leaves at a point, as [`Self::value`] gives it, but 0 in cells that hold no surface.
     #[inline]
     pub fn dense(&self, p: Vec3) -> f32 {
         let q = self.to_field(p);
@@ -230,8 +231,8 @@ impl Field {
         self.label[self.shape.at(x, y, z)]
     }
 
-    /// The field with the roughness of leaves where plants are; `p` in the ego frame, `anchor` takes it
-    /// to the frame in which the leaves stay.
+    /// The field with the roughness of leaves where plants are; `p` is in the ego frame, `anchor` takes it to the frame
+    /// in which textures are anchored.
     #[inline]
     fn rough(&self, p: Vec3, anchor: &impl Fn(Vec3) -> Vec3) -> f32 {
         let q = self.to_field(p);

@@ -20,10 +20,10 @@ pub struct Ground {
     /// Columns along x and along y, and the same as numbers.
     size: [usize; 2],
     size_f: Vec2,
-    /// In the arrays from a column to the next one along x and along y; 0 where there is none.
+    /// Steps in the arrays from a column to the next one along x and along y; 0 where there is none.
     next: [usize; 2],
     share: Vec<[f32; 4]>,
-    /// Columns with nothing but road around: level.
+    /// True for columns with nothing but road around, which are level.
     level: Vec<bool>,
 }
 
@@ -48,7 +48,8 @@ fn slot(class: u8) -> usize {
 }
 
 impl Ground {
-    /// From the labelled ground; columns without any take the layout's or that of the nearest one.
+    /// Builds the ground from its labels. A column without one takes the layout's kind of ground, or that of the
+    /// nearest column.
     pub fn new(columns: &Columns, layout: &BevLayout) -> Self {
         let extent = layout.extent();
         let (n, [nx, ny]) = (extent.columns(), [extent.nx(), extent.ny()]);
@@ -72,7 +73,7 @@ impl Ground {
                 (x, y + 1),
             ] {
                 if extent.holds(x, y) && kind[extent.index(x, y)].is_none() {
-                    // Far from any label it is terrain, not road.
+                    // A column without any takes the kind of its neighbour.
                     kind[extent.index(x, y)] = kind[i];
                     queue.push_back(extent.index(x, y));
                 }
@@ -108,7 +109,7 @@ impl Ground {
         }
     }
 
-    /// For the graphics card.
+    /// Packs the ground for the graphics card.
     pub fn pack(&self, out: &mut AppearanceData) {
         out.push(
             Section::Share,
@@ -140,8 +141,8 @@ impl Ground {
         })
     }
 
-    /// The ground at a point of the ego frame; beyond the grid its border goes on. `anchor` is the same
-    /// point where textures stay.
+    /// The ground at a point of the ego frame; beyond the grid its border continues. `anchor` is the same point in the
+    /// frame in which textures are anchored.
     #[inline]
     pub fn at(&self, p: Vec2, anchor: Vec2) -> GroundAt {
         let share = self.shares(p);
@@ -184,7 +185,7 @@ impl Ground {
             let p = o + d * t;
             p.z - self.at(p.truncate(), anchor(p).truncate()).height_m
         };
-        // Far away nobody sees a kerb's height.
+        // The height of a kerb cannot be seen from far away.
         let steps = ((t1 - t0) / 0.12).ceil().clamp(2.0, 14.0);
         let mut before = t0;
         for i in 1..steps as usize {

@@ -1,5 +1,5 @@
-//! What surfaces are made of, by class and place: asphalt and paint, slabs and kerbs, grass, facades
-//! with windows, leaves and bark, cars from their lamps to their tyres. Colours are linear.
+//! Materials of surfaces by class and place: asphalt and paint, slabs and kerbs, grass, facades with windows, leaves
+//! and bark, cars from their lamps to their tyres. Colours are linear.
 
 mod built;
 mod ground;

@@ -1,6 +1,6 @@
-//! What a camera would see of a frame by day or night, in any weather: RGB pictures from occupancy,
-//! layout and boxes, without any weights. Everything is computed in the world (hashes of places, never
-//! of pixels), so neighbouring cameras and successive frames agree.
+//! The analytic renderer: RGB pictures that a camera would take of a frame by day or night, in any weather, from
+//! occupancy, layout and boxes, without any weights. Everything is computed in the world (hashes of places, never of
+//! pixels), so neighbouring cameras and successive frames agree.
 
 mod field;
 mod ground;
@@ -23,7 +23,7 @@ use glam::Vec3;
 
 use scene::Conditions;
 
-/// How much work goes into a picture.
+/// Effort for a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Quality {
     /// One sample per pixel: live.
@@ -46,7 +46,7 @@ pub struct CameraImage {
     pub rgba: Vec<u8>,
 }
 
-/// Towards sun or moon under some conditions, a unit vector in the frame of the sensors' poses.
+/// Direction to the sun or the moon under some conditions, a unit vector in the frame of the sensors' poses.
 pub fn light_direction(conditions: &Conditions) -> Vec3 {
     sky::Air::new(conditions).to_sun
 }

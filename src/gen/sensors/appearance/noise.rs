@@ -68,7 +68,7 @@ pub fn value3(p: Vec3, seed: u32) -> f32 {
     mix(low, high, w)
 }
 
-/// The same in the plane.
+/// Smooth noise in the plane, as [`value3`] is in space.
 #[inline]
 pub fn value2(p: Vec2, seed: u32) -> f32 {
     let cell = p.map(floor);

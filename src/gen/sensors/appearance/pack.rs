@@ -8,7 +8,7 @@ use scene::Class;
 use scene::appearance::{AppearanceData, PART_WORDS, Section, THING_WORDS};
 
 impl Appearance {
-    /// Everything that the picture of a camera depends on.
+    /// All data that the picture of a camera depends on.
     pub fn data(&self) -> AppearanceData {
         let air = &self.air;
         let with = |v: Vec3, w: f32| v.extend(w).to_array();
@@ -76,7 +76,7 @@ impl Appearance {
     }
 }
 
-/// Where lists of these lengths begin, and the end of the last.
+/// Starts of lists of these lengths, and the end of the last.
 pub fn starts(lengths: impl Iterator<Item = usize>) -> Vec<u32> {
     let mut out = vec![0];
     let mut end = 0;

@@ -15,9 +15,9 @@ use scene::{Background, Conditions, Extent, Frame, Pose, SceneBox, SensorRig};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
 const STRAY_M: f64 = 0.7;
-/// Lamps at most.
+/// Most lamps.
 const MOST_LAMPS: usize = 96;
-/// Things are listed this far around, m, for their contact shadows.
+/// Distance around a thing within which it is listed, m, for its contact shadow.
 const NEAR_M: f32 = 0.6;
 
 /// A lamp.
@@ -31,7 +31,7 @@ pub struct Lamp {
     pub color: Vec3,
     /// Kind of beam.
     pub beam: Beam,
-    /// No light beyond, m.
+    /// Range beyond which it gives no light, m.
     pub range_m: f32,
 }
 
@@ -46,7 +46,7 @@ pub enum Beam {
     Glow,
 }
 
-/// What a ray met.
+/// Kind of surface that a ray met.
 #[derive(Clone, Copy, Debug)]
 pub enum What {
     /// Ground.
@@ -66,9 +66,9 @@ pub struct Hit {
     pub p: Vec3,
     /// Normal, ego frame; for the ground and voxels filled in by [`Appearance::normal`].
     pub normal: Vec3,
-    /// What it is.
+    /// Kind of surface.
     pub what: What,
-    /// When it is seen, s after the moment of the picture: a rolling shutter reads row by row.
+    /// Time at which it is seen, s after the moment of the picture: a rolling shutter reads row by row.
     pub after_s: f32,
 }
 
@@ -77,30 +77,30 @@ pub struct Appearance {
     pub(super) field: Field,
     pub(super) ground: Ground,
     pub(super) things: Vec<Thing>,
-    /// Things near each block. A thing is listed in a rectangle of blocks, so a ray goes through those that list it in a row:
-    /// what the block before listed too has been met or missed already.
+    /// Things near each block. A thing is listed in a rectangle of blocks, so the blocks on a ray that list it follow
+    /// one another: a thing that the block before lists too has been tested already.
     lists: Vec<Vec<u16>>,
     pub(super) paint: Paint,
     pub(super) lamps: Vec<Lamp>,
     pub(super) air: Air,
     pub(super) seed: u32,
-    /// Ego frame to where textures stay.
+    /// Rotation from the ego frame to the frame in which textures are anchored.
     turn: Quat,
     shift: Vec3,
-    /// Where the vehicle stands: rain and snow fall around it, m.
+    /// Position of the vehicle, m: rain and snow fall around it.
     pub(super) vehicle: Vec2,
-    /// Nothing is higher, m.
+    /// Height above which nothing stands, m.
     highest: f32,
 }
 
 impl Appearance {
-    /// A frame of which no thing beside the road is known; see [`Self::with_things`].
+    /// Prepares a frame whose scenery is not known; see [`Self::with_things`].
     pub fn new(frame: &Frame, rig: &SensorRig, conditions: &Conditions) -> Self {
         Self::with_things(frame, &Background::default(), rig, conditions)
     }
 
-    /// Prepares a frame: some 50 ms for a window. What a thing of the background explains looks as that thing does, whatever is
-    /// edited elsewhere. Of a map that reaches farther than one can see from the ego vehicle, the rest is left out.
+    /// Prepares a frame; takes some 50 ms for a window. Voxels that belong to a thing of the background look as that
+    /// thing does, whatever is edited elsewhere. Parts of a map that cannot be seen from the ego vehicle are left out.
     pub fn with_things(
         frame: &Frame,
         background: &Background,
@@ -125,11 +125,11 @@ impl Appearance {
             .collect();
         let ([blocks_x, blocks_y], from) = (field.shape().blocks, field.shape().blocks_from_m);
         let mut lists = vec![Vec::new(); blocks_x * blocks_y];
-        // How far from the moment of the picture any of its rows is read.
+        // Largest time between the moment of the picture and the reading of a row, s.
         let rolls = rig.cameras.iter().filter_map(|c| c.shutter);
         let rolls_s = rolls.map(|s| s.readout_s / 2.0).fold(0.0, f64::max) as f32;
         for (i, thing) in things.iter_mut().enumerate() {
-            // Nobody stands in the pavement.
+            // A thing does not stand in the pavement.
             let p = thing.foot.truncate();
             let height = ground.at(p, p).height_m;
             if thing.foot.z > -0.3 {
@@ -163,13 +163,13 @@ impl Appearance {
         }
     }
 
-    /// A point where textures stay.
+    /// A point in the frame in which textures are anchored.
     #[inline]
     pub(super) fn anchor(&self, p: Vec3) -> Vec3 {
         self.turn * p + self.shift
     }
 
-    /// Turn and way of [`Self::anchor`].
+    /// Rotation and shift of [`Self::anchor`].
     pub(super) fn anchoring(&self) -> (Quat, Vec3) {
         (self.turn, self.shift)
     }
@@ -179,18 +179,18 @@ impl Appearance {
         self.lists.iter().map(Vec::as_slice)
     }
 
-    /// Nothing is higher, m.
+    /// Height above which nothing stands, m.
     pub(super) fn highest_m(&self) -> f32 {
         self.highest
     }
 
-    /// A direction there.
+    /// A direction in the frame in which textures are anchored.
     #[inline]
     pub(super) fn anchor_dir(&self, d: Vec3) -> Vec3 {
         self.turn * d
     }
 
-    /// Towards the sun in the ego frame.
+    /// Direction to the sun in the ego frame.
     pub(super) fn to_sun(&self) -> Vec3 {
         self.turn.conjugate() * self.air.to_sun
     }
@@ -314,7 +314,8 @@ impl Appearance {
         }
     }
 
-    /// True if something stands between a point and the light `d`, looked for in voxels every `step` m.
+    /// True if a thing or a voxel lies between a point and the light in direction `d`; voxels are sampled every `step`
+    /// m.
     pub(super) fn occluded(&self, (o, d): (Vec3, Vec3), after_s: f32, limit: f32, step: f32) -> bool {
         let anchor = |p: Vec3| self.anchor(p);
         let (mut dark, mut before) = (false, &[] as &[u16]);
@@ -334,8 +335,8 @@ impl Appearance {
         dark
     }
 
-    /// The outward normal of the first surface along a ray of the ego frame, a unit vector of that frame. `None` for the
-    /// sky, for a zero direction and for what is not finite.
+    /// The outward normal of the first surface along a ray of the ego frame, a unit vector of that frame. `None` for
+    /// the sky, for a zero direction and for numbers that are not finite.
     pub fn surface_normal(&self, ray: &Ray) -> Option<Vec3> {
         let d = ray.direction.as_vec3().try_normalize()?;
         let hit = self.trace((ray.origin.as_vec3(), d), ray.after_s as f32, FAR_M, false)?;
@@ -418,7 +419,7 @@ fn lamps(air: &Air, field: &Field, things: &[Thing], rig: &SensorRig) -> Vec<Lam
     beams(foot, &|p| turn * p, size, 75.0 * air.lamps);
     out.retain(|l| l.at.is_finite());
     if out.len() > MOST_LAMPS {
-        // Those nearest to the vehicle, so that one that is put up far away takes none of them out.
+        // The lamps nearest to the vehicle are kept, so that a lamp put up far away displaces none of them.
         out.sort_by(|a, b| {
             a.at.distance_squared(foot)
                 .total_cmp(&b.at.distance_squared(foot))

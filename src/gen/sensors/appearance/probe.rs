@@ -1,4 +1,4 @@
-//! What a single ray shows, for those who make something else than a picture of it.
+//! Single rays of the renderer, for uses other than its pictures.
 
 use glam::Vec3;
 
@@ -8,14 +8,14 @@ use super::truth::usable;
 use crate::rays::Ray;
 use scene::truth::{self, TruthClass};
 
-/// What a ray shows.
+/// Result of a single ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Probe {
-    /// As a picture shows it, without lens and sensor: sRGB-coded, 0 to 1.
+    /// Colour as a picture shows it, without lens and sensor: sRGB-coded, 0 to 1.
     pub color: Vec3,
     /// Origin of the ray, m.
     pub from: Vec3,
-    /// Its way, a unit vector.
+    /// Direction, a unit vector.
     pub way: Vec3,
     /// Distance, m; infinite for the sky.
     pub t: f32,
@@ -25,19 +25,19 @@ pub(crate) struct Probe {
     pub class: TruthClass,
     /// The box that was hit; 0 for none.
     pub instance: u32,
-    /// It stands around the map, not on it.
+    /// True for the skyline, which stands around the map and not on it.
     pub is_skyline: bool,
 }
 
 impl Appearance {
-    /// What a ray shows; `pixel_rad` is the angle between neighbouring pixels. `None` where the lens sees nothing.
+    /// Traces a ray; `pixel_rad` is the angle between neighbouring pixels. `None` where the lens sees nothing.
     pub(crate) fn probe(&self, ray: &Ray, pixel_rad: f32) -> Option<Probe> {
         let (from, way) = usable(ray)?;
         let (sample, seen) = self.light_along((from, way), ray.after_s as f32, pixel_rad);
         Some(self.told((from, way), sample.color, seen))
     }
 
-    /// What a ray would show if there were nothing on the map: skyline or sky.
+    /// The skyline or sky that a ray would show on an empty map.
     pub(crate) fn probe_behind(&self, from: Vec3, way: Vec3) -> Probe {
         let (color, seen) = self.light_behind((from, way));
         self.told((from, way), color, seen)

@@ -22,8 +22,8 @@ impl Appearance {
         self.finish(camera, [width as usize, height as usize], light)
     }
 
-    /// The same picture without what belongs to the lens and to the moment: no rain or flakes in the air, no glare, darkened
-    /// corners or noise. sRGB-coded, 0 to 1, row-major, top row first.
+    /// Renders the picture of [`Self::render`] without effects of the lens and of the moment: no rain or flakes in the
+    /// air, no glare, no darkened corners, no noise. sRGB-coded, 0 to 1, row-major, top row first.
     pub fn render_plain(
         &self,
         camera: &Camera,
@@ -35,8 +35,9 @@ impl Appearance {
         shown.collect()
     }
 
-    /// The same picture, and the truth about it: each pixel is told by a hit that made its colour. Where four samples make a
-    /// pixel, by the nearest of those that show the same as most. `boxes` are those of the frame; flow leads to `next`.
+    /// Renders the picture of [`Self::render`] and its ground truth: each pixel is labelled by a hit that made its
+    /// colour. If four samples make a pixel, this is the nearest of those that show what most of them show. `boxes` are
+    /// those of the frame; flow leads to `next`.
     pub fn render_truth(
         &self,
         camera: &Camera,
@@ -292,7 +293,8 @@ fn each_row<T: Send>(
     }
 }
 
-/// Of the samples of a pixel the nearest of those that show the same thing as most do; of equally many, the nearer.
+/// Index of the sample that labels a pixel: the nearest of those that show what most samples show. On a tie the nearest
+/// sample wins.
 fn foremost(samples: &[Option<(Sample, Seen, Ray)>; 4]) -> Option<usize> {
     let thing = |i: usize| samples[i].as_ref().map(|(sample, ..)| sample.key >> 8);
     let like = |i: usize| (0..4).filter(|j| thing(*j) == thing(i)).count();

@@ -15,16 +15,16 @@ use scene::appearance::{
 pub struct Sample {
     /// Linear light.
     pub color: Vec3,
-    /// Distance, m; infinite for the sky.
+    /// Distance of the surface on the map, m; infinite if there is none.
     pub t: f32,
-    /// Something that differs between surfaces.
+    /// Key that differs between surfaces.
     pub key: u32,
 }
 
-/// What a sample shows: what made its light.
+/// Surface that a sample shows: the one that made its light.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Seen {
-    /// Nothing at all.
+    /// Sky: the ray met nothing.
     #[default]
     Sky,
     /// A class of the skyline that stands around the map, and its distance, m.
@@ -33,7 +33,7 @@ pub enum Seen {
     Surface(Hit, f32),
 }
 
-/// No skyline stands nearer, m.
+/// Least distance of a skyline, m.
 const SKYLINE_FROM_M: f32 = 55.0;
 
 /// Width of a pixel on a surface, m.
@@ -100,7 +100,7 @@ impl Appearance {
         }
     }
 
-    /// What [`Self::light_along`] shows along a ray, without its light.
+    /// Surface that [`Self::light_along`] shows along a ray, without computing its light.
     pub(super) fn seen_along(&self, (o, d): (Vec3, Vec3), after_s: f32, pixel: f32) -> Seen {
         let hit = self.trace((o, d), after_s, FAR_M, false);
         let limit = hit.map_or(f32::INFINITY, |hit| hit.t);
@@ -114,7 +114,7 @@ impl Appearance {
         }
     }
 
-    /// What stands outside the grid in front of `limit`, hazed.
+    /// The skyline outside the grid along a ray, nearer than `limit`, hazed.
     fn beyond(&self, o: Vec3, d: Vec3, limit: f32) -> Option<Beyond> {
         let flat = d.truncate().length_squared();
         let shape = self.field.shape();
@@ -271,7 +271,8 @@ impl Appearance {
         open
     }
 
-    /// `lift` is a point a little above the surface, from which shadows are looked for if there are to be any.
+    /// Light of the lamps on a surface. `lift` is a point a little above the surface, from which shadow rays start if
+    /// `shadows` is true.
     fn lamp_light(&self, hit: &Hit, lift: Vec3, view: Vec3, s: &Surface, shadows: bool) -> Vec3 {
         let (p, n) = (hit.p, s.normal);
         let mut out = Vec3::ZERO;
@@ -289,7 +290,8 @@ impl Appearance {
                 Beam::Head => {
                     // Wide on the sides, cut off above the horizon.
                     let up = -l.z - lamp.axis.z;
-                    // Brightest just below the horizon, so that the road is lit evenly; what stands near is not.
+                    // Brightest just below the horizon, so that the road is lit evenly; this does not hold for things
+                    // close by.
                     let aim = (0.055 / (0.022 + (-up).max(0.0)))
                         .powf(1.25)
                         .min(2.4)
@@ -317,7 +319,7 @@ impl Appearance {
             {
                 let way = lamp.at - lift;
                 let far = way.length();
-                // A street lamp hangs beside its post, not on it: nothing around the post's axis counts.
+                // A street lamp hangs beside its post, not on it: occluders around the post's axis do not count.
                 let clear = match lamp.beam {
                     Beam::Street => LAMP_CLEAR_M * far / way.truncate().length().max(1e-3),
                     _ => LAMP_CLEAR_M,

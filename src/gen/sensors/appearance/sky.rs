@@ -1,5 +1,4 @@
-//! Sky, sun, air and what stands beyond the grid, by time and weather. All in the frame that textures
-//! are anchored in.
+//! Sky, sun, air and the skyline beyond the grid, by time and weather. All in the frame in which textures are anchored.
 
 use glam::{IVec3, Vec2, Vec3};
 
@@ -9,7 +8,7 @@ use scene::{Class, Conditions, TimeOfDay, Weather};
 /// Light and air.
 #[derive(Clone, Debug)]
 pub struct Air {
-    /// Towards the sun or the moon, anchored frame.
+    /// Direction to the sun or the moon, anchored frame.
     pub to_sun: Vec3,
     /// Its light on a surface that faces it.
     pub sun: Vec3,
@@ -47,7 +46,7 @@ fn v(x: f32, y: f32, z: f32) -> Vec3 {
 }
 
 impl Air {
-    /// Of these conditions.
+    /// The air of these conditions.
     pub fn new(c: &Conditions) -> Self {
         let seed = (c.seed ^ c.seed >> 32) as u32;
         let (elevation_deg, sun, zenith, horizon, ambient, exposure, lamps) = match c.time {
@@ -221,8 +220,8 @@ impl Air {
         haze.lerp(color, left)
     }
 
-    /// What stands on the circle of radius `radius_m` around the grid in the direction of `p` (anchored
-    /// frame, relative to the grid's middle, z up from the ground): its colour and class, or `None` above it.
+    /// The skyline on the circle of radius `radius_m` around the grid in the direction of `p` (anchored frame, relative
+    /// to the grid's middle, z up from the ground): its colour and class, or `None` above it.
     pub fn skyline(&self, p: Vec3, radius_m: f32, open: f32) -> Option<(Vec3, Class)> {
         let layer = self.seed.wrapping_add(radius_m as u32);
         let around = p.truncate() / p.truncate().length().max(1e-3);

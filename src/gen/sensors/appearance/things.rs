@@ -18,7 +18,7 @@ use scene::{BoxId, Class, Extent, Paint, SceneBox};
 use shapes::shape;
 use voxel_shape::voxel_shape;
 
-/// What a part is made of.
+/// Material of a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Material {
     /// A car's lower body; lamps, grille and arches are found by position.
@@ -46,7 +46,7 @@ pub enum Material {
 /// An object ready to be traced.
 #[derive(Clone, Debug)]
 pub struct Thing {
-    /// Its box.
+    /// Class of its box.
     pub class: Class,
     /// Middle of the bottom in the ego frame, m.
     pub foot: Vec3,
@@ -58,13 +58,13 @@ pub struct Thing {
     pub paint: Vec3,
     /// Hash that varies details.
     pub id: u32,
-    /// Whose it is.
+    /// Id of its box.
     pub box_id: BoxId,
     /// Velocity over ground in the ego frame's axes, m/s.
     pub velocity: Vec3,
-    /// Moving or in traffic: lamps are on at night.
+    /// True if it moves or stands in traffic: its lamps are on at night.
     pub lamps: bool,
-    /// Square of the radius of a circle on the ground that holds it, m^2.
+    /// Square of the radius of a circle on the ground that holds the thing, m^2.
     circle_m2: f32,
     /// Parts with materials.
     pub parts: Vec<(Part, Material)>,
@@ -75,11 +75,11 @@ pub struct Thing {
 pub struct ThingHit {
     /// Distance, m.
     pub t: f32,
-    /// In box coordinates.
+    /// Point in box coordinates.
     pub local: Vec3,
-    /// In box coordinates.
+    /// Normal in box coordinates.
     pub normal: Vec3,
-    /// Of the part.
+    /// Material of the part.
     pub material: Material,
 }
 
@@ -110,7 +110,7 @@ fn car_paint(h: u32) -> Vec3 {
     rgb(r, g, b)
 }
 
-/// What is known by its colour wears it, unless it was given another.
+/// Paint by which a thing of this name is known; used unless another paint was chosen. `None` for other names.
 fn usual_paint(name: &str) -> Option<Paint> {
     match name {
         "taxi" | "cab" | "school bus" => Some(Paint::Yellow),
@@ -187,8 +187,8 @@ impl Thing {
         Vec3::new(r, r, self.size.z)
     }
 
-    /// Where a ray begins for the thing as it stands at the moment of the frame, if the ray is seen `after_s` later: as much
-    /// farther back as the thing moves meanwhile. The same takes any point of that time to the frame's moment.
+    /// Origin of a ray for the thing as it stands at the moment of the frame, if the ray is seen `after_s` later: moved
+    /// back by the way that the thing covers meanwhile. The same takes any point of that time to the frame's moment.
     #[inline]
     pub fn seen_from(&self, p: Vec3, after_s: f32) -> Vec3 {
         match after_s == 0.0 {

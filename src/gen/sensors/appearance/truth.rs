@@ -15,18 +15,18 @@ use scene::{BoxId, Camera, Class, SceneBox};
 /// The next moment of a clip, to which optical flow leads.
 #[derive(Clone, Debug)]
 pub struct NextMoment<'a> {
-    /// The camera then, its pose in the same frame as now.
+    /// The camera at that moment, its pose in the same frame as now.
     pub camera: Camera,
-    /// The boxes then.
+    /// The boxes at that moment.
     pub boxes: &'a BTreeMap<BoxId, SceneBox>,
-    /// How much later, s.
+    /// Time until that moment, s.
     pub after_s: f64,
 }
 
-/// Pixels that are looked at, at most, to tell how much of a box is hidden.
+/// Most pixels that are tested to find how much of a box is hidden.
 const LOOKS: f64 = 40_000.0;
 
-/// How pixels of one camera are told.
+/// Labels the pixels of one camera.
 pub(super) struct Teller<'a> {
     appearance: &'a Appearance,
     rays: CameraRays,
@@ -34,10 +34,10 @@ pub(super) struct Teller<'a> {
     next: Option<Next>,
 }
 
-/// The next moment made ready.
+/// The next moment, ready for flow.
 struct Next {
     rays: CameraRays,
-    /// For each thing where it is then: foot and turn about the vertical; none if it is gone.
+    /// Pose of each thing at that moment: foot and rotation about the vertical; `None` if it is gone.
     things: Vec<Option<(Vec3, glam::Vec2)>>,
 }
 
@@ -60,7 +60,7 @@ impl<'a> Teller<'a> {
         }
     }
 
-    /// What a pixel with its middle at (u, v) shows that `seen` made.
+    /// Ground truth of a pixel with its middle at (u, v) that shows `seen`.
     pub fn pixel(&self, seen: &Seen, ray: &Ray, (u, v): (f64, f64)) -> TruthPixel {
         let unit = ray.direction.normalize_or_zero();
         let depth = |t: f32| (f64::from(t) / ray.direction.length()) as f32;
@@ -72,7 +72,7 @@ impl<'a> Teller<'a> {
         match seen {
             Seen::Sky => TruthPixel {
                 class: truth::SKY,
-                // It goes with the camera.
+                // The sky moves with the camera.
                 flow_px: flow(
                     self.next
                         .as_ref()
@@ -108,17 +108,17 @@ impl<'a> Teller<'a> {
     }
 }
 
-/// Where a thing is at another moment.
+/// Foot and heading of a thing at another moment; `None` if it is gone.
 fn moved(thing: &Thing, boxes: &BTreeMap<BoxId, SceneBox>) -> Option<(Vec3, glam::Vec2)> {
     let b = boxes.get(&thing.box_id)?;
-    // It stands on the same ground as now: what lifted its foot lifts it then.
+    // It stands on the same ground as now: its foot is as high as now, or at the bottom of its box if that is higher.
     let foot = b.center_m.truncate().as_vec2().extend(thing.foot.z);
     let bottom = (b.center_m.z - b.size_m.z / 2.0) as f32;
     Some((foot.truncate().extend(foot.z.max(bottom)), b.heading().as_vec2()))
 }
 
 impl Next {
-    /// Where what was hit is then.
+    /// Place of a hit at the next moment; NaN if its thing is gone.
     fn place(&self, appearance: &Appearance, hit: &Hit) -> DVec3 {
         let still = hit.p.as_dvec3();
         let What::Thing(i, ..) = hit.what else {
@@ -164,7 +164,7 @@ impl Appearance {
         let one = |thing: &Thing| -> Option<SeenBox> {
             let of = *boxes.get(&thing.box_id)?;
             let seen = visible.get(&thing.box_id.0).copied();
-            // What is finer than the pixels' middles may still be what a pixel shows.
+            // A thing finer than the spacing of the pixels may still be shown by one.
             let whole = Whole::of(thing, rays, (width, height, pixels)).or(seen.map(Whole::as_seen))?;
             let (visible_px, visible_bounds_px) = (seen.map_or(0, |s| s.0), seen.map(|s| s.1));
             let union =
@@ -263,7 +263,7 @@ fn visible(width: usize, pixels: &[TruthPixel]) -> BTreeMap<u32, (u32, [f64; 4])
     out
 }
 
-/// What a picture would show of a thing if nothing stood in front.
+/// Projection of a thing as if nothing stood in front of it.
 struct Whole {
     pixels: u32,
     visibility: f64,
@@ -271,7 +271,7 @@ struct Whole {
 }
 
 impl Whole {
-    /// As many pixels as show it, with these bounds.
+    /// Takes the visible pixels of a thing, with their bounds, as the whole of it.
     fn as_seen((pixels, bounds_px): (u32, [f64; 4])) -> Self {
         Self {
             pixels,
@@ -280,7 +280,8 @@ impl Whole {
         }
     }
 
-    /// None if it is outside the picture, or between the middles of all pixels. Of large things every second, third, … pixel is looked at.
+    /// `None` if the thing is outside the picture, or lies between the middles of all pixels. For large things only
+    /// every second, third, … pixel is tested.
     fn of(
         thing: &Thing,
         rays: &CameraRays,
@@ -330,7 +331,7 @@ impl Whole {
     }
 }
 
-/// Share of the bounds of a box's corners that lies in the picture; 1 where it cannot be told.
+/// Share of the bounds of a box's corners that lies in the picture; 1 where it cannot be determined.
 fn in_picture(corners: &[Option<[f64; 2]>; 8], width: f64, height: f64) -> f64 {
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for corner in corners {

@@ -1,4 +1,5 @@
-//! Blends coloured splats front to back into one tile of a picture, and the same backwards: what each splat had of it.
+//! Blends coloured splats front to back into one tile of a picture, and goes backwards through the same sum for the
+//! gradient with each splat.
 
 use crate::tile::{Limits, Splat, SplatPixels, TILE, exp};
 
@@ -34,11 +35,12 @@ impl Sums {
     }
 }
 
-/// How a sum over a picture changes with a splat: with its three colours; then sums over its pixels of p u u, p u dy, p dy dy,
-/// p u, p dy and p, where p is how the sum changes with the exponent there, u the sheared x and dy the y from its middle.
+/// Gradient of a sum over a picture with a splat: with its three colours, then sums over its pixels of p u u, p u dy, p
+/// dy dy, p u, p dy and p. Here p is the derivative with the exponent at a pixel, u the sheared x and dy the y from the
+/// splat's middle.
 pub(super) type Slopes = [f32; 9];
 
-/// Rows are looked at every few splats: those in which every pixel has had its light are skipped.
+/// Rows are checked every few splats: rows in which every pixel has had its light are skipped.
 const LOOK: u32 = 8;
 
 impl Light {
@@ -158,9 +160,9 @@ impl Light {
         pulp::Arch::new().dispatch(Gather(self, splats, (list, of), place, limits, tile, sums));
     }
 
-    /// For each splat of the list adds to `out`, at its place among the splats, how a sum over the picture changes with it.
-    /// `lists` are splats, their colours and the list; `slope` is how that sum changes with the colours of pixels, `picture` the
-    /// colours that [`Self::blend`] gave.
+    /// For each splat of the list adds to `out`, at its place among the splats, the gradient of a sum over the picture
+    /// with it. `lists` are splats, their colours and the list; `slope` is the gradient of that sum with the colours of
+    /// pixels, `picture` the colours that [`Self::blend`] gave.
     pub fn backward(
         &mut self,
         lists: (&[SplatPixels], &[[f32; 3]], &[u32]),
@@ -284,11 +286,11 @@ struct At<'a> {
     /// Sheared x of the first pixel from the splat's middle, and y of all, px.
     u: f32,
     dy: f32,
-    /// What y adds to the exponent.
+    /// Contribution of y to the exponent.
     from_y: f32,
 }
 
-/// Weights of a splat over a row of pixels, whose light it takes.
+/// Weights of a splat over a row of pixels; takes the splat's light from `transmittance`.
 #[inline(always)]
 fn weigh(at: &At<'_>, limits: Limits, transmittance: &mut Row) -> Row {
     let mut weights = [0.0; TILE];
@@ -332,7 +334,7 @@ fn slope_row(
             color[channel][i] = front;
             let g = slope[channel][i];
             lanes[channel][i] += w * g;
-            // What is seen behind this splat would be seen the less, the more there is of it.
+            // The more opaque the splat, the less is seen of the light behind it.
             p += g * (t * own[channel] - (picture[channel][i] - front) * behind);
         }
         let p = if seen & (raw < limits.alpha_max) {

@@ -7,11 +7,11 @@ use super::tree::Leaf;
 
 /// Standard deviation of a Gaussian over that of its samples: neighbours overlap and leave no gaps.
 const WIDER: f64 = 1.7;
-/// As many samples count as the cell's own shape does.
+/// Weight of the cell's own shape, in samples.
 const PRIOR: f64 = 3.0;
-/// Its pixels may cover so much more than they do: others that look past them do not see through.
+/// Largest area of a Gaussian over that of its pixels: more than 1, so that other views do not see through.
 const OVERLAP: f64 = 1.5;
-/// No Gaussian is thinner, m.
+/// Least standard deviation of a Gaussian, m.
 const THIN_M: f64 = 0.003;
 
 /// Place, turn and spread of a Gaussian.

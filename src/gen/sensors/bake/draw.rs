@@ -1,5 +1,5 @@
-//! Draws coloured anisotropic Gaussians: EWA projection, sorted by distance, blended front to back in tiles as in Kerbl et al.
-//! 2023 (arXiv 2308.04079). Exact, on the processor: what viewers of such files show.
+//! Draws coloured anisotropic Gaussians: EWA projection, sorted by distance, blended front to back in tiles as in Kerbl
+//! et al. 2023 (arXiv 2308.04079). Exact, on the processor: the same picture as in viewers of such files.
 
 use glam::{DVec3, Quat, Vec3};
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use crate::tile::{Limits, SplatPixels, TILE};
 use scene::splats::SplatOptions;
 use scene::{Camera, SceneGaussian};
 
-/// Constants of Kerbl et al.; nothing is too far to be drawn.
+/// Constants of Kerbl et al.; there is no far limit.
 pub const OPTIONS: SplatOptions = SplatOptions {
     near_m: 0.2,
     far_m: 1e7,
@@ -53,10 +53,10 @@ impl Ellipsoid {
     }
 }
 
-/// Gaussians on a picture: what can be drawn again and again with other colours.
+/// Gaussians projected onto a picture, which can be drawn again and again with other colours.
 pub(super) struct Projected {
     pub splats: Vec<SplatPixels>,
-    /// Which Gaussian each splat is.
+    /// Index of the Gaussian of each splat.
     pub of: Vec<u32>,
     bins: Bins,
     size: [usize; 2],
@@ -154,8 +154,8 @@ impl Projected {
         });
     }
 
-    /// How a sum over the picture changes with each splat; `slope` says how it changes with each pixel, `picture` is that with
-    /// these colours of the Gaussians.
+    /// Gradient of a sum over the picture with each splat; `slope` is its gradient with each pixel, `picture` the
+    /// picture with these colours of the Gaussians.
     pub fn backward(&self, colors: &[[f32; 3]], picture: &[[f32; 3]], slope: &[[f32; 3]]) -> Vec<Slopes> {
         let w = self.size[0];
         let colors: Vec<[f32; 3]> = self.of.iter().map(|i| colors[*i as usize]).collect();
@@ -184,11 +184,11 @@ impl Projected {
     }
 }
 
-/// A cone around the picture, to leave out early what cannot be in it.
+/// A cone around the picture, to leave out early the Gaussians outside it.
 struct Sight {
     eye: Vec3,
     ahead: Vec3,
-    /// Sine and cosine of the angle from the optical axis to a corner; none for wide lenses.
+    /// Sine and cosine of the angle from the optical axis to a corner; `None` for wide lenses.
     corner: Option<(f32, f32)>,
 }
 
@@ -230,7 +230,7 @@ pub struct Ready {
 }
 
 impl Ready {
-    /// Some 60 bytes a Gaussian.
+    /// Prepares the Gaussians; takes some 60 bytes for each.
     pub fn new(gaussians: &[SceneGaussian]) -> Self {
         Self {
             ellipsoids: gaussians.par_iter().map(Ellipsoid::of).collect(),

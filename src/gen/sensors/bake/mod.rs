@@ -1,5 +1,5 @@
-//! Lifts a scene to 3-D Gaussians (after X-Scene, arXiv 2506.13558): the renderer's own rays are cast from many places where
-//! the vehicle could stand, what they meet becomes flat coloured discs, which are then fitted to the pictures.
+//! Lifts a scene to 3-D Gaussians (after X-Scene, arXiv 2506.13558). The renderer's own rays are cast from many places
+//! where the vehicle could stand. Their hits become flat coloured discs, which are then fitted to the pictures.
 
 mod blend;
 mod discs;
@@ -25,20 +25,20 @@ use samples::{Sample, Sampled};
 use scene::{Background, Baking, Conditions, Frame, GaussianScene, Pose, SceneGaussian, SensorRig};
 use tree::Leaf;
 
-/// How much work goes into it.
+/// Effort of a bake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BakeOptions {
     /// Most Gaussians.
     pub most: usize,
     /// Most places from which the scene is looked at.
     pub stands: usize,
-    /// How far from the vehicle's path they lie, m.
+    /// Largest distance of these places from the vehicle's path, m.
     pub reach_m: f64,
     /// Size of the pictures that are taken, px.
     pub size_px: [u32; 2],
-    /// Steps in which places, shapes, opacities and colours are fitted to them, a few pictures each.
+    /// Steps in which places, shapes, opacities and colours are fitted to the pictures, a few pictures each.
     pub steps: usize,
-    /// Steps in which colours are fitted to all of them at the end.
+    /// Steps in which colours are fitted to all pictures at the end.
     pub rounds: usize,
 }
 
@@ -59,37 +59,39 @@ impl Default for BakeOptions {
 const MOST_RAYS: u64 = 10_000_000;
 /// Alpha of a Gaussian at its centre.
 const OPACITY: f32 = 0.99;
-/// The sky has one of so many Gaussians.
+/// One of this many Gaussians belongs to the sky.
 const SKY_SHARE: usize = 25;
-/// Weight of a Gaussian's first colour against the pictures: so many pixels, and more for each sample that it was made of.
+/// Weight of a Gaussian's initial colour against the pictures, in pixels, and its increase per sample that the Gaussian
+/// was made of.
 const KEEP: f32 = 0.4;
 const KEEP_PER_SAMPLE: f32 = 0.05;
-/// Gaussians of the sky count as if they were made of so many.
+/// Number of samples that a Gaussian of the sky counts for.
 const SKY_SAMPLES: f32 = 100.0;
 
-/// What is baked, all in one frame.
+/// Scene to bake, all in one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct BakeInput<'a> {
     /// Occupancy, layout and boxes.
     pub frame: &'a Frame,
-    /// Sensors where the vehicle is.
+    /// Sensors at the place of the vehicle.
     pub rig: &'a SensorRig,
-    /// What stands beside the roads.
+    /// Scenery beside the roads.
     pub background: &'a Background,
     /// Light and air. Rain and flakes in the air are left out.
     pub conditions: Conditions,
-    /// Where the vehicle drives; if empty, where it stands.
+    /// Path of the vehicle; if empty, only the place where it stands counts.
     pub path: &'a [Pose],
 }
 
-/// Bakes a scene. The same input gives the same Gaussians on any number of threads. `go_on` is told how far it is, 0 to 1;
-/// `None` once it says no.
+/// Bakes a scene. The same input gives the same Gaussians on any number of threads. `go_on` gets the progress, 0 to 1;
+/// returns `None` once `go_on` returns false.
 pub fn bake(
     input: &BakeInput<'_>,
     options: &BakeOptions,
     go_on: &(dyn Fn(f32) -> bool + Sync),
 ) -> Option<GaussianScene> {
-    // A closure that says whether to stop, called so often while the work goes from one share to the other.
+    // Makes a closure that says whether to stop. It is called `calls` times while the progress goes from `from` to
+    // `to`.
     let counted = |from: f32, to: f32, calls: usize| {
         let done = AtomicUsize::new(0);
         move || {
@@ -148,7 +150,7 @@ pub fn bake(
     })
 }
 
-/// Gaussians of all that was met, and the weight of each one's colour. Takes the samples away.
+/// Gaussians of all samples, and the weight of each one's colour. Consumes the samples.
 fn surfaces(sampled: &mut Sampled, eyes: &[Vec3], most: usize) -> (Vec<SceneGaussian>, Vec<f32>) {
     let samples = std::mem::take(&mut sampled.samples);
     let (samples, leaves) = tree::leaves(samples, &sampled.groups, eyes, most);

@@ -1,14 +1,14 @@
-//! From a whole scene to its Gaussians: which places a clip is looked at from.
+//! Baking of a whole scene: the places from which a clip is looked at.
 
 use super::{BakeInput, BakeOptions, bake, stands};
 use scene::{GaussianScene, Pose, Scene};
 
-/// Poses of the vehicle's path that are looked from, at most.
+/// Most poses of the vehicle's path from which a clip is looked at.
 const PATH_POSES: usize = 8;
 
-/// Lifts the moment that a scene shows, whose sensors are in the world ([`Scene::with_rig_in_world`]), to Gaussians in the ego
-/// frame of that moment. Of a clip the places from which it is looked at lie around the whole way of the ego vehicle. `go_on` is
-/// told how far it is, 0 to 1; `None` once it says no.
+/// Lifts the moment that a scene shows, whose sensors are in the world ([`Scene::with_rig_in_world`]), to Gaussians in
+/// the ego frame of that moment. The places from which a clip is looked at lie around the whole path of the ego
+/// vehicle. `go_on` gets the progress, 0 to 1; returns `None` once `go_on` returns false.
 pub fn bake_scene(
     scene: &Scene,
     options: &BakeOptions,
@@ -37,20 +37,20 @@ pub fn places(scene: &Scene, options: &BakeOptions) -> Vec<Pose> {
     )
 }
 
-/// Poses of the ego vehicle midway in time between those of its way from which [`bake_scene`] looks at a clip, in the world;
-/// none of a scene that stands still.
+/// Poses of the ego vehicle, in the world, midway in time between those from which [`bake_scene`] looks at a clip; none
+/// for a scene that stands still.
 pub fn between(scene: &Scene) -> Vec<Pose> {
     let steps = (0..PATH_POSES - 1).map(|i| i as f64 + 0.5);
     steps.filter_map(|step| on_way(scene, step)).collect()
 }
 
-/// Where the ego vehicle is now, and over the clip.
+/// Poses of the ego vehicle now and over the clip.
 fn path(scene: &Scene) -> Vec<Pose> {
     let way = (0..PATH_POSES).filter_map(|i| on_way(scene, i as f64));
     [scene.frame().world_from_ego].into_iter().chain(way).collect()
 }
 
-/// The ego vehicle after so many steps of its way; `None` if it stands still.
+/// Pose of the ego vehicle after `step` steps of its path; `None` if it stands still.
 fn on_way(scene: &Scene, step: f64) -> Option<Pose> {
     let clip = scene.clip();
     clip.ego.as_ref()?;

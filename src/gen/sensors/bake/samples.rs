@@ -20,7 +20,7 @@ pub(super) struct Sample {
     pub area_m2: f32,
     /// sRGB-coded.
     pub rgb: [u8; 3],
-    /// It lies beside another surface in its picture.
+    /// True if it lies beside another surface in its picture.
     pub is_edge: bool,
     /// Outward normal, 127 is 1.
     pub normal: [i8; 3],
@@ -28,13 +28,13 @@ pub(super) struct Sample {
     pub group: u16,
 }
 
-/// What a group of samples shows: those of one group may become one Gaussian.
+/// Surface that a group of samples shows; the samples of one group may become one Gaussian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Group {
-    /// 0 for none.
+    /// Instance of the box; 0 for none.
     pub instance: u32,
     pub class: TruthClass,
-    /// It stands around the map, not on it.
+    /// True for the skyline, which stands around the map and not on it.
     pub is_skyline: bool,
 }
 
@@ -45,17 +45,17 @@ pub(super) struct Taken {
     pub rgb: Vec<[u8; 3]>,
 }
 
-/// Everything that was seen.
+/// Samples and pictures of all cameras.
 pub(super) struct Sampled {
     pub samples: Vec<Sample>,
-    /// In order.
+    /// Groups in rising order.
     pub groups: Vec<Group>,
     pub taken: Vec<Taken>,
 }
 
-/// Angle between the rays that look for what stands behind the map, rad.
+/// Angle between the rays that sample skyline and sky, rad.
 const BEHIND_RAD: f32 = 0.01;
-/// Places from which that is done, at most.
+/// Most places from which skyline and sky are sampled.
 const BEHIND: usize = 3;
 
 /// Skyline and sky all around as seen from `eye`, whatever hides them, from a little below the horizon to straight up.
@@ -132,15 +132,15 @@ fn coded(color: Vec3) -> [u8; 3] {
     color.to_array().map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
 }
 
-/// Most groups; what comes after them shares the last one.
+/// Most groups; groups that come later share the last number.
 const GROUPS: usize = 1 << 14;
 
-/// Numbers of groups, as they come.
+/// Numbers of groups in the order of their first sample.
 #[derive(Default)]
 struct Numbers(BTreeMap<Group, u16>);
 
 impl Numbers {
-    /// What a ray met, unless that was the sky.
+    /// Sample of the surface that a ray met; `None` for the sky.
     fn sample(&mut self, probe: &Probe, pixel_rad: f32, is_edge: bool) -> Option<Sample> {
         if probe.class == truth::SKY {
             return None;
@@ -163,12 +163,12 @@ impl Numbers {
         })
     }
 
-    /// The groups in their order, whatever was seen first, and samples numbered by it.
+    /// Sorts the groups, whatever was seen first, and numbers the samples by that order.
     fn in_order(self, samples: &mut [Sample]) -> Vec<Group> {
         let mut new = vec![0u16; self.0.len().min(GROUPS)];
         let mut groups: Vec<Group> = Vec::with_capacity(new.len());
         for (group, number) in self.0 {
-            // Of those that share the last number one speaks for all.
+            // Groups that share the last number are represented by one of them.
             if groups.len() < new.len() {
                 new[usize::from(number)] = groups.len() as u16;
                 groups.push(group);

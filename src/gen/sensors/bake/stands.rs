@@ -1,4 +1,4 @@
-//! Where the ego vehicle could stand, and the cameras there: the views from which a scene is looked at.
+//! Places where the ego vehicle could stand, and the cameras there: the views of a bake.
 
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
@@ -14,17 +14,18 @@ const HEADINGS: usize = 12;
 /// Heights of the cameras that look down on the scene from above, m over the ground.
 const ABOVE_M: [f64; 2] = [4.0, 7.5];
 
-/// Where the vehicle could stand: on the drivable area, reached from `path` within `reach_m`, spread evenly: poses of the path
-/// first, then each as far as can be from all before. At most `most`; on a map without roads only the path. Poses are in the
-/// frame of the scene; headings differ, so that the cameras there look everywhere. `rig` says how large the vehicle is.
+/// Places where the vehicle could stand: on the drivable area, reached from `path` within `reach_m`, spread evenly. The
+/// poses of the path come first, then each place as far as possible from all before. There are at most `most`; on a map
+/// without roads only the path. Poses are in the frame of the scene; headings differ, so that the cameras there look
+/// everywhere. `rig` gives the size of the vehicle.
 pub fn stands(frame: &Frame, rig: &SensorRig, path: &[Pose], reach_m: f64, most: usize) -> Vec<Pose> {
     let mut chosen: Vec<Pose> = Vec::new();
     let free = reachable(frame, path, reach_m);
     let mut away = vec![f64::INFINITY; free.len()];
-    // Of a long path every so many poses, half of the places at most.
+    // A long path gives every n-th pose, at most half of the places.
     let step = path.len().div_ceil(most.div_ceil(2).max(1)).max(1);
     for (i, pose) in path.iter().step_by(step).enumerate() {
-        // Others may stand now where the vehicle is at another moment.
+        // Another vehicle may stand now where this one is at another moment.
         if i > 0 && !is_free(frame, rig, pose) {
             continue;
         }
@@ -52,8 +53,8 @@ pub fn stands(frame: &Frame, rig: &SensorRig, path: &[Pose], reach_m: f64, most:
     chosen
 }
 
-/// A vehicle on the ground at a place, its heading turned by `turn_rad` from that of `like`. Where the ground is flat it is as
-/// high as there.
+/// A vehicle on the ground at a place, its heading turned by `turn_rad` from that of `like`. On flat ground it is as
+/// high as `like`.
 pub fn standing(frame: &Frame, like: &Pose, at_m: DVec2, turn_rad: f64) -> Pose {
     let relief = &frame.layout.relief;
     if relief.is_flat() {
@@ -123,7 +124,7 @@ fn reachable(frame: &Frame, path: &[Pose], reach_m: f64) -> Vec<DVec2> {
         if is_free(x, y) {
             found.push(center(x, y));
         } else if found.len() > path.len() * 40 {
-            // Around the start the way may lead over what is not road.
+            // Only near the start may the way lead over ground that is not road.
             continue;
         }
         let around = [
@@ -154,8 +155,8 @@ fn is_clear(frame: &Frame, p: DVec2) -> bool {
     })
 }
 
-/// The rig's cameras on the vehicle at each of these poses, and above every third of them cameras that look down.
-/// `rig` is placed where it is (its `vehicle`).
+/// The rig's cameras on the vehicle at each of these poses, and above every third of them cameras that look down. `rig`
+/// is placed at its `vehicle`.
 pub fn views(rig: &SensorRig, stands: &[Pose]) -> Vec<Camera> {
     let mut out = Vec::new();
     for (i, pose) in stands.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! How strongly Gaussians would answer a LiDAR's pulse.
+//! Strength with which Gaussians would answer a LiDAR's pulse.
 
 use glam::Vec3;
 
@@ -10,9 +10,9 @@ use world::Surface;
 
 /// Echo of paint on the road, as in [`Materials::of`].
 const PAINT: f32 = 34.0;
-/// Distance at which strengths are told, m.
+/// Distance for which strengths are given, m.
 const RANGE_M: f64 = 10.0;
-/// Between the extremes of what is finer than a surface.
+/// Middle value for detail that is finer than a surface.
 const DETAIL: f64 = 0.5;
 
 /// Strengths of the materials of an ordinary, dry scene.

@@ -26,7 +26,7 @@ const COLOR_RATE: f32 = 0.01;
 const SPREADS: [f32; 2] = [0.2, 2.0];
 const THIN_M: f32 = 0.002;
 
-/// How much of the moments of gradients a step keeps.
+/// Share of the moments of gradients that a step keeps.
 const FIRST: f32 = 0.9;
 const SECOND: f32 = 0.99;
 
@@ -111,7 +111,7 @@ impl Order {
     }
 }
 
-/// How the squared difference to a picture changes with each Gaussian that is in it.
+/// Gradient of the squared difference to a picture with each Gaussian in it.
 fn gradients(
     ellipsoids: &[Ellipsoid],
     colors: &[[f32; 3]],
@@ -134,8 +134,8 @@ fn gradients(
         .collect()
 }
 
-/// From a splat in the picture to the Gaussian itself. How the derivative of the projection changes with the place is left out:
-/// Gaussians are small.
+/// Converts the gradient with a splat in the picture to that with the Gaussian itself. The change of the projection's
+/// derivative with the place is left out: Gaussians are small.
 fn chain(view: &View, e: &Ellipsoid, s: &Slopes) -> Option<Gradient> {
     let around = view.around(e.position_m.as_dvec3(), [OPTIONS.near_m, OPTIONS.far_m])?;
     let axes = e.axes_m.map(|a| a.as_dvec3());
@@ -190,7 +190,7 @@ impl Moments {
 /// One step of a Gaussian.
 fn change(g: &mut SceneGaussian, m: &Moments, start: &[f32; 3], rate: f32) {
     let way = |i: usize| Vec3::new(m.way(i), m.way(i + 1), m.way(i + 2));
-    // As far as its own middle spread says.
+    // Scaled by the middle one of its spreads.
     let [a, b, c] = g.std_m;
     let size = a.max(b).min(a.max(c)).min(b.max(c));
     let at = Vec3::from(g.position_m) + way(0) * (rate * PLACE_RATE * size);

@@ -1,5 +1,5 @@
-//! Sorts samples into an octree and chooses its leaves: small where colours change or something else begins, large elsewhere,
-//! as many as are allowed.
+//! Sorts samples into an octree and chooses its leaves: small where colours change or another surface begins, large
+//! elsewhere, up to the allowed number.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -17,15 +17,15 @@ const BITS: u32 = 16;
 /// The largest cell is 2^7 of the finest.
 const LARGEST: u32 = 7;
 
-/// What a pixel on the border of a surface costs, per pixel that the cell is wide: its Gaussian reaches over the border.
+/// Cost of a pixel on the border of a surface, per pixel of the cell's width: its Gaussian reaches over the border.
 const EDGE_COST: f32 = 0.006;
-/// What a pixel costs where normals point apart.
+/// Cost of a pixel where normals point apart.
 const BEND_COST: f32 = 0.1;
 
-/// How much nearer than the places that it is looked at from somebody may come, m, and never nearer than this at all.
+/// How much nearer a viewer may come than the cameras of the bake, m, and the least distance of a viewer, m.
 const BESIDE_M: f32 = 1.5;
 const NEAREST_M: f32 = 1.2;
-/// Edge of a cell over its distance, at most.
+/// Largest edge of a cell over its distance.
 const LARGE: f32 = 0.15;
 
 /// A cell of the tree: samples `from..to` of the sorted list.
@@ -73,7 +73,7 @@ fn code(s: &Sample, groups: &[Group]) -> u64 {
     above << (3 * BITS) | bits(0) << 2 | bits(1) << 1 | bits(2)
 }
 
-/// Two zeros between every two of 16 bits.
+/// Puts two zeros between every two of 16 bits.
 fn spread(v: u64) -> u64 {
     let v = (v | v << 32) & 0x001f_0000_0000_ffff;
     let v = (v | v << 16) & 0x001f_0000_ff00_00ff;
@@ -106,7 +106,7 @@ impl PartialOrd for Open {
 }
 
 impl Ord for Open {
-    /// By gain; of equal ones the first.
+    /// Orders by gain; on a tie the first cell counts as larger.
     fn cmp(&self, other: &Self) -> Ordering {
         let by_gain = self.gain.total_cmp(&other.gain);
         by_gain
@@ -115,8 +115,8 @@ impl Ord for Open {
     }
 }
 
-/// Samples in the order of their codes, and the leaves chosen, in the same order; more than `most` only where every group needs
-/// its share.
+/// Sorts samples by their codes and chooses the leaves, in the same order. There may be more than `most` leaves if
+/// every group needs its share.
 pub(super) fn leaves(
     samples: Vec<Sample>,
     groups: &[Group],
@@ -202,7 +202,7 @@ impl Tree<'_> {
             let whole = self.cost(from, to, level);
             let (mut parts, mut count) = (0.0, 0u32);
             self.divide(from, to, level - 1, &mut |a, b| {
-                // A single sample says nothing of how colours vary in its cell.
+                // The variation of colours in a cell is unknown from a single sample.
                 let n = (b - a) as f32;
                 parts += match b - a {
                     1 => 0.7 * whole / (to - from) as f32,
@@ -211,7 +211,7 @@ impl Tree<'_> {
                 count += 1;
             });
             gain = match count {
-                // It takes no Gaussian more.
+                // The division needs no additional Gaussian.
                 1 => (whole - parts).max(whole * 0.5),
                 _ => (whole - parts) / (count - 1) as f32,
             };
@@ -242,7 +242,7 @@ impl Tree<'_> {
         self.size_m(from, level) > LARGE * room
     }
 
-    /// How badly one colour and one disc show these samples: squared differences summed over pixels.
+    /// Error with which one colour and one disc show these samples: squared differences summed over pixels.
     fn cost(&self, from: u32, to: u32, level: u32) -> f32 {
         let samples = &self.samples[from as usize..to as usize];
         let (mut sum, mut square, mut normal, mut edge) = (Vec3::ZERO, 0.0f32, Vec3::ZERO, 0.0f32);

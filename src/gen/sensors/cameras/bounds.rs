@@ -1,4 +1,4 @@
-//! How large pictures may be: a bound on the pixels of one, and on the memory of a run.
+//! Limits of the size of pictures: on the pixels of one, and on the memory of a run.
 
 /// Most pixels of one picture: 8K (7680 x 4320) fits, 8192 x 8192 does not.
 pub const MAX_IMAGE_PIXELS: u64 = 1 << 25;
@@ -11,7 +11,7 @@ pub const MAX_RUN_BYTES: u64 = 3 << 30;
 /// Memory of pictures that are small enough to be rendered side by side, bytes.
 const SIDE_BY_SIDE_BYTES: u64 = 64_000_000;
 
-/// Why there is no picture.
+/// Error of rendering pictures.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CameraError {
     /// More pixels than [`MAX_IMAGE_PIXELS`].
@@ -35,19 +35,19 @@ pub enum CameraError {
         width: u32,
         /// Height asked for.
         height: u32,
-        /// What they take.
+        /// Memory that the pictures take, bytes.
         bytes: u64,
     },
-    /// A network could not be read, or refuses what it is told.
+    /// A network could not be read or refuses its input.
     #[error("picture networks: {0}")]
     Network(String),
-    /// Nobody waits for it any more.
+    /// The picture is no longer wanted.
     #[error("cancelled")]
     Cancelled,
 }
 
-/// Checks pictures of a size of which one takes `bytes_per_pixel` while it is made, beside `kept_bytes` that stay until
-/// the end of the run. Errors if that is more than the bounds allow.
+/// Checks the size of pictures. One picture takes `bytes_per_pixel` while it is made; `kept_bytes` stay until the end
+/// of the run. Errors if that is more than the bounds allow.
 pub fn check([width, height]: [u32; 2], bytes_per_pixel: u64, kept_bytes: u64) -> Result<(), CameraError> {
     let pixels = u64::from(width) * u64::from(height);
     if pixels > MAX_IMAGE_PIXELS {
@@ -64,7 +64,7 @@ pub fn check([width, height]: [u32; 2], bytes_per_pixel: u64, kept_bytes: u64) -
     }
 }
 
-/// How many pictures of a size of which one takes `bytes_per_pixel` are rendered side by side, at least one.
+/// Number of pictures of a size that are rendered side by side if one takes `bytes_per_pixel`, at least one.
 pub fn side_by_side([width, height]: [u32; 2], bytes_per_pixel: u64) -> usize {
     let one = (u64::from(width) * u64::from(height)).saturating_mul(bytes_per_pixel);
     (SIDE_BY_SIDE_BYTES / one.max(1)).max(1) as usize

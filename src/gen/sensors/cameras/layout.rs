@@ -8,7 +8,7 @@ use crate::march::GroundHeight;
 use crate::perspective;
 use scene::{Camera, Frame};
 
-/// What it shows.
+/// The view of boxes and lanes.
 pub const VIEW: View = View::new(
     ViewId::new("perspective"),
     "Boxes, lanes",

@@ -15,7 +15,7 @@ use crate::march::GroundHeight;
 use crate::painter::{PaintError, PaintInput, PaintModel, PaintOptions, PaintWith};
 use scene::{Camera, SensorRig};
 
-/// What it shows.
+/// The view of the learned picture.
 pub const VIEW: View = View::new(
     ViewId::new("learned"),
     "Learned",
@@ -59,7 +59,7 @@ impl CameraSource for Learned {
 
 struct Ready<'a> {
     input: CameraInput<'a>,
-    /// In the order of the rig.
+    /// Pictures in the order of the rig.
     images: Result<Vec<Arc<CameraImage>>, CameraError>,
 }
 
@@ -101,7 +101,7 @@ impl PreparedCameras for Ready<'_> {
         let place = self.input.rig.cameras.iter().position(|c| c == camera);
         let image = match place {
             Some(place) => self.images.clone()?.get(place).cloned(),
-            // A camera that is not of the rig stands alone.
+            // A camera outside the rig is painted alone.
             None => {
                 let rig = SensorRig {
                     cameras: vec![camera.clone()],

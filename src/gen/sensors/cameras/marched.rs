@@ -1,4 +1,4 @@
-//! What the sources that cast exact rays share.
+//! Shared parts of the sources that cast exact rays.
 
 use std::borrow::Cow;
 
@@ -6,8 +6,8 @@ use super::{CameraError, CameraPicture, Card, PreparedCameras, RenderOptions};
 use crate::march::{GroundHeight, MarchOptions, MarchScene};
 use scene::{Camera, Frame};
 
-/// A frame for exact rays. Shapes of boxes stand on the road as it really lies; voxels alone are taken as they are
-/// labelled, the road two bins lower. `seed` varies the shapes.
+/// A frame for exact rays. With `shapes`, boxes have solids and stand on the road at its physical height. Without them
+/// voxels are taken as they are labelled, the road two bins lower. `seed` varies the shapes.
 pub fn march_scene(frame: &Frame, shapes: bool, seed: u64) -> MarchScene {
     let options = MarchOptions {
         ground: match shapes {
@@ -18,7 +18,7 @@ pub fn march_scene(frame: &Frame, shapes: bool, seed: u64) -> MarchScene {
         lines: true,
         seed,
     };
-    // What has voxels of its own is those.
+    // A box with voxels of its own is drawn by these voxels.
     let mut boxes = Cow::Borrowed(&frame.boxes);
     if shapes && !frame.own_shapes.is_empty() {
         boxes.to_mut().retain(|id, _| !frame.own_shapes.contains_key(id));

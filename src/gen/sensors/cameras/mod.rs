@@ -85,14 +85,14 @@ pub struct Needs {
     pub layout: bool,
     /// The boxes.
     pub boxes: bool,
-    /// What stands beside the roads, apart from its voxels.
+    /// Scenery beside the roads, apart from its voxels.
     pub background: bool,
     /// Time of day and weather.
     pub conditions: bool,
 }
 
 impl Needs {
-    /// Nothing of a scene.
+    /// No part of a scene.
     pub const NONE: Self = Self {
         occupancy: false,
         layout: false,
@@ -105,36 +105,36 @@ impl Needs {
 /// Which part of the scene is prepared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detail {
-    /// What can be seen, for the window.
+    /// The visible part, for the window.
     Live,
-    /// All of it, for files.
+    /// The whole scene, for files.
     #[default]
     Full,
 }
 
-/// What pictures are made from.
+/// Input that pictures are made from.
 #[derive(Clone, Copy, Debug)]
 pub struct CameraInput<'a> {
     /// Occupancy, layout, boxes and the pose in the world.
     pub frame: &'a Frame,
     /// The cameras and the size of the ego vehicle.
     pub rig: &'a SensorRig,
-    /// What stands beside the roads.
+    /// Scenery beside the roads.
     pub background: &'a Background,
     /// Time, weather, and the seed that varies shapes and textures.
     pub conditions: Conditions,
-    /// How much is made ready.
+    /// Part of the scene that is made ready.
     pub detail: Detail,
-    /// What paints learned pictures; the weights that ship if none.
+    /// Networks that paint learned pictures; the weights that ship if `None`.
     pub paint: Option<&'a PaintWith>,
 }
 
-/// How one picture is rendered.
+/// Options of rendering one picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderOptions {
     /// Width and height in pixels; 0 gives an empty picture.
     pub size: [u32; 2],
-    /// Fast or beautiful, if a source has both.
+    /// Effort for the picture, if a source has more than one.
     pub quality: Quality,
 }
 
@@ -156,16 +156,16 @@ pub trait Card {
     ) -> Option<CameraImage>;
 }
 
-/// What a rendering may use, and whether it is still wanted.
+/// Resources that a rendering may use, and a check whether it is still wanted.
 pub struct RenderContext<'a> {
-    /// The card that the scene was uploaded to; `None`: the processor draws.
+    /// The card that the scene was uploaded to; `None` if the processor draws.
     pub card: Option<&'a mut dyn Card>,
-    /// True once nobody waits for the picture any more.
+    /// True once the picture is no longer wanted.
     pub cancelled: &'a dyn Fn() -> bool,
 }
 
 impl RenderContext<'_> {
-    /// The processor draws, and is never cancelled.
+    /// A context in which the processor draws and nothing is cancelled.
     pub fn processor() -> Self {
         Self {
             card: None,
@@ -174,20 +174,20 @@ impl RenderContext<'_> {
     }
 }
 
-/// What a source is and what it needs.
+/// Description of a source and its needs.
 #[derive(Debug)]
 pub struct About {
     /// Its name, unique in the table.
     pub id: SourceId,
     /// Name on a button.
     pub title: &'static str,
-    /// What it does, for the tip of the button.
+    /// Description for the tip of the button.
     pub hint: &'static str,
     /// The views that one rendering gives, at least one.
     pub views: &'static [View],
-    /// What of the scene decides its pictures.
+    /// Parts of the scene that decide its pictures.
     pub needs: Needs,
-    /// At which height its pictures show the ground.
+    /// Height at which its pictures show the ground.
     pub ground: GroundHeight,
     /// Name of its time in the report of `sceneloom render`.
     pub report_key: &'static str,
@@ -199,7 +199,7 @@ pub struct About {
 
 /// One way to make camera pictures of a scene.
 pub trait CameraSource: Sync {
-    /// What it is and what it needs.
+    /// Description of the source and its needs.
     fn about(&self) -> &'static About;
 
     /// Its name, unique in the table.
@@ -218,17 +218,18 @@ pub trait CameraSource: Sync {
 
 /// A scene made ready by one source.
 pub trait PreparedCameras: Sync {
-    /// True for what a graphics card can draw.
+    /// True if a graphics card can draw the scene.
     fn suits_card(&self) -> bool {
         false
     }
 
-    /// Uploads it to a graphics card; false if the processor has to draw it.
+    /// Uploads the scene to a graphics card; false if the processor has to draw it.
     fn upload(&self, _card: &mut dyn Card) -> bool {
         false
     }
 
-    /// What a camera shows. Called by [`Ready::render`], which checks size and cancellation first. Errors if a network refuses.
+    /// Draws the picture of a camera. Called by [`Ready::render`], which checks size and cancellation first. Errors if
+    /// a network refuses its input.
     fn draw(
         &self,
         camera: &Camera,
@@ -237,7 +238,7 @@ pub trait PreparedCameras: Sync {
     ) -> Result<CameraPicture, CameraError>;
 }
 
-/// A source with a scene made ready: what renders.
+/// A source with a scene made ready, which renders pictures.
 pub struct Ready<'a> {
     source: &'static dyn CameraSource,
     scene: Box<dyn PreparedCameras + 'a>,
@@ -252,13 +253,14 @@ impl<'a> Ready<'a> {
         }
     }
 
-    /// Uploads it to the card that `find` returns; `find` is called only if a card can draw this. True if the card will draw.
+    /// Uploads the scene to the card that `find` returns; `find` is called only if a card can draw the scene. True if
+    /// the card will draw.
     pub fn upload_to<'c>(&self, find: impl FnOnce() -> Option<&'c mut (dyn Card + 'c)>) -> bool {
         self.scene.suits_card() && find().is_some_and(|card| self.scene.upload(card))
     }
 
-    /// What a camera shows. Errors if the picture is larger than [`bounds`] allow, nobody waits for it any more, or a network
-    /// refuses what it is told.
+    /// Renders the picture of a camera. Errors if the picture is larger than [`bounds`] allow, is no longer wanted, or
+    /// a network refuses its input.
     pub fn render(
         &self,
         camera: &Camera,
@@ -272,13 +274,13 @@ impl<'a> Ready<'a> {
         self.scene.draw(camera, options, context.card)
     }
 
-    /// How many cameras [`Self::render_all`] is best given at once, at least one.
+    /// Best number of cameras for one call of [`Self::render_all`], at least one.
     pub fn side_by_side(&self, options: &RenderOptions) -> usize {
         bounds::side_by_side(options.size, self.source.about().bytes_per_pixel)
     }
 
-    /// What each of these cameras shows, by the card if there is one, else by the processor side by side: one small
-    /// picture does not fill the cores. Errors as [`Self::render`].
+    /// Renders the pictures of these cameras, by the card if there is one, else by the processor side by side: one
+    /// small picture does not fill the cores. Errors as [`Self::render`].
     pub fn render_all(
         &self,
         cameras: &[Camera],

@@ -1,7 +1,7 @@
-//! Normal maps: which way the surfaces of the pictures face, in the camera's frame.
+//! Normal maps: the directions in which the surfaces of the pictures face, in the camera's frame.
 //!
-//! Red is right, green is up, blue is towards the camera, each `n * 0.5 + 0.5`: what faces the camera is light blue, the
-//! road green. The sky is grey (128, 128, 128), which is no direction at all.
+//! Red is right, green is up, blue is towards the camera, each `n * 0.5 + 0.5`: a surface that faces the camera is
+//! light blue, the road green. The sky is grey (128, 128, 128), which is no direction at all.
 
 use glam::{DQuat, Vec3};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use crate::rays::CameraRays;
 use scene::Camera;
 use scene::Conditions;
 
-/// What it shows.
+/// The view of normals.
 pub const VIEW: View = View::new(
     ViewId::new("normals"),
     "Normals",

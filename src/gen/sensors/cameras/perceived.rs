@@ -1,4 +1,5 @@
-//! What a small network sees in the pictures: classes, and where it misses things or sees some that are none.
+//! Classes that a small network predicts in the pictures, with things that it misses and things that it sees where
+//! there are none.
 
 use super::learned::sized;
 use super::{
@@ -10,7 +11,7 @@ use crate::march::GroundHeight;
 use crate::perceived::Perceived;
 use scene::{Camera, Frame};
 
-/// What it shows.
+/// The view of predicted classes.
 pub const VIEW: View = View::new(
     ViewId::new("perceived"),
     "Perceived",

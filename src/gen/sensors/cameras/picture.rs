@@ -1,4 +1,4 @@
-//! What a source renders, as data, and how it is shown in colours.
+//! Data that a source renders, and its display in colours.
 
 use super::view::ViewId;
 use crate::appearance::CameraImage;

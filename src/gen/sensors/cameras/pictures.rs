@@ -1,4 +1,4 @@
-//! What a camera would see, by day or night and in any weather: the analytic renderer.
+//! Pictures that a camera would take, by day or night and in any weather: the analytic renderer.
 
 use super::{
     About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
@@ -8,7 +8,7 @@ use crate::appearance::Appearance;
 use crate::march::GroundHeight;
 use scene::Camera;
 
-/// What it shows.
+/// The view of the picture.
 pub const VIEW: View = View::new(ViewId::new("appearance"), "Picture", "what a camera would see");
 
 /// Name of the source.

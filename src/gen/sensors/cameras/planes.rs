@@ -9,7 +9,7 @@ use crate::mpi::{self, RenderIds};
 use scene::Camera;
 use scene::sensor_data::Planes;
 
-/// What it shows.
+/// The view of one plane.
 pub const VIEW: View = View {
     knob: Some(Knob::PlaneDepth),
     ..View::new(ViewId::new("mpi"), "Planes", "one plane of the multi-plane image")

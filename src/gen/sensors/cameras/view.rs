@@ -1,11 +1,11 @@
-//! Names of what pictures show and of what they are made from.
+//! Names of camera sources and of the views that they give.
 
-/// Names a source.
+/// Name of a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SourceId(&'static str);
 
 impl SourceId {
-    /// Of that name.
+    /// The source of that name.
     pub const fn new(name: &'static str) -> Self {
         Self(name)
     }
@@ -17,13 +17,13 @@ impl SourceId {
 }
 
 impl Default for SourceId {
-    /// What the window renders classes and depths from.
+    /// The source from which the window renders classes and depths.
     fn default() -> Self {
         super::shapes::ID
     }
 }
 
-/// Names a view: what a picture shows.
+/// Name of a view, the content of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ViewId(&'static str);
 
@@ -33,7 +33,7 @@ impl ViewId {
     /// Distance along the optical axis; several sources give it.
     pub const DEPTH: ViewId = ViewId::new("depth");
 
-    /// Of that name.
+    /// The view of that name.
     pub const fn new(name: &'static str) -> Self {
         Self(name)
     }
@@ -57,21 +57,21 @@ pub enum Knob {
     PlaneDepth,
 }
 
-/// What a picture shows, as menus offer it.
+/// Content of a picture, as menus offer it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct View {
     /// Its name.
     pub id: ViewId,
     /// Name on a button.
     pub title: &'static str,
-    /// What it shows, for the tip of the button.
+    /// Description for the tip of the button.
     pub hint: &'static str,
-    /// A setting of the window that decides what is seen.
+    /// A setting of the window that decides what is shown.
     pub knob: Option<Knob>,
 }
 
 impl View {
-    /// Without a setting of its own.
+    /// A view without a setting of its own.
     pub const fn new(id: ViewId, title: &'static str, hint: &'static str) -> Self {
         Self {
             id,

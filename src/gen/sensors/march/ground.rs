@@ -1,5 +1,5 @@
-//! The ground at its physical height: ground labels lie two bins low and everything else is smeared two
-//! bins down (`real_statistics.md`, 2.2). Here the ground becomes a height per column and the smear goes.
+//! The ground at its physical height: ground labels lie two bins low and everything else is smeared two bins down
+//! (`real_statistics.md`, 2.2). Here the ground becomes a height per column and the smear is removed.
 
 use std::collections::VecDeque;
 
@@ -7,14 +7,14 @@ use glam::DVec3;
 
 use scene::{Class, Extent, VoxelGrid};
 
-/// Where the ground is drawn.
+/// Height at which the ground is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum GroundHeight {
-    /// In the voxels that are labelled so: the road's surface at z = -0.6 m.
+    /// In the voxels labelled as ground: the road's surface at z = -0.6 m.
     #[default]
     AsLabelled,
-    /// Where it was measured: bin 0 at z = 0, bin k at the lower face of bin k + 2, the lowest
-    /// height that the labels allow (a kerb of 0.2 m); what hangs in the air loses its smear.
+    /// At its measured height: bin 0 at z = 0, bin k at the lower face of bin k + 2, the lowest height that the labels
+    /// allow (a kerb of 0.2 m); things that hang in the air lose their smear.
     Physical,
 }
 
@@ -36,11 +36,11 @@ pub struct Ground {
 /// Where a ray meets the ground, in voxel units.
 #[derive(Clone, Copy, Debug)]
 pub struct GroundHit {
-    /// In units of the direction's length.
+    /// Distance in units of the direction's length.
     pub t: f64,
     /// Label.
     pub class: u8,
-    /// Of the face.
+    /// Normal of the face.
     pub normal: DVec3,
 }
 
@@ -48,7 +48,8 @@ fn is_ground(label: u8) -> bool {
     Class::from_id(label).is_some_and(Class::is_ground)
 }
 
-/// What stands on the ground, and the ground.
+/// Splits a grid into the voxels that stand on the ground, and the ground. With [`GroundHeight::AsLabelled`] the ground
+/// stays among the voxels.
 pub fn split(grid: &VoxelGrid, height: GroundHeight) -> (VoxelGrid, Ground) {
     let extent = grid.extent();
     if height == GroundHeight::AsLabelled {
@@ -97,7 +98,7 @@ pub fn top_of(bin: usize) -> f64 {
     }
 }
 
-/// Takes away the two lowest voxels of every run that hangs in the air, and what lies below the ground.
+/// Removes the two lowest voxels of every run that hangs in the air, and the voxels below the ground.
 fn unsmear(column: &mut [u8; Extent::NZ]) {
     let labels = *column;
     // A run from bin 1 stands on a pavement.
@@ -125,14 +126,14 @@ impl Ground {
         (!top.is_nan()).then(|| (self.class[i], top * Extent::VOXEL_M + Extent::BOTTOM_M))
     }
 
-    /// Asks for ground in a column that an object hid.
+    /// Marks a column whose ground an object hid, for [`Self::fill_wanted`].
     pub fn want(&mut self, x: usize, y: usize) {
         if let Some(wanted) = self.wanted.get_mut(self.extent.index(x, y)) {
             *wanted = true;
         }
     }
 
-    /// Gives each column asked for the ground of the nearest one that has some (steps over faces).
+    /// Gives each marked column the ground of the nearest one that has some (steps over faces).
     pub fn fill_wanted(&mut self) {
         if !self.wanted.contains(&true) {
             return;

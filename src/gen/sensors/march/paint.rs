@@ -21,11 +21,11 @@ const REACH_M: f64 = 1.0;
 /// A piece of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// From here, ego frame, m.
+    /// Start, ego frame, m.
     pub a: DVec2,
-    /// To here.
+    /// End, ego frame, m.
     pub b: DVec2,
-    /// Which line.
+    /// Kind of the line.
     pub kind: PolylineKind,
     /// Length of the line up to `a`, m.
     pub along_m: f64,
@@ -60,7 +60,7 @@ pub struct Crossing {
     outline: Vec<DVec2>,
     low: DVec2,
     high: DVec2,
-    /// Unit vector along its longer side: the way people walk is across the road, along it.
+    /// Unit vector along its longer side: the way that people walk, across the road.
     pub along: DVec2,
 }
 
@@ -200,7 +200,7 @@ impl Paint {
         }
     }
 
-    /// For the graphics card.
+    /// Packs the paint for the graphics card.
     pub fn pack(&self, out: &mut AppearanceData) {
         let bits = |v: f64| (v as f32).to_bits();
         let mut starts = vec![0];

@@ -7,11 +7,11 @@ use scene::solid::Solid;
 use scene::{BoxId, Extent, SceneBox};
 use world::objects;
 
-/// Edge of a bin.
+/// Edge of a bin, m and columns.
 const BIN_M: f64 = 4.0;
 const BIN_COLUMNS: usize = 10;
 
-/// Solids of boxes; only what lies over the grid is seen.
+/// Solids of boxes; only those over the grid are seen.
 #[derive(Clone, Debug, Default)]
 pub struct SolidIndex {
     solids: Vec<(Solid, BoxId)>,
@@ -47,11 +47,11 @@ pub struct InView {
 pub struct SolidHit<'a> {
     /// Distance, m.
     pub t_m: f64,
-    /// What was met.
+    /// Solid that was met.
     pub solid: &'a Solid,
-    /// Whose it is.
+    /// Box that the solid belongs to.
     pub box_id: Option<BoxId>,
-    /// Where the ray began, as the solid sees it: moved back where a box moved while a shutter read, m.
+    /// Origin of the ray as the solid sees it: moved back where a box moved while a shutter read, m.
     pub origin: DVec3,
 }
 
@@ -65,12 +65,12 @@ impl Group {
 }
 
 impl InView {
-    /// Those of a row of pixels with middles at `v`.
+    /// Boxes in a row of pixels with middles at `v`.
     pub fn row(&self, v: f64) -> InView {
         self.only(|_, range| (range[0]..=range[1]).contains(&v))
     }
 
-    /// Those of a piece of a row, from `first` to `last` px.
+    /// Boxes in a piece of a row, from `first` to `last` px.
     pub fn piece(&self, first: f64, last: f64) -> InView {
         self.only(|range, _| range[0] <= last && range[1] >= first)
     }

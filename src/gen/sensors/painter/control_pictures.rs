@@ -1,4 +1,5 @@
-//! What public networks are shown of a view: classes in their colours, depths, boxes and lanes in perspective, and planes of classes.
+//! Inputs of public networks for a view: classes in their colours, depths, boxes and lanes in perspective, and planes
+//! of classes.
 
 use super::seen::Seen;
 use crate::color::perspective_rgba;
@@ -12,12 +13,13 @@ use stable::planes::{Run, of_runs};
 
 /// Depths up to this are brightest, m.
 const NEAREST_M: f32 = 2.0;
-/// From one plane of classes to the next, m.
+/// Distance between planes of classes, m.
 const STEP_M: f64 = 0.2;
 /// Most planes; SyntheOcc has 256.
 const MOST_PLANES: usize = 4096;
 
-/// `[channel][row][column]` from 0 to 1: the colour of each pixel's class; black where there is nothing.
+/// Picture of the classes, `[channel][row][column]` from 0 to 1: the colour of each pixel's class; black where there is
+/// nothing.
 pub(super) fn classes(hints: &PictureHints, channels: usize) -> Vec<f32> {
     let color = |class: u8| match class {
         0 => [0; 3],
@@ -32,7 +34,8 @@ pub(super) fn classes(hints: &PictureHints, channels: usize) -> Vec<f32> {
     (0..channels).flat_map(plane).collect()
 }
 
-/// `[channel][row][column]` from 0 to 1: the inverse of each pixel's depth, 1 at 2 m and nearer; 0 where there is nothing.
+/// Picture of the depths, `[channel][row][column]` from 0 to 1: the inverse of each pixel's depth, 1 at 2 m and nearer;
+/// 0 where there is nothing.
 pub(super) fn depths(hints: &PictureHints, channels: usize) -> Vec<f32> {
     let near = |depth_m: &f32| match *depth_m > 0.0 {
         true => (NEAREST_M / depth_m).min(1.0),
@@ -42,7 +45,8 @@ pub(super) fn depths(hints: &PictureHints, channels: usize) -> Vec<f32> {
     plane.repeat(channels)
 }
 
-/// `[channel][row][column]` from 0 to 1: road, lanes, crossings and boxes in perspective, hidden or not, in their colours.
+/// Picture of the layout, `[channel][row][column]` from 0 to 1: road, lanes, crossings and boxes in perspective, hidden
+/// or not, in their colours.
 pub(super) fn boxes_and_lanes(frame: &Frame, camera: &Camera, channels: usize) -> Vec<f32> {
     let map = perspective::render(
         &frame.layout,
@@ -56,7 +60,7 @@ pub(super) fn boxes_and_lanes(frame: &Frame, camera: &Camera, channels: usize) -
     (0..channels).flat_map(plane).collect()
 }
 
-/// What [`stable::Planes`] takes of some views: the label on each plane, at the size of latents.
+/// Input of [`stable::Planes`] for some views: the label on each plane, at the size of latents.
 pub(super) fn planes(
     frame: &Frame,
     seen: &Seen,
@@ -66,7 +70,7 @@ pub(super) fn planes(
 ) -> Result<Vec<f32>, StableError> {
     let ids = RenderIds::new(&frame.occupancy, &[]);
     let count = channels.saturating_sub(1).min(MOST_PLANES) as u16;
-    // As their code has it: every 0.2 m.
+    // Spacing of SyntheOcc's code: every 0.2 m.
     let layout = Planes {
         count,
         near_m: STEP_M,

@@ -1,19 +1,19 @@
-//! Where pictures change when a scene does.
+//! Parts of the pictures that change when the scene does.
 
 use super::seen::Seen;
 use nets::picture::{CELL, RingSize};
 
-/// So many cells around that of a pixel that changed are painted.
+/// Cells around that of a changed pixel that are painted too.
 const AROUND: usize = RIM_PX.div_ceil(CELL);
-/// The renderer's colour must differ by more than this, of 255, for a pixel to be painted because of its light alone.
+/// Least difference of the renderer's colours, of 255, for which a pixel is painted because of its light alone.
 const LIGHT: u8 = 5;
-/// Pixels so far from what changed are new too: the network paints things a little wider than their voxels.
+/// Pixels this near to a changed one count as new too: the network paints things a little wider than their voxels.
 const WIDER_PX: usize = 6;
-/// New paint has faded into what was there so many pixels around what changed.
+/// Width of the rim around changed pixels in which new paint fades into the old picture, px.
 pub const RIM_PX: usize = 10;
 
-/// Of each view, the pixels that show something else: another class, depth or heading, or another light on it, such as the
-/// shadow of what was added or taken away.
+/// Changed pixels of each view: those that show another class, depth or heading, or another light on it, such as the
+/// shadow of a thing that was added or removed.
 pub(super) fn changed(then: &Seen, now: &Seen, size: RingSize) -> Vec<Vec<bool>> {
     let [height, width] = size.pixels();
     let of_view = |view: usize| {
@@ -26,7 +26,7 @@ pub(super) fn changed(then: &Seen, now: &Seen, size: RingSize) -> Vec<Vec<bool>>
     (0..size.views()).map(of_view).collect()
 }
 
-/// Latent cells that pixels around what changed hear, `[view][row][column]`.
+/// Latent cells that pixels around a change depend on, `[view][row][column]`.
 pub(super) fn cells(changed: &[Vec<bool>], size: RingSize) -> Vec<bool> {
     let [rows, columns] = size.cells();
     let width = columns * CELL;
@@ -44,7 +44,7 @@ pub(super) fn cells(changed: &[Vec<bool>], size: RingSize) -> Vec<bool> {
     out
 }
 
-/// How much of each pixel is new: 1 within [`WIDER_PX`] pixels of what changed, then less, 0 from [`RIM_PX`] pixels on.
+/// Share of each pixel that is new: 1 within [`WIDER_PX`] pixels of a change, then less, 0 from [`RIM_PX`] pixels on.
 pub(super) fn shares(changed: &[bool], width: usize) -> Vec<f32> {
     let mut shares: Vec<f32> = changed.iter().map(|c| f32::from(u8::from(*c))).collect();
     let height = changed.len() / width.max(1);

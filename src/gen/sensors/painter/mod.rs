@@ -31,34 +31,34 @@ use scene::{Background, Conditions, Frame, SensorRig};
 use seen::Seen;
 pub use stable::config::SchedulerKind;
 
-/// Pictures of so many states are kept: what was painted before is there again at once.
+/// Number of states whose pictures are kept, so that a state painted before is there again at once.
 const KEPT: usize = 6;
 
-/// How pictures are painted.
+/// Options of painting.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PaintOptions {
     /// Steps from noise to a picture, 1 to 1000.
     pub steps: usize,
-    /// How much more than in training the pictures obey what they are told; 1 is as in training.
+    /// Guidance: how much more than in training the pictures follow the condition; 1 is as in training.
     pub guidance: f64,
-    /// Shipped weights alone: where the noise of a frame comes from.
+    /// Shipped weights only: where the noise of a frame comes from.
     pub noise: NoisePrior,
-    /// Shipped weights alone: pictures are told of those painted before, where the cameras stood near.
+    /// Shipped weights only: true if pictures painted before are an input, where the cameras stood near.
     pub hears_before: bool,
-    /// Public weights alone: how much of the rendered picture is painted anew, 0 (nothing) to 1 (all).
+    /// Public weights only: how much of the rendered picture is painted anew, 0 (nothing) to 1 (all).
     pub strength: f64,
-    /// Public weights alone: width of a picture, px.
+    /// Public weights only: width of a picture, px.
     pub width_px: usize,
-    /// Public weights alone: what the pictures show, in words. Time, weather and camera are added.
+    /// Public weights only: what the pictures show, in words. Time, weather and camera are added.
     pub prompt: String,
-    /// Public weights alone: what they do not show, in words.
+    /// Public weights only: what they do not show, in words.
     pub negative: String,
-    /// Public weights alone: how a step is made of what the network says; as their folder has it if none.
+    /// Public weights only: how a step is made from a prediction; `None` takes the choice of their folder.
     pub scheduler: Option<SchedulerKind>,
 }
 
 impl PaintOptions {
-    /// What is usual with public weights.
+    /// Usual options for public weights.
     pub fn public() -> Self {
         Self {
             steps: 20,
@@ -69,7 +69,7 @@ impl PaintOptions {
 }
 
 impl Default for PaintOptions {
-    /// What was measured best: `training/weights/pictures/CARD.md`.
+    /// Options that were measured best: `training/weights/pictures/CARD.md`.
     fn default() -> Self {
         Self {
             steps: 4,
@@ -85,48 +85,48 @@ impl Default for PaintOptions {
     }
 }
 
-/// What pictures are painted of.
+/// Input that pictures are painted from.
 #[derive(Clone, Copy, Debug)]
 pub struct PaintInput<'a> {
     /// Occupancy, layout and boxes.
     pub frame: &'a Frame,
     /// The cameras.
     pub rig: &'a SensorRig,
-    /// What stands beside the roads.
+    /// Scenery beside the roads.
     pub background: &'a Background,
     /// Time and weather, and the seed that noise is drawn from.
     pub conditions: Conditions,
 }
 
-/// Why the picture networks gave nothing.
+/// Error of painting.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PaintError {
-    /// They could not be read, or refuse what they are told.
+    /// The networks could not be read or refuse their input.
     #[error("picture networks: {0}")]
     Network(String),
-    /// Whoever watched ended it.
+    /// The watcher stopped the painting.
     #[error("stopped")]
     Stopped,
 }
 
-/// How far a painting has come.
+/// Progress of a painting.
 #[derive(Debug)]
 pub struct Progress<'a> {
     /// Steps done; 0 before the first.
     pub step: usize,
     /// All steps.
     pub steps: usize,
-    /// Index in the rig of a camera of which there is news, and its picture as it looks by now.
+    /// Index in the rig of a camera with a new preview, and its picture so far.
     pub news: Option<(usize, &'a CameraImage)>,
 }
 
-/// Paints, and remembers what it painted last.
+/// A painter that remembers its recent pictures.
 pub struct Painter {
     nets: Arc<PictureNets>,
     options: PaintOptions,
-    /// Pictures are made of the steps too.
+    /// True if pictures are made of the steps too.
     previews: bool,
-    /// The newest last.
+    /// Pictures of recent states, the newest last.
     kept: VecDeque<Painted>,
 }
 
@@ -134,18 +134,18 @@ pub struct Painter {
 struct Painted {
     seen: Seen,
     trajectory: Trajectory,
-    /// What the trajectory began with, and how many frames of a drive came before.
+    /// Noise that the trajectory began with, and the number of frames of a drive that came before.
     noise: Vec<f32>,
     number: u32,
-    /// In the ring's order.
+    /// Pictures in the ring's order.
     images: Vec<Arc<CameraImage>>,
 }
 
 impl Painter {
-    /// Pixels so far from what changed stay as they were, to the bit.
+    /// Distance from a change at which pixels stay as they were, to the bit, px.
     pub const RIM_PX: usize = mask::RIM_PX;
 
-    /// With these networks.
+    /// A painter with these networks.
     pub fn new(nets: Arc<PictureNets>, options: PaintOptions) -> Self {
         Self {
             nets,
@@ -155,7 +155,7 @@ impl Painter {
         }
     }
 
-    /// For files, where nobody looks at the steps: no picture is made of them, which saves a decoding each.
+    /// Turns previews off, for files: no picture is made of the steps, which saves a decoding each.
     #[must_use]
     pub fn without_previews(self) -> Self {
         Self {
@@ -164,10 +164,11 @@ impl Painter {
         }
     }
 
-    /// Pictures of all cameras of the rig, in its order, each of some 256x144 px. What was painted before is given again. Where
-    /// only the scene differs from what was painted before, only pixels that show the difference are painted, and a rim of
-    /// [`Painter::RIM_PX`] around them; all others stay as they were, to the bit. `watch` hears of every step and may stop the
-    /// painting. Errors if it did, if there are more than 64 cameras, or if the networks refuse what they are told.
+    /// Paints pictures of all cameras of the rig, in its order, each of some 256x144 px. Pictures of a state that was
+    /// painted before are returned again. If only the scene differs from a state painted before, only pixels that show
+    /// the difference are painted, and a rim of [`Painter::RIM_PX`] around them; all others stay as they were, to the
+    /// bit. `watch` is told of every step and may stop the painting. Errors if it did, if there are more than 64
+    /// cameras, or if the networks refuse their input.
     pub fn paint(
         &mut self,
         input: &PaintInput<'_>,
@@ -309,18 +310,18 @@ impl Painter {
     }
 }
 
-/// A frame that was painted as the cells of another see it.
+/// Input of the cells of a frame from an earlier frame that was painted.
 fn before(painted: &Painted, motions: &[Motion], seen: &Seen, size: RingSize) -> Result<Before, PaintError> {
     let depths = [&seen.depth_m()[..], &painted.seen.depth_m()];
     let before = picture::warp(size, &painted.trajectory.latent_f32(), depths, motions);
     before.map_err(network)
 }
 
-/// From latents to pictures.
+/// Turns latents into pictures.
 struct Brush<'a> {
     nets: &'a PictureNets,
     size: RingSize,
-    /// None if all is painted.
+    /// Pictures that are painted over; `None` if all is painted.
     base: Option<Base<'a>>,
 }
 
@@ -328,7 +329,7 @@ struct Brush<'a> {
 #[derive(Clone, Copy)]
 struct Base<'a> {
     images: &'a [Arc<CameraImage>],
-    /// Of each view, the pixels that show something else now.
+    /// Changed pixels of each view.
     changed: &'a [Vec<bool>],
 }
 
@@ -338,7 +339,7 @@ impl Brush<'_> {
         self.base.is_none_or(|base| base.changed[view].contains(&true))
     }
 
-    /// The picture of a view of the ring, of the latents of all.
+    /// Decodes the picture of one view of the ring from the latents of all.
     fn image(&self, view: usize, latents: &[f32], seen: &Seen) -> Result<CameraImage, PaintError> {
         let numbers = latents.len() / self.size.views();
         let latents = &latents[view * numbers..][..numbers];
@@ -368,7 +369,7 @@ impl Brush<'_> {
     }
 }
 
-/// Tells whoever watches that there will be so many steps. Errors if that is too much for them.
+/// Tells the watcher the number of steps. Errors if the watcher stops the painting.
 fn begins(watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>, steps: usize) -> Result<(), PaintError> {
     let progress = Progress {
         step: 0,

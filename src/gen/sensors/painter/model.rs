@@ -1,4 +1,4 @@
-//! Which networks paint: those that ship, a folder of one's own from the same training, or a public Stable Diffusion.
+//! Networks that paint: those that ship, a folder of one's own from the same training, or a public Stable Diffusion.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -10,10 +10,10 @@ use crate::appearance::CameraImage;
 use nets::picture::PictureNets;
 use stable::{Folders, Machine, Pipeline};
 
-/// What paints the cameras of a frame and remembers what it painted.
+/// A painter of the cameras of a frame, which remembers what it painted.
 pub trait Paint: Send {
-    /// Pictures of all cameras of the rig, in its order. `watch` hears of every step and may stop the painting. Errors if it did,
-    /// or if the networks refuse what they are told.
+    /// Paints pictures of all cameras of the rig, in its order. `watch` is told of every step and may stop the
+    /// painting. Errors if it did, or if the networks refuse their input.
     fn paint(
         &mut self,
         input: &PaintInput<'_>,
@@ -45,7 +45,7 @@ pub enum PaintModel {
 pub struct PaintWith {
     /// The networks.
     pub model: PaintModel,
-    /// How.
+    /// Options of the painting.
     pub options: PaintOptions,
 }
 
@@ -65,7 +65,7 @@ impl std::fmt::Debug for PaintModel {
     }
 }
 
-/// The same networks in memory.
+/// Equal if both are the same networks in memory.
 impl PartialEq for PaintModel {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
@@ -76,10 +76,10 @@ impl PartialEq for PaintModel {
     }
 }
 
-/// Public weights that somebody in this process holds, by their folder.
+/// Public weights in use in this process, by their folder.
 static HELD: Mutex<Vec<(PathBuf, Weak<Pipeline>)>> = Mutex::new(Vec::new());
 
-/// The networks of a folder; they have gigabytes, so those that somebody holds are not read again.
+/// The networks of a folder; they have gigabytes, so networks in use are not read again.
 fn open_once(folder: &Path) -> Result<Arc<Pipeline>, String> {
     let mut held = HELD.lock().unwrap_or_else(PoisonError::into_inner);
     held.retain(|(_, pipeline)| pipeline.strong_count() > 0);
@@ -118,7 +118,7 @@ impl PaintModel {
         Ok(Self::Own(Arc::new(nets)))
     }
 
-    /// Why the processor paints, though this build could use a card.
+    /// Reason why the processor paints although this build could use a card; `None` if there is none.
     pub fn without_card(&self) -> Option<&str> {
         match self {
             Self::Own(_) => None,

@@ -7,20 +7,22 @@ use super::surfaces::{cells_of, pixels_before, shared_cells};
 use nets::picture::CELL;
 use stable::noise::{carried, fresh};
 
-/// Where the noise of a frame comes from.
+/// Source of the noise of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NoisePrior {
-    /// It belongs to the places of the pictures, whatever they show.
+    /// Noise that belongs to the places of the pictures, whatever they show.
     Places,
-    /// It belongs to the surfaces that are seen: it goes along with them from frame to frame, and cameras that see one share it.
+    /// Noise that belongs to the visible surfaces: it moves with them from frame to frame, and cameras that see the
+    /// same surface share it.
     #[default]
     Surfaces,
-    /// Each frame has its own.
+    /// Separate noise for each frame.
     Frames,
 }
 
 impl NoisePrior {
-    /// Noise `[view][row][column][latent]` of a frame that is the `number`th of a drive, after an earlier one with its noise if there is one near.
+    /// Noise `[view][row][column][latent]` of a frame that is the `number`th of a drive. It follows an earlier frame
+    /// and its noise if there is one near.
     pub(super) fn of(
         self,
         seen: &Seen,

@@ -1,5 +1,5 @@
-//! Camera pictures by public weights: Stable Diffusion goes on from the program's own rendering of each camera, told by text,
-//! and shown classes, depths or planes where the folder has networks for them.
+//! Camera pictures by public weights: Stable Diffusion starts from the program's own rendering of each camera. Its
+//! inputs are text, and classes, depths or planes where the folder has networks for them.
 
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -22,22 +22,22 @@ use stable::{Control, Pictures, Pipeline, Planes, Request, StableError, Start, S
 pub(super) struct PublicPainter {
     pipeline: Arc<Pipeline>,
     options: PaintOptions,
-    /// Pictures are made of the steps too.
+    /// True if pictures are made of the steps too.
     previews: bool,
-    /// The newest last.
+    /// Pictures of recent states, the newest last.
     kept: VecDeque<Painted>,
 }
 
-/// How much of a picture that goes on from the frame before is painted anew at most: enough to mend what the warp tore.
+/// Largest share of a picture that is painted anew if it continues the frame before: enough to mend what the warp tore.
 const ONWARD: f64 = 0.5;
 
 /// Pictures of one state, in the ring's order.
 struct Painted {
     seen: Seen,
     images: Vec<Arc<CameraImage>>,
-    /// What they were drawn from, `[view][channel][row][column]`.
+    /// Noise that they were drawn from, `[view][channel][row][column]`.
     noise: Vec<f32>,
-    /// Counts frames that go on from each other.
+    /// Number of the frame in a row of frames that continue each other.
     frame: u32,
 }
 
@@ -47,22 +47,22 @@ struct Onward<'a> {
     pixels: Vec<Option<u32>>,
 }
 
-/// The pictures before an edit, and of each view the share of each pixel that is new.
+/// The pictures before an edit, and for each view the share of each pixel that is new.
 type Before<'a> = (&'a [Arc<CameraImage>], Vec<Vec<f32>>);
 
-/// What some views of one frame are drawn from.
+/// Input that some views of one frame are drawn from.
 struct Told<'a> {
     input: &'a PaintInput<'a>,
     seen: &'a Seen,
     ring: &'a Ring,
     before: Option<Before<'a>>,
     onward: Option<Onward<'a>>,
-    /// Of all views.
+    /// Noise of all views.
     noise: &'a [f32],
 }
 
 impl Told<'_> {
-    /// How much of the pictures is drawn anew: one step at least, unless none is asked for.
+    /// Share of the pictures that is drawn anew: one step at least, unless it is 0 in the options.
     fn strength(&self, options: &PaintOptions) -> f64 {
         let strength = match self.onward {
             Some(_) => options.strength.min(ONWARD),
@@ -77,7 +77,7 @@ impl Told<'_> {
         }
     }
 
-    /// The picture that a view is drawn over: the rendered one, and what is known of it from before.
+    /// The picture that a view is drawn over: the rendered one, with the pixels that are known from earlier pictures.
     fn start(&self, view: usize) -> Vec<u8> {
         let plain = self.seen.pixels(view).1.iter().flatten().copied();
         let mut picture: Vec<u8> = plain.collect();
@@ -102,7 +102,7 @@ impl Told<'_> {
         picture
     }
 
-    /// The picture of a view of new colours, those from before where nothing is new.
+    /// The picture of a view with new colours, and the earlier colours where nothing is new.
     fn image(&self, view: usize, rgb: &[u8]) -> CameraImage {
         let [height, width] = self.ring.size.pixels();
         let pixels = rgb.chunks_exact(3);
@@ -118,7 +118,7 @@ impl Told<'_> {
         image
     }
 
-    /// How the first of some views looks by now: a pixel a cell, enlarged.
+    /// Preview of the first of some views: one pixel per cell, enlarged.
     fn preview(&self, step: &Step<'_>, view: usize) -> Option<CameraImage> {
         let seen = step.preview()?;
         let [rows, columns] = seen.size().map(|side| side as u32);
@@ -152,7 +152,7 @@ impl PublicPainter {
         [whole(width as f64 * aspect), width]
     }
 
-    /// Draws views together: their pictures.
+    /// Draws views together and returns their pictures.
     fn draw(
         &self,
         told: &Told<'_>,
@@ -213,7 +213,8 @@ impl PublicPainter {
         Ok(of_views.map(|(view, rgb)| told.image(*view, rgb)).collect())
     }
 
-    /// What each ControlNet that is shown pictures sees: classes, or depths, or boxes and lanes, if its folder is named for them.
+    /// Input of each ControlNet that takes pictures: depths, or boxes and lanes, if its folder is named for them, else
+    /// classes.
     fn shown(&self, told: &Told<'_>, views: &[usize]) -> Vec<(usize, Vec<f32>)> {
         let nets = self.pipeline.controls().iter().enumerate();
         let pictures = nets.filter(|(_, net)| !net.takes_planes());
@@ -236,7 +237,7 @@ impl PublicPainter {
             .collect()
     }
 
-    /// What is told of a view: the user's words, the light and the camera.
+    /// Prompt of a view: the user's words, the light and the camera.
     fn prompt(&self, told: &Told<'_>, view: usize) -> String {
         let conditions = &told.input.conditions;
         let camera = told

@@ -16,17 +16,18 @@ const UNIT_PX: usize = 16;
 /// Shortest and longest side, px.
 const SIDE_PX: [usize; 2] = [64, 512];
 
-/// A rig's cameras in the order in which they stand around the vehicle, clockwise from above, from that in front on (the rig's first, if
-/// none is called so): a place does not depend on where the vehicle heads.
+/// A rig's cameras in the order in which they stand around the vehicle: clockwise from above, beginning with the front
+/// camera (the rig's first, if none is called so). A place does not depend on the vehicle's heading.
 pub(super) struct Ring {
-    /// How many, and the size of their pictures.
+    /// Number of cameras, and the size of their pictures.
     pub size: RingSize,
-    /// Of each place in the ring, the index in the rig.
+    /// Index in the rig of the camera at each place of the ring.
     cameras: Vec<usize>,
 }
 
 impl Ring {
-    /// At the size that the picture networks learned. None without cameras. Errors if there are more than 64.
+    /// The ring at the size that the picture networks learned. `None` without cameras. Errors if there are more than
+    /// 64.
     pub fn of(cameras: &[Camera]) -> Result<Option<Self>, PaintError> {
         match cameras.first() {
             Some(camera) => Self::sized(cameras, native_px(camera)),
@@ -34,8 +35,8 @@ impl Ring {
         }
     }
 
-    /// At a size, height and width in px. None without cameras. Errors if there are more than 64, or the size is none for
-    /// the networks.
+    /// The ring at a size, height and width in px. `None` without cameras. Errors if there are more than 64, or if the
+    /// networks do not take the size.
     pub fn sized(cameras: &[Camera], size: [usize; 2]) -> Result<Option<Self>, PaintError> {
         if cameras.is_empty() {
             return Ok(None);
@@ -75,7 +76,7 @@ impl Ring {
         places
     }
 
-    /// Pictures in the ring's order, in that of the rig.
+    /// Sorts pictures in the ring's order into the order of the rig.
     pub fn in_rig_order(&self, images: &[Arc<CameraImage>]) -> Vec<Arc<CameraImage>> {
         let mut sorted: Vec<_> = self.cameras.iter().zip(images).collect();
         sorted.sort_by_key(|(camera, _)| **camera);

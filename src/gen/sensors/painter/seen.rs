@@ -1,4 +1,5 @@
-//! What the networks are told of a frame, and what they are not told but that decides where pictures change: shadows.
+//! Inputs of the networks for a frame, and the rendered light, which is no input but decides where pictures change
+//! (shadows).
 
 use rayon::prelude::*;
 
@@ -9,16 +10,16 @@ use crate::picture_hints::{HintedFrame, PictureHints};
 use nets::picture::{CAMERA_NUMBERS, Condition, Motion, RingSize};
 use scene::{Camera, Conditions, Pose, TimeOfDay, Weather};
 
-/// Farther than this from where it was, m, a camera sees another scene.
+/// Distance from its earlier place beyond which a camera sees another scene, m.
 const FAR_M: f64 = 4.0;
-/// So is what turned by more, rad.
+/// Turn beyond which it does, rad.
 const TURNED_RAD: f64 = 0.35;
 
 /// A frame as the cameras of a ring see it.
 #[derive(PartialEq)]
 pub(super) struct Seen {
     conditions: Conditions,
-    /// At the size of their pictures, in the ring's order.
+    /// Cameras at the size of their pictures, in the ring's order.
     cameras: Vec<Camera>,
     views: Vec<View>,
 }
@@ -26,7 +27,7 @@ pub(super) struct Seen {
 #[derive(PartialEq)]
 struct View {
     hints: PictureHints,
-    /// sRGB of the program's own renderer, row-major, without what belongs to the lens.
+    /// sRGB of the program's own renderer, row-major, without effects of the lens.
     plain: Vec<[u8; 3]>,
 }
 
@@ -74,7 +75,7 @@ impl Seen {
         self.conditions == other.conditions && self.cameras == other.cameras
     }
 
-    /// Of a view: hints and colours of the renderer of each pixel.
+    /// Hints and rendered colours of each pixel of a view.
     pub fn pixels(&self, place: usize) -> (&PictureHints, &[[u8; 3]]) {
         let view = &self.views[place];
         (&view.hints, &view.plain)
@@ -88,7 +89,7 @@ impl Seen {
             .collect()
     }
 
-    /// What the transformer hears.
+    /// Condition of the transformer.
     pub fn condition(&self, size: RingSize) -> Condition {
         let bytes = |of: fn(&PictureHints) -> &[u8]| {
             let views = self.views.iter();
@@ -116,8 +117,8 @@ impl Seen {
         }
     }
 
-    /// How each camera moved since an earlier frame; none if the light is another, or one moved so far that it sees
-    /// something else.
+    /// Motion of each camera since an earlier frame; `None` if the light differs, or if a camera moved so far that it
+    /// sees another scene.
     pub fn motion_since(&self, earlier: &Self, size: RingSize) -> Option<Vec<Motion>> {
         let fits = self.conditions == earlier.conditions && self.cameras.len() == earlier.cameras.len();
         debug_assert_eq!(size.views(), self.cameras.len());

@@ -1,5 +1,5 @@
-//! Which pixel of another picture shows the same surface: of the frame before, or of the camera beside. Depth and motion are
-//! known exactly, so noise and colours can go along with what they belong to.
+//! Correspondence of pixels: which pixel of the frame before, or of the camera beside, shows the same surface. Depth
+//! and motion are known exactly, so noise and colours can move with their surfaces.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use super::seen::Seen;
 use crate::rays::CameraRays;
 
-/// What has no depth is so far away, m.
+/// Depth taken where there is no surface, m.
 const FAR_M: f64 = 2000.0;
-/// A surface is the same if its depth differs by less than this share, and this many metres.
+/// Largest difference in depth for the same surface: this share of the depth plus this many metres.
 const SAME_SHARE: f64 = 0.03;
 const SAME_M: f64 = 0.25;
 
@@ -44,7 +44,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Where the surface in a pixel is, world frame, m.
+    /// Place of the surface in a pixel, world frame, m.
     fn surface(&self, at: [usize; 2]) -> DVec3 {
         let ray = self.rays.at(at[1] as f64 + 0.5, at[0] as f64 + 0.5);
         ray.origin + ray.direction * self.depth_m(at)
@@ -56,15 +56,15 @@ impl<'a> View<'a> {
         let within = |v: f64, n: usize| (v >= 0.0 && v < n as f64).then_some(v as usize);
         let at = [within(px.y, self.size[0])?, within(px.x, self.size[1])?];
         let deep = self.depth_m(at);
-        // All that has no depth is one sky, however far it is taken to be.
+        // Everything without depth is one sky, whatever distance is assumed for it.
         let is_sky = deep == FAR_M && px.z > FAR_M / 2.0;
         let same = px.z > 0.0 && (deep - px.z).abs() <= SAME_M + SAME_SHARE * px.z;
         (is_sky || same).then_some(at)
     }
 }
 
-/// For each pixel `[view][row][column]` of a frame the pixel of an earlier one that showed the same surface, in the same view
-/// if it did there. Both are of rings of so many views.
+/// For each pixel `[view][row][column]` of a frame the pixel of an earlier frame that showed the same surface, in the
+/// same view if it did there. Both rings have the given number of views.
 pub(super) fn pixels_before(now: &Seen, before: &Seen, views: usize) -> Vec<Option<u32>> {
     let (now, then) = (View::all(now, views), View::all(before, views));
     let pixels = now.first().map_or(0, |v| v.size[0] * v.size[1]);
@@ -86,7 +86,7 @@ pub(super) fn pixels_before(now: &Seen, before: &Seen, views: usize) -> Vec<Opti
     (0..views * pixels).into_par_iter().map(of_pixel).collect()
 }
 
-/// The same for cells of `cell` pixels a side, by the pixels in their middles.
+/// Correspondence as [`pixels_before`] gives it, for cells of `cell` pixels a side, by the pixels in their middles.
 pub(super) fn cells_of(pixels: &[Option<u32>], [height, width]: [usize; 2], cell: usize) -> Vec<Option<u32>> {
     let (rows, columns) = (height / cell, width / cell);
     let views = pixels.len() / (height * width).max(1);
@@ -101,8 +101,8 @@ pub(super) fn cells_of(pixels: &[Option<u32>], [height, width]: [usize; 2], cell
     (0..views * rows * columns).map(of_cell).collect()
 }
 
-/// For each cell of `cell` pixels a side `[view][row][column]` the cell of a view drawn before it, in `order`, that shows the
-/// same surface: noise that both take is shared. Cells that are first to show theirs have none.
+/// For each cell of `cell` pixels a side `[view][row][column]` the cell of a view drawn before it, in `order`, that
+/// shows the same surface: the two share their noise. The first cell that shows a surface has none.
 pub(super) fn shared_cells(seen: &Seen, order: &[usize], cell: usize) -> Vec<Option<u32>> {
     let views = View::all(seen, order.len());
     let [height, width] = views.first().map_or([0, 0], |v| v.size);
@@ -115,7 +115,7 @@ pub(super) fn shared_cells(seen: &Seen, order: &[usize], cell: usize) -> Vec<Opt
             let found = order[..done].iter().find_map(|other| {
                 let [row, column] = views[*other].pixel(p_m)?.map(|n| n / cell);
                 let at = (row < rows && column < columns).then(|| (other * rows + row) * columns + column)?;
-                // What it took from a third view is there to be taken too.
+                // If that cell shares the noise of a third view, this one does too.
                 Some(from[at].unwrap_or(at as u32))
             });
             from[place * rows * columns + i] = found;

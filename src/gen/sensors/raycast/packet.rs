@@ -12,14 +12,15 @@ use scene::Extent;
 
 /// Rays in a packet.
 pub const LANES: usize = 8;
-/// What a ray meets: the distance in units of its direction's length, and the voxel.
+/// Hit of a ray: the distance in units of its direction's length, and the voxel; `None` if it meets nothing.
 pub type Met = Option<(f64, [u16; 3])>;
 
 /// Positions are integers in 1/2^22 voxel.
 pub(super) const FRACTION: u32 = 22;
-/// Widens what a ray may touch, 2^-12 voxel. Each slab adds at most 2^-23 voxel of rounding, [`MOST`] of them 2^-14.
+/// Margin by which the space that a ray may touch is widened, 2^-12 voxel. Each slab adds at most 2^-23 voxel of
+/// rounding, [`MOST`] of them 2^-14.
 pub(super) const MARGIN: i32 = 1 << (FRACTION - 12);
-/// Slabs that a packet goes through together: 153 m. Rays that go on are cast alone then. Positions count from beside
+/// Slabs that a packet goes through together: 153 m. Rays that go on are then cast alone. Positions count from beside
 /// the origin, so that they stay below 512 voxels.
 const MOST: i32 = 384;
 /// Rays that run this much faster across than along the packet's main axis are cast alone.
@@ -101,7 +102,7 @@ struct Lanes {
     height_step: [i32; LANES],
     /// One bit per ray: part of the packet.
     fits: u8,
-    /// One bit per ray: it has more slabs than are gone through here.
+    /// One bit per ray: true if it has more slabs than are gone through here.
     long: u8,
 }
 
@@ -214,7 +215,7 @@ impl Lanes {
         lanes
     }
 
-    /// Rays that are no part of the packet go where one goes that is.
+    /// Lets rays outside the packet follow one that is part of it.
     #[inline(always)]
     fn leave_out(&mut self) {
         let one = self.fits.trailing_zeros() as usize % LANES;

@@ -13,7 +13,7 @@ const BLOCK_SHIFT: u32 = BLOCK.trailing_zeros();
 /// Added on both sides of a range: 1e-5 voxel. Steps are off by 1/2^32 each, up to a map's longest side of them.
 const MARGIN: i64 = 1 << (FRACTION - 17);
 const _: () = assert!(2 * Extent::MAX_SIDE as i64 <= MARGIN);
-/// Farther out the start is too coarse for the margin, voxels.
+/// Distance beyond which a start is too coarse for the margin, voxels.
 const FAR: f64 = 1e7;
 /// Steeper rays see few columns and many heights; the walk alone is right for them.
 const STEEP: f64 = 1.0;
@@ -29,7 +29,7 @@ pub(super) struct Slab {
     pub cell: usize,
     /// True for the slab in which the ray starts.
     pub first: bool,
-    /// Where the ray enters the slab and where it leaves it.
+    /// Distances at which the ray enters the slab and leaves it.
     pub t_in: f64,
     pub t_out: f64,
 }
@@ -46,7 +46,7 @@ pub(super) struct Scan {
     block_strides: [usize; 2],
     /// Position across at the slab's entry, widened, border included; and its growth per slab.
     across: Line,
-    /// The same for the height, without border.
+    /// Height at the slab's entry, widened, without border; and its growth per slab.
     height: Line,
     origin: f64,
     inverse: f64,
@@ -57,7 +57,7 @@ pub(super) struct Scan {
 struct Line {
     entry: i64,
     per_slab: i64,
-    /// From the widened entry to the widened exit of one slab.
+    /// Distance from the widened entry to the widened exit of one slab.
     width: i64,
 }
 
@@ -87,7 +87,7 @@ impl Line {
 }
 
 impl Scan {
-    /// `None` for rays that are better walked: steep ones and those from very far.
+    /// Starts a scan; `None` for rays that are better walked: steep ones and those from very far.
     #[inline]
     pub fn new(masks: &ColumnMasks, start: &Start) -> Option<Scan> {
         let (o, d) = (start.origin, start.direction);

@@ -13,9 +13,9 @@ const STILL: f64 = 1e-30;
 /// The part of a ray inside the grid, in units of its direction's length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Where the ray enters; 0 if it starts inside.
+    /// Distance at which the ray enters; 0 if it starts inside.
     pub enter: f64,
-    /// Where it leaves.
+    /// Distance at which the ray leaves.
     pub leave: f64,
 }
 
@@ -67,13 +67,13 @@ pub(super) struct Start {
     pub direction: DVec3,
     /// 1 / direction; infinite for an axis at rest.
     pub inverse: DVec3,
-    /// Where it enters.
+    /// Distance at which the ray enters the grid.
     pub t_in: f64,
-    /// Nothing entered here or later counts.
+    /// End of the walk: voxels entered at this distance or later do not count.
     pub t_end: f64,
 }
 
-/// Where a walk stands: the voxel entered at `t_in`.
+/// State of a walk: the voxel entered at `t_in`.
 pub(super) struct State {
     t_in: f64,
     axes: [Axis; 3],
@@ -83,7 +83,7 @@ pub(super) struct State {
 struct Axis {
     cell: usize,
     step: isize,
-    /// Where the ray leaves this cell along this axis.
+    /// Distance at which the ray leaves this cell along this axis.
     t_next: f64,
     plane: f64,
     plane_step: f64,
@@ -92,7 +92,7 @@ struct Axis {
 }
 
 impl Start {
-    /// `None` if the ray misses the grid or its range ends before.
+    /// Prepares a walk; `None` if the ray misses the grid or its range ends before.
     #[inline]
     pub fn new(shape: [usize; 3], origin: DVec3, direction: DVec3, max_t: f64) -> Option<Start> {
         let inverse = DVec3::from_array(direction.to_array().map(inverse_of));

@@ -8,20 +8,21 @@ pub(super) trait Wide: Copy {
     /// Runs `work` with the instructions that this stands for.
     fn run<W: Work>(self, work: W);
 
-    /// One bit per ray: may it touch an occupied height of `union`? It climbs by `step` a slab, from `height`, for
-    /// so many `slabs`, both ends widened by the margin. Bit 0 of `union` is below the grid, bit 17 above it.
+    /// Finds the rays that may touch an occupied height of `union`, one bit per ray. A ray climbs from `height` by
+    /// `step` a slab, for `slabs` slabs, both ends widened by the margin. Bit 0 of `union` is below the grid, bit 17
+    /// above it.
     fn touching(self, height: &[i32; LANES], step: &[i32; LANES], slabs: i32, union: u32) -> u8;
 
     /// `height` + `slabs` * `step`.
     fn climb(self, height: &mut [i32; LANES], step: &[i32; LANES], slabs: i32);
 
-    /// Least and greatest.
+    /// Least and greatest value.
     fn bounds(self, values: &[i32; LANES]) -> (i32, i32);
 }
 
-/// What is run.
+/// Work to be run with these operations.
 pub(super) trait Work {
-    /// Does it; inlined into code for the instructions of `wide`.
+    /// Runs the work; inlined into code for the instructions of `wide`.
     fn with(self, wide: impl Wide);
 }
 
@@ -32,7 +33,7 @@ pub(super) fn heights(low: i32, high: i32) -> u32 {
     (2u32 << bit(high)) - (1u32 << bit(low))
 }
 
-/// Runs `work` with the best there is.
+/// Runs `work` with the best instructions of this machine.
 pub(super) fn run(work: impl Work) {
     #[cfg(target_arch = "x86_64")]
     if let Some(v3) = pulp::x86::V3::try_new() {
@@ -41,7 +42,7 @@ pub(super) fn run(work: impl Work) {
     Plain.run(work);
 }
 
-/// Any processor.
+/// The operations for any processor.
 #[derive(Clone, Copy)]
 pub(super) struct Plain;
 

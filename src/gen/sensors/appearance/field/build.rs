@@ -1,4 +1,4 @@
-//! What the field is made of: what goes on above the grid, trunks, softened occupancy.
+//! Steps that build the field: continuations above the grid, trunks, softened occupancy.
 
 use glam::IVec3;
 
@@ -7,7 +7,7 @@ use super::Structure;
 use scene::appearance::{FieldShape, NZ, TRUNK};
 use scene::{Class, Extent};
 
-/// Continues above the grid what reaches its top.
+/// Continues above the grid the structures and crowns that reach its top.
 pub fn raise(shape: &FieldShape, solid: &mut [u8], structure: &[u16], structures: &mut [Structure]) {
     let FieldShape { nx, ny, .. } = *shape;
     let at = |x: usize, y: usize, z: usize| shape.at(x, y, z);

@@ -1,5 +1,5 @@
-//! Which thing beside the road each column of man-made voxels belongs to. What a thing explains looks as the thing does,
-//! whatever else stands, comes or goes around it.
+//! Owners of columns of man-made voxels: the thing of the scenery that each column belongs to. A column with an owner
+//! looks as that thing does, whatever else stands, comes or goes around it.
 
 use glam::{DVec2, Vec2};
 
@@ -8,22 +8,22 @@ use scene::background::in_extent;
 use scene::raster::{disc_cells, line_cells, polygon_cells};
 use scene::{Background, BevLayout, Class, Extent, Form, Thing};
 
-/// Voxels this far outside a thing's ground plan are its own too: those of labels and networks are not exact, m.
+/// Margin around a thing's ground plan within which voxels are its own too, m: labels and networks are not exact.
 const MARGIN_M: f64 = Extent::VOXEL_M;
 
-/// A thing of man-made voxels, as far as its look goes.
+/// Look of a thing of man-made voxels.
 #[derive(Clone, Copy, Debug)]
 pub struct Owner {
     /// See [`Thing::look`].
     pub look: u32,
-    /// What its form says; none of a post, whose voxels are all near one another.
+    /// Properties of its form; `None` for a post, whose voxels are all near one another.
     pub form: Option<OwnForm>,
 }
 
-/// What the form of a thing says of how it looks.
+/// Properties of a thing's form that decide how it looks.
 #[derive(Clone, Copy, Debug)]
 pub struct OwnForm {
-    /// Direction of its walls, a unit vector; those at right angles count alike.
+    /// Direction of its walls, a unit vector; directions at right angles count alike.
     pub axis: Vec2,
     /// Columns of its ground plan.
     pub columns: u32,
@@ -33,17 +33,18 @@ pub struct OwnForm {
     pub middle: Vec2,
 }
 
-/// Things, and what they own.
+/// Things and the columns that they own.
 #[derive(Clone, Debug, Default)]
 pub struct Owners {
-    /// In the order of their ids.
+    /// Owners in the order of their ids.
     pub all: Vec<Owner>,
-    /// For each column of the padded field `[x][y]`: 0, or one more than the place in `all`. Empty: nobody owns anything.
+    /// For each column of the padded field `[x][y]`: 0, or one more than the place in `all`. Empty if no column has an
+    /// owner.
     pub of: Vec<u16>,
 }
 
 impl Owners {
-    /// Of a background, on the ground of a layout that covers the field's map.
+    /// Finds the owners among the things of a background, on the ground of a layout that covers the field's map.
     pub fn new(background: &Background, layout: &BevLayout, shape: &FieldShape) -> Self {
         let extent = shape.extent;
         let made = |t: &Thing| t.form.class() == Class::Manmade;
@@ -54,7 +55,7 @@ impl Owners {
         }
         let mut of = vec![0u16; shape.nx * shape.ny];
         let mut all: Vec<Owner> = things.iter().map(|t| owner(t, layout)).collect();
-        // Ground plans lie over what is only near to one, smaller things over larger ones.
+        // A ground plan takes precedence over a margin, a smaller thing over a larger one.
         for margin_m in [MARGIN_M, 0.0] {
             for rank in 0..3 {
                 for (i, thing) in things

@@ -1,6 +1,6 @@
-//! Buildings, walls and poles: which columns of man-made voxels look alike, and how. What a thing beside the road explains
-//! looks as the thing does. The rest looks as the middle of it that is nearest, so that nothing farther than 18 m from an edit
-//! looks otherwise after it.
+//! Buildings, walls and poles: which columns of man-made voxels look alike, and how. A column that belongs to a thing
+//! of the scenery looks as that thing does. Every other column looks as the nearest middle of its structure does, so an
+//! edit changes no look farther away than 18 m.
 
 use std::collections::BTreeMap;
 
@@ -13,13 +13,13 @@ use super::owners::Owners;
 use scene::Class;
 use scene::appearance::{FieldShape, NZ};
 
-/// Voxels that hang together with those of a thing are its own so many columns around it: labels are ragged.
+/// Margin around a thing, columns: connected voxels within it are its own, since labels are ragged.
 const RAGGED: usize = 3;
-/// A column looks as a middle does that is at most so many columns away.
+/// Largest distance of the middle whose look a column takes, columns.
 const REACH: usize = 32;
-/// How a middle looks is told by what hangs together with it within so many columns.
+/// Radius around a middle within which connected columns decide its look, columns.
 const AROUND: usize = 12;
-/// No column counts as deeper inside than this, columns.
+/// Largest depth inside a structure that counts, columns.
 const DEEPEST: u32 = 12;
 /// An edit changes no look farther away than this, m.
 #[cfg(test)]
@@ -73,7 +73,7 @@ impl<'a> Made<'a> {
         Vec2::new((c / ny) as f32, (c % ny) as f32) * 0.4 + self.shape.blocks_from_m
     }
 
-    /// How some columns look together.
+    /// Look that some columns have together.
     fn look(&self, columns: &[usize], id: u32) -> Structure {
         let members = Members::of(columns, self.shape.ny);
         let member = |c: usize, dx: isize, dy: isize| f32::from(u8::from(members.has(c, dx, dy)));
@@ -111,9 +111,9 @@ impl<'a> Made<'a> {
     }
 }
 
-/// What has more columns than this is no pole.
+/// Most columns of a pole.
 const THIN: usize = 16;
-/// As far as the direction of a wall is looked for, columns.
+/// Radius of the neighbourhood in which the direction of a wall is sought, columns.
 const EDGE: usize = 3;
 
 /// Some columns, with room around them.
@@ -143,7 +143,7 @@ impl Members {
         members
     }
 
-    /// True if the column so far from one of them is one too; at most [`EDGE`] away.
+    /// True if the column at this offset from one of them is one too; the offset is at most [`EDGE`].
     fn has(&self, c: usize, dx: isize, dy: isize) -> bool {
         let x = (c / self.ny - self.from[0] + EDGE) as isize + dx;
         let y = (c % self.ny - self.from[1] + EDGE) as isize + dy;
@@ -151,7 +151,7 @@ impl Members {
     }
 }
 
-/// The structure of each column, 0 for none, else its place in the list and one; and the list.
+/// Structure of each column (0 for none, else one more than its place in the list), and the list.
 pub fn structures(
     shape: &FieldShape,
     solid: &[u8],
@@ -198,7 +198,8 @@ pub fn structures(
     (of, all)
 }
 
-/// The owner of each column that has voxels: who stands there, or whose voxels hang together with it nearby.
+/// Owner of each column that has voxels: the thing that stands there, or a thing near by whose voxels are connected
+/// with it.
 fn owned(made: &Made<'_>, owners: &Owners) -> Vec<u16> {
     let mut owned = vec![0u16; made.has.len()];
     if owners.of.len() != owned.len() {
@@ -207,7 +208,7 @@ fn owned(made: &Made<'_>, owners: &Owners) -> Vec<u16> {
     for (c, owner) in owned.iter_mut().enumerate().filter(|(c, _)| made.has[*c]) {
         *owner = owners.of[c];
     }
-    // Posts are slim: what is beside one is something else.
+    // Posts are slim: voxels beside one belong to another thing.
     let spreads = |owner: u16| owner > 0 && owners.all[usize::from(owner) - 1].form.is_some();
     for _ in 0..RAGGED {
         let free = (0..owned.len()).filter(|c| made.has[*c] && owned[*c] == 0);
@@ -221,8 +222,8 @@ fn owned(made: &Made<'_>, owners: &Owners) -> Vec<u16> {
     owned
 }
 
-/// For each of some columns the middle that it looks as: of what it hangs together with within [`REACH`], the deepest inside;
-/// of those equally deep one by a hash of its place.
+/// For each of some columns the middle whose look it takes: the deepest of the columns that are connected with it
+/// within [`REACH`]. On a tie a hash of the place decides.
 fn middles(made: &Made<'_>, columns: &[usize]) -> Vec<usize> {
     let mut number = vec![u32::MAX; if columns.is_empty() { 0 } else { made.has.len() }];
     for (i, c) in columns.iter().enumerate() {
@@ -260,7 +261,7 @@ fn middles(made: &Made<'_>, columns: &[usize]) -> Vec<usize> {
     best.into_iter().map(|(_, _, c)| c).collect()
 }
 
-/// The columns without an owner that hang together with a middle within [`AROUND`] of it.
+/// The columns without an owner that are connected with a middle within [`AROUND`] of it.
 fn near(made: &Made<'_>, owned: &[u16], middle: usize) -> Vec<usize> {
     let ny = made.shape.ny;
     let within =
@@ -277,7 +278,7 @@ fn near(made: &Made<'_>, owned: &[u16], middle: usize) -> Vec<usize> {
     seen.into_iter().collect()
 }
 
-/// A number of a column of the field that goes with its place in the ego frame, whatever the map.
+/// Number of a column of the field by its place in the ego frame, whatever the map.
 fn place_number(shape: &FieldShape, column: usize) -> u32 {
     let from = shape.extent.from();
     let at = [column / shape.ny, column % shape.ny];

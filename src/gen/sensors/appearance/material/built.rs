@@ -1,4 +1,4 @@
-//! Voxels: facades with windows, leaves and bark, and what has no material of its own.
+//! Voxels: facades with windows, leaves and bark, and voxels without a material of their own.
 
 use glam::{IVec3, Vec2, Vec3};
 

@@ -157,7 +157,7 @@ impl Appearance {
         class.id()
     }
 
-    /// How much snow lies on the road, 0 to 1; `track` is how much tyres cleared it, none off the lanes.
+    /// Amount of snow on the road, 0 to 1; `track` is how much of it tyres cleared, `None` off the lanes.
     fn snow_on_road(&self, a: Vec2, fp: f32, track: Option<f32>) -> f32 {
         let clear = track.map_or(0.06, |track| 0.75 * track + 0.14);
         ramp(
@@ -170,7 +170,7 @@ impl Appearance {
         )
     }
 
-    /// Colour, cover and class of what is painted on the road.
+    /// Colour, cover and class of the paint on the road.
     fn road_paint(&self, p: Vec2, a: Vec2, fp: f32) -> (Vec3, f32, TruthClass) {
         let paint = &self.paint;
         let (q, white) = (p.as_dvec2(), Vec3::new(0.66, 0.66, 0.63));

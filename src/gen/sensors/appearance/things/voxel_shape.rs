@@ -9,13 +9,13 @@ use super::build::Builder;
 use scene::clip::OwnShape;
 use scene::{Extent, SceneBox};
 
-/// Blocks at most: what a card's lists hold easily.
+/// Most blocks: a number that the lists of a graphics card hold easily.
 const MOST: usize = 400;
-/// Edges are bevelled by so much, m.
+/// Bevel of the edges, m.
 const BEVEL_M: f32 = 0.03;
 
-/// Adds the voxels of an object as blocks, as few as are needed; see [`scene::Edit::SetShape`] for the cells. What reaches
-/// beyond the box is cut off.
+/// Adds the voxels of an object as blocks, as few as are needed; see [`scene::Edit::SetShape`] for the cells. Parts
+/// beyond the box are cut off.
 pub(super) fn voxel_shape(build: &mut Builder, b: &SceneBox, shape: &OwnShape, material: Material) {
     let voxel = Extent::VOXEL_M as f32;
     let below = shape.bottom_m(b) as f32;
