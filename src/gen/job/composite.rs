@@ -1,4 +1,5 @@
-//! Puts the generated region into the old occupancy and leaves everything else bit-identical. Also measures this.
+//! Puts the generated region into the old occupancy and leaves everything else bit-identical. Also measures that
+//! nothing else changed, and how well the region joins its surroundings.
 //!
 //! This is done with labels, after decoding. Blending latents instead would change labels outside the region, because
 //! the decoder of a cell sees its neighbours.

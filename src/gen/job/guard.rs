@@ -19,7 +19,7 @@ pub struct Panicked {
 }
 
 impl Panicked {
-    /// From the payload of a panic.
+    /// Takes the message from the payload of a panic.
     pub fn new(thread: &str, payload: &(dyn Any + Send)) -> Self {
         let text = payload
             .downcast_ref::<&str>()

@@ -158,7 +158,7 @@ pub fn measure_all(
 }
 
 impl Table {
-    /// For a report of all suites.
+    /// JSON of the table for a report of all suites.
     pub fn json(&self) -> Value {
         let mut out = match &self.found {
             Ok((report, _)) => report.json.clone(),

@@ -26,7 +26,7 @@ pub struct Options {
     pub reference_frames: usize,
     /// Sentences to judge (layout): a file of one JSON object a line, or a folder of such files.
     pub prompts: Option<PathBuf>,
-    /// At most so many of them, spread evenly; none: all (layout).
+    /// Largest number of sentences, spread evenly; `None` takes all (layout).
     pub sentences: Option<usize>,
     /// Reader of the sentences (layout).
     pub reader: Who,

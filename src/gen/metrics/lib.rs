@@ -32,13 +32,13 @@ pub enum MetricError {
     TooFew {
         /// Name of the set.
         which: &'static str,
-        /// Its size.
+        /// Size of the set.
         found: usize,
     },
     /// Samples of different length.
     #[error("a sample has {found} numbers, expected {expected}")]
     Width {
-        /// Its length.
+        /// Length of the sample.
         found: usize,
         /// Length of the first sample.
         expected: usize,

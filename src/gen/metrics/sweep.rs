@@ -173,8 +173,8 @@ impl SweepFigures {
         out
     }
 
-    /// How well class, range, angle and ring predict lost echoes: a logistic fit on every other sweep, judged on the
-    /// rest. NaN with fewer than two sweeps, or if no echo is lost.
+    /// Area under the ROC curve of a predictor of lost echoes by class, range, angle and ring: a logistic fit on every
+    /// other sweep, judged on the rest. NaN with fewer than two sweeps, or if no echo is lost.
     pub fn loss_auc(&self) -> f64 {
         let [train, test] = self.halves.each_ref().map(|half| {
             let (rows, lost): (Vec<Vec<f64>>, Vec<bool>) = half.iter().cloned().unzip();

@@ -59,9 +59,9 @@ impl MpiEncoder {
 
 /// Layers that bring the picture to the size of latents.
 enum Embedding {
-    /// From pixels, by convolutions of stride 2.
+    /// Convolutions of stride 2, from pixels.
     Pixels { all: Vec<Conv> },
-    /// For planes, which have that size already.
+    /// Encoder of planes, which have that size already.
     Planes(MpiEncoder),
 }
 

@@ -32,7 +32,7 @@ pub struct Condition {
     pub bev: Vec<u32>,
     /// Headings of objects.
     pub heading: Vec<u8>,
-    /// Densities and completeness asked for.
+    /// Densities and completeness that the user chose.
     pub named: Named,
     /// The layout extruded naively, with the background if it is given.
     pub draft: VoxelGrid,
@@ -40,7 +40,7 @@ pub struct Condition {
     pub given: bool,
     /// True if the networks do not get the draft.
     pub draft_hidden: bool,
-    /// Standing classes and ground height of each column of the draft.
+    /// Heights of standing things and of the ground in each column of the draft.
     pub columns: Vec<ColumnHeights>,
 }
 

@@ -35,7 +35,7 @@ pub enum Task {
 pub struct Refine {
     /// The scene with the edit, before it was generated.
     pub edited: Arc<Scene>,
-    /// How it was generated.
+    /// Parameters of the generation.
     pub params: GenParams,
     /// Result of the generation.
     pub result: VoxelGrid,

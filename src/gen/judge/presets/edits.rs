@@ -152,7 +152,7 @@ impl Bench {
         Ok(reference)
     }
 
-    /// How far `result` lies from the reference in the region that an edit touches.
+    /// Measures the distance of `result` from the reference in the region that an edit touches.
     pub fn compare(
         case: &Case,
         params: &GenParams,

@@ -16,7 +16,7 @@ use nets::OccModels;
 /// Outcomes of every setting on every case, as one process found them.
 #[derive(Default, Serialize, Deserialize)]
 pub struct Raw {
-    /// By part: names of cases and, for each, outcomes in the order of the settings.
+    /// Names of cases by part, each with its outcomes in the order of the settings.
     pub parts: BTreeMap<String, Vec<(String, Vec<Outcome>)>>,
 }
 

@@ -40,7 +40,7 @@ pub struct Plan {
     pub reference_steps: u32,
     /// Number of random settings across all knobs, beside each knob by itself.
     pub draws: usize,
-    /// Only these settings, as the report names them; all if none is named.
+    /// Settings to measure, by their names in the report; empty for all.
     pub only: Vec<String>,
     /// Folder that keeps the references between runs.
     pub keep_references: Option<PathBuf>,

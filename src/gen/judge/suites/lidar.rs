@@ -141,7 +141,7 @@ impl Echoes {
         }
     }
 
-    /// How often an echo that was lost has a greater predicted share than one that came back; 0.5 = no information.
+    /// Probability that a lost echo has a greater predicted share than one that came back; 0.5 = no information.
     fn drop_auc(&self) -> f64 {
         let scores = [&self.lost[..], &self.returned[..]].concat();
         let lost: Vec<bool> = (0..scores.len()).map(|i| i < self.lost.len()).collect();

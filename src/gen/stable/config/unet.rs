@@ -12,7 +12,7 @@ use crate::StableError;
 /// Kind of a level: with or without attention to the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Block {
-    /// With transformer blocks.
+    /// Convolutions with transformer blocks.
     #[serde(rename = "CrossAttnDownBlock2D", alias = "CrossAttnUpBlock2D")]
     Listens,
     /// Convolutions alone.

@@ -1,4 +1,4 @@
-//! From a prediction to the next state.
+//! Solver: the step from a prediction to the next state.
 
 use diffusion::solver::{DdimStep, SolverKind, Stepper};
 

@@ -76,7 +76,7 @@ pub(super) struct Voxels {
     worlds: [Told; 3],
     generated: [Told; 3],
     air: [Told; AIR.len()],
-    /// From the cameras alone, on learned pictures of worlds and of generated scenes.
+    /// Figures from the cameras alone, on learned pictures of worlds and of generated scenes.
     learned: [Told; 2],
     /// Share of the pixels that the segmenter classifies rightly: in rendered pictures of worlds and of generated
     /// scenes, then in learned pictures of each.

@@ -56,7 +56,7 @@ impl Fresh {
         Ok(())
     }
 
-    /// By kind and start.
+    /// Figures by kind and start.
     pub fn report(&self) -> Value {
         let each = self.0.iter().map(|(kind, starts)| {
             let by_start = STARTS.iter().zip(starts);

@@ -11,9 +11,10 @@ use world::voxelize::{Drive, Vertical, labelled};
 
 /// Scenes of one kind.
 pub enum Material {
-    /// So many held-out worlds with all their voxels.
+    /// Held-out worlds with all their voxels; holds their number.
     Complete(usize),
-    /// So many held-out worlds as a simulated labelling drive sees them, with the worlds' own layout and boxes.
+    /// Held-out worlds as a simulated labelling drive sees them, with the worlds' own layout and boxes; holds their
+    /// number.
     Labels(usize),
     /// Frames from files; layout and boxes are inferred.
     Files(Vec<PathBuf>),

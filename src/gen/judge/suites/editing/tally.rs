@@ -50,7 +50,7 @@ impl Tally {
         (mean_ci95(&s.invented).0, mean_ci95(&s.much).0)
     }
 
-    /// By state.
+    /// Figures by state.
     pub fn report(&self) -> Value {
         let each = STATES.iter().zip(&self.0).map(|(name, s)| {
             let by_class: BTreeMap<&str, usize> = Class::ALL

@@ -31,17 +31,17 @@ pub struct Tried {
 /// Number of voxels of an object that was added, moved or changed its class.
 #[derive(Clone, Copy, Debug)]
 pub struct Brought {
-    /// Its class now.
+    /// Class of the object after the edit.
     pub class: Class,
-    /// In the source, if an object of the same class moved; else `None`.
+    /// Voxels in the source, if an object of the same class moved; else `None`.
     pub before: Option<usize>,
-    /// In the draft.
+    /// Voxels in the draft.
     pub draft: usize,
-    /// In the networks' own result.
+    /// Voxels in the networks' own result.
     pub networks: usize,
-    /// In the result as shown.
+    /// Voxels in the result as shown.
     pub shown: usize,
-    /// In the result as shown, where the networks' own result holds the same class.
+    /// Voxels in the result as shown, where the networks' own result holds the same class.
     pub shared: usize,
 }
 
