@@ -1,5 +1,5 @@
-//! The layers of all networks of this crate. Maps are `[batch, channels, rows, columns]`, tokens `[batch, tokens,
-//! width]`.
+//! The layers of all networks of this crate. Maps are `[batch, channels, rows, columns]`, tokens
+//! `[batch, tokens, width]`.
 
 mod attention;
 pub(crate) mod convolution;

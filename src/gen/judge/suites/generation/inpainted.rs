@@ -64,8 +64,8 @@ fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
     squares.max_by_key(count).unwrap_or_default()
 }
 
-/// Mean IoU with the world over some draws, each as [inside, along the seam]: first of an inpainted square, then of a
-/// whole scene drawn without context.
+/// Mean IoU with the world over some draws, inside the square and along its seam: first of an inpainted square, then of
+/// a whole scene drawn without context.
 ///
 /// A whole scene is drawn from the world's layout, character and steps, and sees nothing of the world. It is put into
 /// the world's fullest square, and that square is inpainted from fresh noise: neither labels nor latents around carry
