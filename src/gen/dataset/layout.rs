@@ -10,9 +10,9 @@ use scene::{BevLayout, BoxId, SceneBox};
 use world::draw::{Draw, hash};
 use world::{template, traffic};
 
-/// Nodes of a frame; unused ones have kind 0.
+/// Number of nodes of a frame; unused ones have kind 0.
 pub const NODES: usize = 64;
-/// Edges of a frame; unused ones are -1.
+/// Number of edges of a frame; unused ones are -1.
 pub const EDGES: usize = 128;
 
 /// One training frame.
@@ -24,7 +24,7 @@ pub struct LayoutFrame {
 }
 
 /// Street and traffic of frame `index` of the data set of `seed`, seen from a vehicle in its lane, with the name of the
-/// template (none for an imported road).
+/// template (`None` for an imported road).
 pub fn street(
     seed: u64,
     index: u64,

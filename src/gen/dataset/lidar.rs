@@ -1,4 +1,4 @@
-//! Frames that the learned LiDAR is trained on: a world's voxels, and what a LiDAR measures of its surfaces.
+//! Training frames of the learned LiDAR: a world's voxels, and the measurements of a LiDAR on its surfaces.
 
 use glam::{DQuat, DVec3};
 use safetensors::tensor::Dtype;
@@ -13,9 +13,9 @@ use world::voxelize::{Drive, Vertical, complete, labels};
 pub struct LidarFrame {
     /// Every voxel of the world, in the vertical convention of labels.
     pub dense: VoxelGrid,
-    /// What a labelling drive through the world saw.
+    /// Labels from a simulated labelling drive through the world.
     pub labels: VoxelGrid,
-    /// The sensor: HDL-32E, mounted as in nuScenes in every other frame, else a little different.
+    /// The sensor: HDL-32E. Every other frame has it mounted as in nuScenes, the others slightly varied.
     pub pattern: LidarPattern,
     /// Its sweep, beam-major.
     pub rays: Vec<TruthRay>,

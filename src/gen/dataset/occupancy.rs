@@ -14,7 +14,7 @@ use world::{World, template, traffic};
 pub struct OccupancyFrame {
     /// Every voxel of the world.
     pub dense: VoxelGrid,
-    /// What a labelling drive through the world saw.
+    /// Labels from a simulated labelling drive through the world.
     pub labels: VoxelGrid,
     /// The layout extruded naively: a condition of the diffusion transformer.
     pub draft: VoxelGrid,
@@ -22,12 +22,12 @@ pub struct OccupancyFrame {
     pub bev: Vec<u32>,
     /// Headings of objects as [`raster::headings`] gives them, `[x][y]`.
     pub heading: Vec<u8>,
-    /// What the labelling drive observed, `[x][y]`: a bit per voxel, and [`KNOWN`].
+    /// Voxels that the labelling drive observed, `[x][y]`: a bit per voxel, and [`KNOWN`].
     pub observed: Vec<u32>,
 }
 
-/// The world of frame `index` of the data set of `seed`, and the frame's own seed. `roads` may give a
-/// layout for that seed, such as a place on an imported road; where it gives none, a template does.
+/// The world of frame `index` of the data set of `seed`, and the frame's own seed. `roads` may give a layout for that
+/// seed, such as a place on an imported road; if it gives `None`, a template does.
 pub fn world_of(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> (World, u64) {
     let seed = hash(hash(seed) ^ index);
     let mut layout = roads(seed).unwrap_or_else(|| template::any_layout(seed));
@@ -64,8 +64,8 @@ pub fn occupancy_frame(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevL
 }
 
 impl OccupancyFrame {
-    /// A frame of a data set that has labels and nothing else: they are both what is seen and what is
-    /// aimed at; layout and boxes are inferred.
+    /// A frame of a data set that has labels alone: they are both input and target. Layout and boxes are inferred, and
+    /// no voxel counts as observed.
     pub fn of_labels(labels: VoxelGrid) -> Self {
         let (layout, boxes) = (infer::layout(&labels), infer::boxes(&labels));
         Self {

@@ -1,4 +1,4 @@
-//! Frames for networks that perceive: one LiDAR sweep, the boxes around it, and what stands in each column.
+//! Frames for perception networks: one LiDAR sweep, the boxes around it, and the classes that stand in each column.
 
 use std::collections::BTreeMap;
 
@@ -18,14 +18,14 @@ use world::World;
 use world::draw::Draw;
 use world::voxelize::{Vertical, complete};
 
-/// Boxes of a frame; unused ones are 0.
+/// Largest number of boxes of a frame; unused ones are 0.
 pub const BOXES: usize = 128;
 /// Step of the coordinates of points, m.
 pub const POINT_STEP_M: f64 = 0.005;
-/// How far outside its box a point of the same class may be to be counted as one on it, m.
+/// Distance outside a box up to which a point of its class counts as on it, m.
 const MARGIN_M: f64 = 0.3;
 
-/// Which of the program's LiDARs made a sweep.
+/// The program's LiDAR that made a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Source {
@@ -33,7 +33,7 @@ pub enum Source {
     Surfaces = 0,
     /// The learned LiDAR over the voxels.
     Learned = 1,
-    /// The exact one over the voxels: ground two bins low, no echo strengths.
+    /// The exact LiDAR over the voxels: ground two bins low, no echo strengths.
     Voxels = 2,
 }
 
@@ -44,31 +44,31 @@ pub struct Return {
     pub at_m: DVec3,
     /// Strength of the echo, 0 to 255.
     pub intensity: f32,
-    /// Class of what was hit.
+    /// Class of the surface that was hit.
     pub class: Class,
 }
 
 /// One frame.
 pub struct PerceptionFrame {
-    /// What made the sweep.
+    /// The LiDAR that made the sweep.
     pub source: Source,
     /// The returns in the window.
     pub points: Vec<Return>,
-    /// Boxes whose centre lies in the window, and how many returns lie on each.
+    /// Boxes whose centre lies in the window, each with the number of returns on it.
     pub boxes: Vec<(SceneBox, usize)>,
     /// See [`standing`].
     pub standing: Vec<u8>,
 }
 
-/// Frame `index` of the data set of `seed`; the same arguments give the same frame. The learned LiDAR makes a third of them
-/// if its weights can be read.
+/// Frame `index` of the data set of `seed`; the same arguments give the same frame. A third of the frames come from the
+/// learned LiDAR if its weights can be read.
 pub fn perception_frame(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> PerceptionFrame {
     let (world, seed) = world_of(seed, index, roads);
     let grid = complete(&world, Vertical::Occ3d);
     swept(&world, &grid, seed)
 }
 
-/// A world as one of the program's LiDARs sees it, its voxels being `grid`.
+/// A world as one of the program's LiDARs sees it; `grid` holds its voxels.
 pub(super) fn swept(world: &World, grid: &VoxelGrid, seed: u64) -> PerceptionFrame {
     let mut draw = Draw::new(seed, "perception");
     let rig = mounted(&mut draw);
@@ -103,7 +103,7 @@ fn mounted(draw: &mut Draw) -> SensorRig {
     rig
 }
 
-/// What comes back of the exact surfaces, the own roof included.
+/// Returns of the exact surfaces, those of the vehicle's own roof included.
 fn surfaces(world: &World, pattern: &LidarPattern, seed: u64) -> Vec<Return> {
     let pose = pattern.ego_from_sensor();
     let columns = pattern.columns as usize;
@@ -150,7 +150,7 @@ fn of_point(point: &LidarPoint) -> Return {
 }
 
 impl PerceptionFrame {
-    /// A sweep in a scene; returns and boxes outside the window are left out.
+    /// A frame of a sweep in a scene; returns and boxes outside the window are left out.
     pub fn new(
         source: Source,
         mut points: Vec<Return>,
@@ -227,9 +227,9 @@ impl Shard for PerceptionFrame {
         "standing",
     ];
 
-    /// u8 `source` `[N]`; i32 `returns` `[N]`: how many of the points are used; i16 `points` `[N,P,3]` (5 mm,
-    /// ego frame) and u8 `intensity` `[N,P]`; i32 `box_count` `[N]`; f32 `boxes` `[N,128,9]`: centre, length, width, height (m), yaw (rad), class
-    /// and number of returns on it; u8 `standing` `[N,200,200]`.
+    /// u8 `source` `[N]`; i32 `returns` `[N]`: number of points that are used; i16 `points` `[N,P,3]` (5 mm, ego frame)
+    /// and u8 `intensity` `[N,P]`; i32 `box_count` `[N]`; f32 `boxes` `[N,128,9]`: centre, length, width, height (m),
+    /// yaw (rad), class and number of returns on it; u8 `standing` `[N,200,200]`.
     fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
         Self::columns(&frames.iter().collect::<Vec<_>>())
     }

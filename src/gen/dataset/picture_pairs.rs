@@ -1,4 +1,5 @@
-//! Two moments of a drive as six cameras see them, and what the voxels alone tell of each pixel: for the network that draws pictures.
+//! Two moments of a drive as six cameras see them, and hints for each pixel from the voxels alone: training data of the
+//! network that draws pictures.
 
 use glam::DVec2;
 use safetensors::tensor::Dtype;
@@ -16,15 +17,15 @@ use world::World;
 use world::draw::Draw;
 use world::voxelize::{Vertical, complete};
 
-/// Moments of a frame.
+/// Number of moments of a frame.
 pub const MOMENTS: usize = 2;
-/// How far the vehicle drives from one moment to the next, m.
+/// Range of the distance that the vehicle drives from one moment to the next, m.
 const WAY_M: [f64; 2] = [0.5, 2.5];
 /// Distance between two places that are tried, m.
 const STEP_M: f64 = 1.0;
-/// How far from the middle of the map a place is wanted, along x and y, m.
+/// Largest distance of the wanted place from the middle of the map, along x and y, m.
 const AROUND_M: f64 = 12.0;
-/// How pictures are made.
+/// Size and quality of pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// Width and height, px.
@@ -33,15 +34,15 @@ pub struct Look {
     pub quality: Quality,
 }
 
-/// What one moment's cameras see.
+/// Pictures, truth and hints of the cameras at one moment.
 pub struct PictureMoment {
-    /// Of each camera, sRGB, three bytes a pixel.
+    /// Picture of each camera, sRGB, three bytes a pixel.
     pub rgb: Vec<Vec<u8>>,
-    /// Of each camera.
+    /// Truth about the pixels of each camera.
     pub truth: Vec<CameraTruth>,
-    /// Of each camera.
+    /// Hints for the pixels of each camera, from the voxels alone.
     pub told: Vec<PictureHints>,
-    /// Of each camera, where sun or moon stand, a unit vector in the optical frame.
+    /// Direction of sun or moon for each camera, a unit vector in the optical frame.
     pub sun: Vec<[f32; 3]>,
 }
 
@@ -49,7 +50,7 @@ pub struct PictureMoment {
 pub struct PicturePair {
     /// Every voxel of the world, in the vertical convention of labels.
     pub dense: VoxelGrid,
-    /// Light and air.
+    /// Light and weather.
     pub conditions: Conditions,
     /// The moments, the earlier one first.
     pub moments: [PictureMoment; MOMENTS],
@@ -78,18 +79,18 @@ pub fn picture_pair(
     }
 }
 
-/// What six cameras took at a moment.
+/// Recorded pictures of six cameras at a moment.
 pub struct Recorded<'a> {
-    /// What was measured around them.
+    /// The frame that was recorded around them.
     pub frame: &'a Frame,
     /// The cameras in the frame of the map, clockwise, the front one second.
     pub rig: &'a SensorRig,
-    /// Their pictures at the size that is looked for, sRGB, three bytes a pixel.
+    /// Their pictures at the size that is asked for, sRGB, three bytes a pixel.
     pub rgb: Vec<Vec<u8>>,
 }
 
-/// Two moments of a drive that was recorded. What pixels show is not known there: it is what the program's own renderer shows at their
-/// places. All is given in the window around the vehicle at the first moment.
+/// Two moments of a recorded drive. The truth about its pixels is not known: it is taken from the program's own
+/// renderer at the same poses. All values are in the window around the vehicle at the first moment.
 pub fn recorded_pair(
     taken: [Recorded<'_>; MOMENTS],
     conditions: Conditions,
@@ -131,7 +132,7 @@ fn frame_of(world: &World) -> Frame {
     )
 }
 
-/// Light and air of a frame.
+/// Random light and weather of a frame.
 pub(super) fn conditions_of(draw: &mut Draw, seed: u64) -> Conditions {
     let time = TimeOfDay::ALL[draw.weighted(&[0.16, 0.46, 0.16, 0.22])];
     let weather = Weather::ALL[draw.weighted(&[0.32, 0.18, 0.2, 0.14, 0.1, 0.06])];
@@ -159,7 +160,8 @@ fn seen(
     }
 }
 
-/// Two poses on a lane, not far from the middle of the map, where nothing is in the vehicle's way: where pictures are taken.
+/// Two free poses on a lane, near a random place around the middle of the map: the poses of the pictures. Without a
+/// free pair, two poses near the middle.
 pub fn poses(frame: &Frame, draw: &mut Draw) -> [Pose; MOMENTS] {
     let wanted = DVec2::new(draw.unit() - 0.5, draw.unit() - 0.5) * (2.0 * AROUND_M);
     let way_m = WAY_M[0] + (WAY_M[1] - WAY_M[0]) * draw.unit();
@@ -186,7 +188,7 @@ pub fn poses(frame: &Frame, draw: &mut Draw) -> [Pose; MOMENTS] {
     })
 }
 
-/// Place and heading on a line after a way from its start; none beyond its end.
+/// Place and heading on a line at distance `way_m` from its start, m; `None` beyond its end.
 fn along(points_m: &[DVec2], mut way_m: f64) -> Option<(DVec2, f64)> {
     for pair in points_m.windows(2) {
         let piece = pair[1] - pair[0];
@@ -213,10 +215,10 @@ impl Shard for PicturePair {
         "conditions",
     ];
 
-    /// Of two moments and six cameras: u8 `rgb` `[N,2,6,h,w,3]`, `class` `[N,2,6,h,w]` (the truth, see [`scene::truth`]), `told_class` (render ids), u16
-    /// `told_depth` (cm, 0 none) and u8 `told_facing` as in [`PictureHints`], f32 `intrinsic` `[N,2,6,3,3]` (px), `map_from_camera`
-    /// `[N,2,6,4,4]` and `sun` `[N,2,6,3]`; u8 `dense` `[N,200,200,16]`; u8 `conditions` `[N,2]`: time of day and weather by
-    /// their place in the lists.
+    /// For two moments and six cameras: u8 `rgb` `[N,2,6,h,w,3]`, `class` `[N,2,6,h,w]` (the truth, see
+    /// [`scene::truth`]), `told_class` (render ids), u16 `told_depth` (cm, 0 none) and u8 `told_facing` as in
+    /// [`PictureHints`], f32 `intrinsic` `[N,2,6,3,3]` (px), `map_from_camera` `[N,2,6,4,4]` and `sun` `[N,2,6,3]`; u8
+    /// `dense` `[N,200,200,16]`; u8 `conditions` `[N,2]`: time of day and weather by their place in the lists.
     fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
         let moments = || frames.iter().flat_map(|f| &f.moments);
         let first = moments().next().and_then(|m| m.truth.first());

@@ -1,4 +1,4 @@
-//! Frames with camera pictures and the truth about each pixel, for networks that see or make pictures.
+//! Frames with camera pictures and the truth about each pixel, for networks that read or draw pictures.
 
 use glam::{DMat4, DVec2, DVec3};
 use safetensors::tensor::Dtype;
@@ -12,12 +12,12 @@ use sensors::appearance::{Appearance, Quality};
 use world::draw::Draw;
 use world::voxelize::{Vertical, complete};
 
-/// Distance between two places that are tried, m.
+/// Distance between two places that are tried on a lane, m.
 const STEP_M: f64 = 2.0;
-/// The vehicle's middle ahead of its rear axle, and the free way around it beside a box, m.
+/// Distance from the rear axle to the vehicle's middle, and free distance to a box around it, m.
 const MIDDLE_M: f64 = 1.4;
 const REACH_M: f64 = 5.5;
-/// Steps of a depth, m; 0 where there is none.
+/// Unit of stored depths, m; a stored 0 means no depth.
 pub(super) const DEPTH_STEP_M: f32 = 0.01;
 
 /// One frame: a world under some light and weather, seen by the six cameras of the default rig from a free place on a lane.
@@ -26,11 +26,11 @@ pub struct PictureFrame {
     pub dense: VoxelGrid,
     /// Map layers and boxes as bits of each column.
     pub bev: Vec<u32>,
-    /// Light and air.
+    /// Light and weather.
     pub conditions: Conditions,
-    /// Of each camera, sRGB, three bytes a pixel.
+    /// Picture of each camera, sRGB, three bytes a pixel.
     pub rgb: Vec<Vec<u8>>,
-    /// Of each camera.
+    /// Truth about the pixels of each camera.
     pub truth: Vec<CameraTruth>,
 }
 
@@ -62,7 +62,7 @@ pub fn picture_frame(
     }
 }
 
-/// What each camera of a rig shows, sRGB, three bytes a pixel, and what each of its pixels is, at a size in pixels.
+/// Pictures of the cameras of a rig, sRGB, three bytes a pixel, and the truth about their pixels, at a size in pixels.
 pub(super) fn rendered(
     frame: &Frame,
     rig: &SensorRig,
@@ -78,7 +78,7 @@ pub(super) fn rendered(
     rig.cameras.iter().map(of).unzip()
 }
 
-/// The place on a lane, nearest to the middle of the map, where nothing is in the vehicle's way; the middle if there is none.
+/// The free pose on a lane that is nearest to the middle of the map; the middle if there is none.
 fn ego_pose(frame: &Frame) -> Pose {
     let layout = &frame.layout;
     let lanes = layout
@@ -100,7 +100,7 @@ fn ego_pose(frame: &Frame) -> Pose {
     })
 }
 
-/// True if a vehicle has room there: no box within reach, and nothing but ground in its footprint.
+/// True if a vehicle has room there: no box within reach, and only ground in its footprint.
 pub(super) fn is_free(frame: &Frame, at: DVec2, yaw: f64) -> bool {
     let (ahead, extent) = (DVec2::from_angle(yaw), frame.extent());
     let is_near = |b: &SceneBox| {
@@ -134,10 +134,10 @@ impl Shard for PictureFrame {
         "conditions",
     ];
 
-    /// Of each camera u8 `rgb` `[N,6,h,w,3]`, `class` `[N,6,h,w]` (see [`scene::truth`]), u16 `instance` (box id, 0 none) and
-    /// `depth` (cm along the optical axis, 0 none), i8 `normal` `[N,6,h,w,3]` (127ths, optical frame), f32 `intrinsic`
-    /// `[N,6,3,3]` (px) and `map_from_camera` `[N,6,4,4]`; u8 `dense` `[N,200,200,16]`, i32 `bev` `[N,200,200]`; u8
-    /// `conditions` `[N,2]`: time of day and weather by their place in the lists.
+    /// For each camera u8 `rgb` `[N,6,h,w,3]`, `class` `[N,6,h,w]` (see [`scene::truth`]), u16 `instance` (box id, 0
+    /// none) and `depth` (cm along the optical axis, 0 none), i8 `normal` `[N,6,h,w,3]` (127ths, optical frame), f32
+    /// `intrinsic` `[N,6,3,3]` (px) and `map_from_camera` `[N,6,4,4]`; u8 `dense` `[N,200,200,16]`, i32 `bev`
+    /// `[N,200,200]`; u8 `conditions` `[N,2]`: time of day and weather by their place in the lists.
     fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
         let first = frames.first().and_then(|f| f.truth.first());
         let [h, w] = first.map_or([0, 0], |t| [t.height, t.width]);
@@ -209,7 +209,7 @@ impl Shard for PictureFrame {
     }
 }
 
-/// As f32, little-endian.
+/// Values as f32, little-endian.
 pub(super) fn floats(values: Vec<f64>) -> Vec<u8> {
     let bytes = |v: f64| (v as f32).to_le_bytes();
     values.into_iter().flat_map(bytes).collect()

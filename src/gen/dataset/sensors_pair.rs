@@ -1,4 +1,5 @@
-//! One moment as a LiDAR and six cameras see it, with every voxel that is there: for the network that tells voxels from both.
+//! One moment as a LiDAR and six cameras see it, with every voxel of the world: training data of the network that tells
+//! voxels from these sensors.
 
 use safetensors::tensor::Dtype;
 
@@ -12,11 +13,11 @@ use world::voxelize::{Vertical, complete};
 
 /// One frame.
 pub struct SensorsPair {
-    /// What the LiDAR sees.
+    /// Sweep of the LiDAR.
     pub sweep: PerceptionFrame,
-    /// What each camera shows, sRGB, three bytes a pixel.
+    /// Picture of each camera, sRGB, three bytes a pixel.
     pub rgb: Vec<Vec<u8>>,
-    /// The cameras, and what each pixel shows.
+    /// The cameras, and the truth about their pixels.
     pub truth: Vec<CameraTruth>,
     /// Every voxel of the world, in the vertical convention of labels.
     pub dense: VoxelGrid,

@@ -1,4 +1,4 @@
-//! Frames as safetensors shards: written so that an interrupted run resumes, or streamed to a reader.
+//! Frames as safetensors shards, written so that an interrupted run can resume, or streamed to a reader.
 
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -7,10 +7,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 use safetensors::tensor::{Dtype, TensorView};
 
-/// Frames per shard.
+/// Number of frames in a shard.
 pub const SHARD_FRAMES: usize = 32;
 
-/// What was written.
+/// Frames, bytes and shards of a run that wrote a data set.
 #[derive(Clone, Debug, Default, serde::Serialize)]
 pub struct DatasetReport {
     /// Frames in the folder.
@@ -30,9 +30,9 @@ pub trait Shard: Send + Sized {
     fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)>;
 }
 
-/// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`. Shards that hold all arrays of their frames are kept,
-/// so an interrupted run resumes, and a larger one adds to what is there. `make` makes frame i; its first error ends the run. `progress` gets the number of
-/// finished frames and may end the run by returning false.
+/// Writes `frames` frames as `shard_NNNNN.safetensors` into `dir`. Shards that hold all arrays of their frames are
+/// kept, so an interrupted run resumes, and a larger one adds to what is there. `make` makes frame i; its first error
+/// ends the run. `progress` gets the number of finished frames and may end the run by returning false.
 pub fn write<F: Shard, E: From<std::io::Error> + Send>(
     dir: &Path,
     frames: usize,
@@ -70,8 +70,8 @@ pub fn write<F: Shard, E: From<std::io::Error> + Send>(
     Ok(report)
 }
 
-/// True for a shard that holds every array, older ones lack some, of at least `frames` frames: that of an end that is no
-/// longer the end has fewer.
+/// True if a shard holds every array with at least `frames` frames. Shards of older versions lack arrays; a former last
+/// shard may have fewer frames.
 fn is_complete(path: &Path, arrays: &[&str], frames: usize) -> bool {
     let header = || -> Option<serde_json::Value> {
         let mut file = std::fs::File::open(path).ok()?;
@@ -99,7 +99,7 @@ fn write_shard<F: Shard>(path: &PathBuf, frames: &[F]) -> std::io::Result<u64> {
     Ok(bytes.len() as u64)
 }
 
-/// Some frames as the bytes of a safetensors file.
+/// Bytes of a safetensors file with some frames.
 pub fn shard_bytes<F: Shard>(frames: &[F]) -> std::io::Result<Vec<u8>> {
     let arrays = F::arrays(frames);
     let tensors: Result<Vec<_>, _> = F::ARRAYS

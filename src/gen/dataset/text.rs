@@ -1,4 +1,4 @@
-//! Sentences about streets with the facts behind them: what the text encoder is trained on.
+//! Sentences about streets with the facts behind them: training data of the text encoder.
 
 use safetensors::tensor::Dtype;
 
@@ -11,9 +11,9 @@ use scene::BevLayout;
 use scene::road_map::RoadMap;
 use world::draw::hash;
 
-/// Sentences about one scene: one that says nearly all, one that says half, two short ones.
+/// Shares of the facts that the sentences about one scene give: one gives nearly all, one half, two are short.
 pub const SHARES: [f64; 4] = [0.95, 0.5, 0.25, 0.12];
-/// Bytes of a sentence that are kept for reading.
+/// Bytes of a sentence that are stored as text.
 const LETTERS: usize = 320;
 
 /// One scene in words and numbers.

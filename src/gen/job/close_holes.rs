@@ -1,16 +1,16 @@
-//! A scene that is to be complete has ground everywhere: what the networks left open is closed, and counted.
+//! Closes holes in the ground that the networks left in a scene that should be complete, and counts them.
 
 use crate::region::Region;
 use scene::draft::{ground_bin, ground_class};
 use scene::{BevLayout, Class, VoxelGrid, Window};
 
-/// Lays the layout's ground in columns without any ground in which nothing stands on its place either. Returns where.
+/// Lays the layout's ground in columns that have no ground and hold nothing up to the ground's bin. Returns where.
 pub fn close_holes(layout: &BevLayout, generated: &mut VoxelGrid) -> Vec<[usize; 3]> {
     close(layout, generated, |_| true)
 }
 
-/// The same after an edit of a region, which digs no holes: where there was ground before or, if all is to be complete,
-/// everywhere in the region.
+/// Closes holes after an edit of a region. Only columns of the region are closed: those that had ground before or, if
+/// the scene should be complete, all of them.
 pub fn close_holes_of_edit(
     layout: &BevLayout,
     before: &VoxelGrid,
@@ -29,7 +29,7 @@ pub fn close_holes_of_edit(
     })
 }
 
-/// The holes that are closed in a result: painted voxels stay open if they were painted so, and what hung loose went again.
+/// The closed holes that stay closed in the result: paint may open them again, and loose voxels are removed again.
 pub fn still_closed(mut holes: Vec<[usize; 3]>, result: &VoxelGrid) -> Vec<[usize; 3]> {
     holes.retain(|[x, y, z]| result.get(*x, *y, *z) != Class::FREE);
     holes

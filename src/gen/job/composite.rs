@@ -1,4 +1,5 @@
-//! Puts the generated region into the old occupancy and leaves everything else bit-identical; and measures of that.
+//! Puts the generated region into the old occupancy and leaves everything else bit-identical. Also measures that
+//! nothing else changed, and how well the region joins its surroundings.
 //!
 //! This is done with labels, after decoding. Blending latents instead would change labels outside the region, because
 //! the decoder of a cell sees its neighbours.
@@ -19,7 +20,7 @@ pub fn composite(
     let mut out = source.clone();
     for (i, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
         let (x, y) = (i / Window::NY, i % Window::NY);
-        // Paint first, so that a brick is not copied for labels that paint takes back.
+        // Paint is applied first, so that a brick is not copied for labels that paint replaces anyway.
         let mut column = *generated.column(x, y);
         for (label, paint) in column.iter_mut().zip(painted.column(x, y)) {
             if *paint != NOT_PAINTED {
@@ -36,7 +37,7 @@ pub fn composite(
     out
 }
 
-/// How many voxels outside the region, not painted, differ between `result` and `source`: must be 0.
+/// Number of voxels outside the region, not painted, that differ between `result` and `source`; must be 0.
 pub fn untouched_voxels_changed(
     source: &VoxelGrid,
     result: &VoxelGrid,

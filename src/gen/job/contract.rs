@@ -1,5 +1,5 @@
-//! What is asked of the generation worker and what it answers, as plain values.
-//! A job is a pure function of its scene and parameters: same key, same result.
+//! Requests to the generation worker and its answers, as plain values. A job is a pure function of its scene and
+//! parameters: equal keys give equal results.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -19,17 +19,17 @@ use crate::product::Event;
 pub use super::params::{GenParams, Named, Quality, RegionMode};
 pub use nn::Precision;
 
-/// All that a pipeline may read.
+/// Input of a pipeline.
 #[derive(Clone, Debug)]
 pub struct Job {
     /// The scene as it was when the job was made.
     pub scene: Arc<Scene>,
-    /// How to generate.
+    /// Parameters of the generation.
     pub params: GenParams,
 }
 
 impl Job {
-    /// What names this job's result.
+    /// The key of this job's result.
     pub fn key(&self) -> JobKey {
         JobKey {
             rev: self.scene.content(),
@@ -38,7 +38,7 @@ impl Job {
     }
 }
 
-/// Same key, same result: the key of a cache of results.
+/// Key of a cache of results: equal keys give equal results.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct JobKey {
     /// State of the scene, whatever moment is shown; see [`Scene::content`].
@@ -88,18 +88,18 @@ impl Stage {
     }
 }
 
-/// What a generation did and what it cost. Serialises for `--report`.
+/// Statistics and cost of a generation. Serialises for `--report`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct GenReport {
     /// Calls of the denoising network, inversion included.
     pub network_calls: usize,
-    /// How many of those calls inverted the source; 0 if its trajectory was in memory.
+    /// Number of those calls that inverted the source; 0 if its trajectory was in memory.
     pub inversion_calls: usize,
     /// Wall time by [`Stage::name`], s.
     pub wall_s: BTreeMap<&'static str, f64>,
     /// Columns in the region.
     pub region_columns: usize,
-    /// Share of all columns of the map.
+    /// Share of all columns of the map that are in the region.
     pub region_share: f64,
     /// Latent cells regenerated.
     pub region_cells: usize,
@@ -120,33 +120,34 @@ pub struct GenReport {
     pub unchanged_kept: usize,
     /// Boxes that the networks left out and whose draft was put in ([`GenParams::keep_objects`]).
     pub objects_kept: usize,
-    /// Columns in which the networks ignored the painted ground, so that it was put in.
+    /// Columns in which the networks ignored the painted ground and it was put in.
     pub ground_kept: usize,
-    /// Voxels that the networks put on the road or in a removed box's place unasked, and that were cleared.
+    /// Voxels that the networks put on the road or in a removed box's place unasked; they were cleared.
     pub invented_cleared: usize,
-    /// Columns that the networks left without ground in a scene that should be complete, and that got ground in the result.
+    /// Columns that the networks left without ground in a scene that should be complete; they got ground in the result.
     pub holes_closed: usize,
-    /// Where, in the window of the job's scene that was generated.
+    /// Voxels where that ground was put in, in the generated window of the job's scene.
     #[serde(skip)]
     pub holes: Vec<[usize; 3]>,
-    /// Of a whole scene: things that say what stands beside its roads, so that the networks invented nothing there.
+    /// Number of things that describe the places beside the roads, so that the networks invented nothing there. Set for
+    /// a whole scene.
     pub things_given: usize,
-    /// Voxels put under crowns that hung in the air.
+    /// Voxels added as stems under floating crowns.
     pub stems_added: usize,
-    /// Voxels that were taken out because they hung in the air or belonged to an object without a box.
+    /// Voxels that were removed because they floated or belonged to an object without a box.
     pub loose_dropped: usize,
-    /// Voxels that the networks put where no sensor of the source had looked, and that were taken out again.
+    /// Voxels that the networks put where no sensor of the source had looked; they were removed again.
     pub unobserved_kept: usize,
-    /// Relative RMS error of encode, invert and sample again, where it was measured.
+    /// Relative RMS error of encoding, inverting and sampling again, if it was measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub round_trip_error: Option<f64>,
-    /// Standard deviation of the noise that inversion ended in, where one ran or was in memory.
+    /// Standard deviation of the noise that inversion ended in, if an inversion ran or was in memory.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise_std: Option<f64>,
     /// Largest magnitude in that noise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise_max_abs: Option<f64>,
-    /// What the user should know: fallbacks, moments out of bounds. One line each.
+    /// Notes for the user: fallbacks, moments out of bounds. One line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
 }
@@ -160,18 +161,18 @@ impl GenReport {
         out
     }
 
-    /// Notes what hung in the air.
+    /// Records the numbers of stems and of removed floating voxels.
     pub fn grounded(&mut self, found: super::keep_grounded::Grounded) {
         (self.stems_added, self.loose_dropped) = (found.stems, found.dropped);
     }
 
-    /// Notes the holes that were closed.
+    /// Records the holes that were closed.
     pub fn close(&mut self, holes: Vec<[usize; 3]>) {
         self.holes_closed = holes.len();
         self.holes = holes;
     }
 
-    /// Adds what another part of the same job did. The share of the columns is the caller's to set.
+    /// Adds the report of another part of the same job. The caller must set the share of the columns.
     pub fn add(&mut self, part: &Self) {
         let first = self.network_calls == 0 && self.region_columns == 0;
         for (stage, wall_s) in &part.wall_s {
@@ -222,46 +223,47 @@ impl GenReport {
     }
 }
 
-/// A generated occupancy, finished or on the way.
+/// A generated occupancy, finished or unfinished.
 #[derive(Clone, Debug)]
 pub struct GenResult {
     /// The job that it answers.
     pub key: JobKey,
-    /// The new occupancy of [`Scene::for_generation`]'s frame, of its extent: source outside the region, painted voxels kept.
+    /// The new occupancy of [`Scene::for_generation`]'s frame, of its extent: the source outside the region, with
+    /// painted voxels kept.
     pub occupancy: VoxelGrid,
-    /// What it cost.
+    /// Statistics and cost.
     pub report: GenReport,
 }
 
 impl GenResult {
-    /// State of the scene that it belongs to.
+    /// State of the scene that the result belongs to.
     pub fn rev(&self) -> SceneRev {
         self.key.rev
     }
 }
 
-/// Why there is no result. Displays as one line.
+/// Reason why there is no result. Displays as one line.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum GenError {
-    /// A newer job waits, or the user cancelled. Not an error to show.
+    /// A newer job waits, or the user cancelled. Not shown as an error.
     #[error("stopped for a newer job")]
     Superseded,
     /// A parameter out of range.
     #[error("{0}")]
     Params(String),
-    /// A solver refused.
+    /// The solver refused.
     #[error(transparent)]
     Solver(#[from] SolverError),
     /// The pipeline panicked; it is built again for the next job.
     #[error("generation panicked: {0}")]
     Panicked(String),
-    /// Anything else: weights, device, networks.
+    /// Any other error: weights, device, networks.
     #[error("{0}")]
     Failed(String),
 }
 
 impl GenError {
-    /// From any error, on one line; for an `anyhow::Error` format it with `{:#}` first.
+    /// Makes an error of any other error, on one line. Format an `anyhow::Error` with `{:#}` first.
     pub fn failed(error: impl Display) -> Self {
         Self::Failed(one_line(&error.to_string()))
     }
@@ -273,10 +275,10 @@ impl From<ScheduleError> for GenError {
     }
 }
 
-/// What a running job reports.
+/// Updates of a running job.
 #[derive(Clone, Debug)]
 pub enum JobUpdate {
-    /// `step` of `steps` of a stage are done.
+    /// Steps done in a stage.
     Progress {
         /// Part of the work.
         stage: Stage,
@@ -289,7 +291,7 @@ pub enum JobUpdate {
     Preview(Arc<GenResult>),
     /// The result. Terminal.
     Finished(Arc<GenResult>),
-    /// No result. Terminal; later jobs run.
+    /// There is no result. Terminal; later jobs run.
     Failed(GenError),
     /// Given up for a newer job or on request. Terminal.
     Superseded,
@@ -305,7 +307,7 @@ impl JobUpdate {
 /// A [`JobUpdate`] with its job.
 pub type JobEvent = Event<JobUpdate>;
 
-/// How a running job talks to whoever asked for it.
+/// Connection of a running job to its caller.
 pub struct JobCtx<'a> {
     stop: &'a (dyn Fn() -> bool + Sync),
     report: &'a (dyn Fn(JobUpdate) + Sync),
@@ -313,7 +315,7 @@ pub struct JobCtx<'a> {
 }
 
 impl<'a> JobCtx<'a> {
-    /// `stop` is asked between steps, `report` gets every update.
+    /// `stop` is called between steps, `report` gets every update.
     pub fn new(stop: &'a (dyn Fn() -> bool + Sync), report: &'a (dyn Fn(JobUpdate) + Sync)) -> Self {
         Self {
             stop,
@@ -322,7 +324,7 @@ impl<'a> JobCtx<'a> {
         }
     }
 
-    /// Asks long jobs for previews: somebody watches.
+    /// Requests previews of long jobs, for a caller that shows them.
     pub fn with_previews(self) -> Self {
         Self {
             previews: true,
@@ -335,7 +337,7 @@ impl<'a> JobCtx<'a> {
         self.previews
     }
 
-    /// For a caller that waits for the result: never stopped, reports nothing.
+    /// A context for a caller that waits for the result: it never stops the job and reports nothing.
     pub fn detached() -> JobCtx<'static> {
         JobCtx {
             stop: &|| false,
@@ -353,7 +355,7 @@ impl<'a> JobCtx<'a> {
         }
     }
 
-    /// Reports how far the job is; fails if it should end. Call it between steps, with `?`.
+    /// Reports progress; fails if the job should end. Call it between steps, with `?`.
     pub fn progress(&self, stage: Stage, step: usize, steps: usize) -> Result<(), GenError> {
         self.check()?;
         (self.report)(JobUpdate::Progress { stage, step, steps });
@@ -371,14 +373,14 @@ impl<'a> JobCtx<'a> {
     }
 }
 
-/// Makes results. Runs on the worker's thread, or on the caller's in the command line.
+/// A generator of results. Runs on the worker's thread, or on the caller's in the command line.
 pub trait Pipeline {
-    /// Does a job. Must depend on nothing but `job` (and on caches that change no result).
+    /// Runs a job. The result must depend on `job` alone (and on caches that change no result).
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError>;
 }
 
-/// Filters updates: drops those of a job that has ended, and those of a job that is older than the newest one
-/// that an update came from.
+/// Filters updates. Drops those of a job that has ended, and those of a job older than the newest one that has sent an
+/// update.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct UpdateGate {
     newest: Option<JobId>,

@@ -1,25 +1,26 @@
-//! The frames of a drive drawn together: by the transformer with its temporal blocks, or (to compare) frame by frame.
+//! Draws the frames of a drive together: by the transformer with its temporal blocks, or (to compare) frame by frame.
 
 use super::contract::GenError;
 use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
 use nets::{Between, CELLS, CHANNELS, DitCondition, LATENT, OccDitTime, OccModels, Prepared, Squares};
 use numeric::philox::{Stream, normal_field};
 
-/// How a drive is drawn.
+/// Networks and settings of a drawn drive.
 pub struct DriveNetwork<'a> {
     /// VAE and transformer.
     pub models: &'a OccModels,
-    /// Its temporal blocks; none: each frame by itself.
+    /// Its temporal blocks; `None` draws each frame by itself.
     pub time: Option<&'a OccDitTime>,
     /// Steps of the sampler.
     pub steps: usize,
-    /// Fixes the noise.
+    /// Seed of the noise.
     pub seed: u64,
 }
 
 impl DriveNetwork<'_> {
-    /// The latents (50x50x8) of frames under their conditions. Frames whose mask is 0 are known: their context is heard, and what
-    /// is drawn of them is near it. `poses`: where the vehicle stands in each, x and y in m, heading in rad.
+    /// The latents (50x50x8) of frames under their conditions. Frames whose mask is 0 are known: their context is an
+    /// input, and the latents drawn for them come near it. `poses`: pose of the vehicle in each frame, x and y in m,
+    /// heading in rad.
     pub fn draw(
         &self,
         conditions: &[DitCondition],

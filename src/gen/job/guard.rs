@@ -1,4 +1,5 @@
-//! Panic guards for background threads: a panic ends one piece of work, is told as one line, and the program goes on.
+//! Panic guards for background threads: a panic ends one piece of work, is reported as one line, and the program goes
+//! on.
 
 use std::any::Any;
 use std::cell::Cell;
@@ -7,18 +8,18 @@ use std::thread::JoinHandle;
 
 use thiserror::Error;
 
-/// What a panic left behind. Displays as one line.
+/// Thread and message of a panic. Displays as one line.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{thread} panicked: {message}")]
 pub struct Panicked {
     /// Name of the thread.
     pub thread: String,
-    /// What the panic said, on one line.
+    /// Message of the panic, on one line.
     pub message: String,
 }
 
 impl Panicked {
-    /// From the payload of a panic.
+    /// Takes the message from the payload of a panic.
     pub fn new(thread: &str, payload: &(dyn Any + Send)) -> Self {
         let text = payload
             .downcast_ref::<&str>()
@@ -31,7 +32,7 @@ impl Panicked {
     }
 }
 
-/// Runs work on this thread; a panic becomes an error. What the work left half-done is the caller's to throw away.
+/// Runs work on this thread; a panic becomes an error. The caller must discard what the work left half-done.
 pub fn guarded<T>(thread: &str, work: impl FnOnce() -> T) -> Result<T, Panicked> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|payload| Panicked::new(thread, &*payload))
 }
@@ -40,13 +41,13 @@ thread_local! {
     static PANIC_NEXT: Cell<Option<&'static str>> = const { Cell::new(None) };
 }
 
-/// For tests: the next piece of work that the calling thread hands to the thread of this name panics there.
-/// Other threads, and so other tests of the same program, are not affected.
+/// For tests: makes the next piece of work panic that the calling thread hands to the thread of this name. Work of
+/// other threads, and so of other tests of the same program, is not affected.
 pub fn panic_next(thread: &'static str) {
     PANIC_NEXT.with(|next| next.set(Some(thread)));
 }
 
-/// A piece of work on its way to another thread. It is made where the work is asked for, and run where it is done.
+/// A piece of work for another thread. It is made where the work is requested, and run on that thread.
 pub struct Handed<R> {
     request: R,
     thread: &'static str,
@@ -70,7 +71,7 @@ impl<R> Handed<R> {
         }
     }
 
-    /// What is asked for.
+    /// The request.
     pub fn request(&self) -> &R {
         &self.request
     }
@@ -86,8 +87,8 @@ impl<R> Handed<R> {
     }
 }
 
-/// Starts a thread that does one thing and ends. `tell` gets what came of it, also after a panic. Errors if the system
-/// gives no thread.
+/// Starts a thread that does one thing and ends. `tell` gets the result, also after a panic. Errors if the system gives
+/// no thread.
 pub fn spawn<T: 'static>(
     name: &'static str,
     work: impl FnOnce() -> T + Send + 'static,
@@ -96,7 +97,7 @@ pub fn spawn<T: 'static>(
     let handed = Handed::new(name, work);
     std::thread::Builder::new().name(name.to_owned()).spawn(move || {
         let answer = handed.run(|work| work());
-        // There is nobody left to tell of a panic while telling.
+        // A panic inside `tell` cannot be reported any more.
         let _ = guarded(name, || tell(answer));
     })
 }

@@ -1,4 +1,4 @@
-//! Parts of a scene that are inpainted although nothing was edited there.
+//! Parts of a scene that are inpainted although they were not edited.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -23,11 +23,11 @@ impl std::fmt::Debug for InpaintMask {
     }
 }
 
-/// How far around an unchanged box nothing is inpainted, m.
+/// Margin around an unchanged box in which nothing is inpainted, m.
 pub const KEPT_M: f64 = Extent::VOXEL_M;
 
 impl InpaintMask {
-    /// Cells farther from the corner of the window than this are refused: no map is larger.
+    /// Largest distance of a cell from the corner of the window; no map is larger, so farther cells are refused.
     const FARTHEST: i32 = (Extent::MAX_COLUMNS / COLUMNS_PER_CELL) as i32;
 
     /// True if it holds no cell.
@@ -78,7 +78,7 @@ impl InpaintMask {
         }
     }
 
-    /// The columns of a map that it holds, `[x][y]`.
+    /// Flags of the columns of a map that it holds, `[x][y]`.
     pub fn columns(&self, extent: Extent) -> Vec<bool> {
         let held = |column| self.has_column(extent, column);
         extent.all_columns().map(held).collect()
@@ -111,7 +111,7 @@ impl InpaintMask {
         Self(Arc::new(cells.collect()))
     }
 
-    /// The same with cells counted from another one.
+    /// The mask with its cells counted from the given cell.
     pub fn from_cell(&self, [i0, j0]: [i32; 2]) -> Self {
         match [i0, j0] == [0, 0] {
             true => self.clone(),
@@ -119,7 +119,7 @@ impl InpaintMask {
         }
     }
 
-    /// The same without the cells of a square of `side` cells from its lowest cell on.
+    /// The mask without the cells of a square of `side` cells whose lowest cell is `low`.
     pub fn without(&self, low: [i32; 2], side: i32) -> Self {
         let within = |cell: &[i32; 2]| (0..2).all(|axis| (0..side).contains(&(cell[axis] - low[axis])));
         Self(Arc::new(self.cells().filter(|cell| !within(cell)).collect()))
@@ -163,8 +163,8 @@ pub fn region_of(frame: &Frame, params: &GenParams) -> Region {
     }
 }
 
-/// The columns `[x][y]` of a frame's map that parameters in automatic mode regenerate: what was edited, and the mask.
-/// Unchanged boxes in the mask are left out, so that no untouched object is inpainted.
+/// The columns `[x][y]` of a frame's map that parameters in automatic mode regenerate: edited columns, and those of the
+/// mask. Unchanged boxes in the mask are left out, so that no untouched object is inpainted.
 pub fn wanted_columns(frame: &Frame, params: &GenParams) -> Vec<bool> {
     let edited = edited_columns(frame, params.halo_columns as usize);
     if params.inpaint.is_empty() {

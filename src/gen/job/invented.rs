@@ -1,4 +1,4 @@
-//! What an edit invented: voxels above the ground in the edited region that were in neither the source nor the request.
+//! Voxels that an edit invented: above the ground in the edited region, and in neither the source nor the request.
 
 use crate::region::Region;
 use crate::request::Request;
@@ -7,11 +7,11 @@ use scene::{Class, Frame, VoxelGrid, Window};
 /// Counts of one edit, in voxels.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Invented {
-    /// By class id: voxels that stand above the ground, whose label the source did not hold there, and that belong to
-    /// no box or paint of the user.
+    /// Invented voxels by class id: they stand above the ground, the source did not hold their label there, and they
+    /// belong to no box or paint of the user.
     pub by_class: [usize; Class::COUNT],
-    /// Of them, those with no voxel of their class within one voxel of them in the source: new things rather than
-    /// edges of old ones that moved a little.
+    /// Number of those that have no voxel of their class within one voxel in the source: new things rather than edges
+    /// of old ones that moved a little.
     pub apart: usize,
     /// Voxels, ground included, that were put where the source was free and no sensor had observed anything, outside
     /// the columns that the user edited.
@@ -19,12 +19,13 @@ pub struct Invented {
 }
 
 impl Invented {
-    /// Of a frame that was edited, and its occupancy after the edit; only the region's columns count.
+    /// Counts the invented voxels of an edited frame with its occupancy after the edit; only the region's columns
+    /// count.
     pub fn count(frame: &Frame, after: &VoxelGrid, region: &Region) -> Self {
         Self::of_request(&Request::of(frame), frame, after, region)
     }
 
-    /// The same, for a request that is at hand already.
+    /// Counts as [`count`](Self::count), with a given request.
     pub fn of_request(request: &Request<'_>, frame: &Frame, after: &VoxelGrid, region: &Region) -> Self {
         let source = &frame.source.occupancy;
         let mut out = Self::default();
@@ -54,7 +55,7 @@ impl Invented {
         out
     }
 
-    /// All classes together.
+    /// Number of invented voxels of all classes.
     pub fn total(&self) -> usize {
         self.by_class.iter().sum()
     }

@@ -1,4 +1,4 @@
-//! Removes what an edit invented: things on the road or where a box was taken away, and voxels where a data set's masks
+//! Removes what an edit invented: things on the road or in place of a removed box, and voxels where a data set's masks
 //! say that no sensor looked. The removed voxels are counted for the report.
 
 use super::inpaint::InpaintMask;
@@ -6,9 +6,10 @@ use super::region::Region;
 use super::request::{Request, stands};
 use scene::{BevLayer, Class, Extent, Frame, VoxelGrid, Window, draft};
 
-/// Removes invented voxels (see [`Request::each_invented`]) from `generated` on roads and car parks, and where a box of the
-/// source stood. If the source held something there that stays, that is put back; a column that has no ground left gets
-/// the layout's. Cells of `inpaint` are skipped: new content was asked for there. Returns the number of removed voxels.
+/// Removes invented voxels (see [`Request::each_invented`]) from `generated` on roads and car parks, and where a box of
+/// the source stood. If the source held a voxel there that stays, it is put back; a column without any ground left gets
+/// the layout's. Cells of `inpaint` are skipped, since new content is wanted there. Returns the number of removed
+/// voxels.
 pub fn keep_clear(
     frame: &Frame,
     region: &Region,
@@ -31,7 +32,7 @@ pub fn keep_clear(
         generated.set(x, y, z, if stays { before } else { Class::FREE });
     }
     for &[x, y, _] in &found {
-        // Labels have holes: no ground where there was nothing before.
+        // Labels have holes: a column that was empty before gets no ground.
         let Some(foot) = source.column(x, y).iter().position(|l| *l != Class::FREE) else {
             continue;
         };
@@ -81,8 +82,8 @@ pub fn keep_unobserved(
     count
 }
 
-/// Which voxels were observed, for the decoder (`Unobserved::observed`). In columns that the user edited and in cells of
-/// `inpaint` none counts as observed. `None` if the frame has no masks.
+/// Observed voxels, as the decoder takes them (`Unobserved::observed`). In columns that the user edited and in cells of
+/// `inpaint` no voxel counts as observed. `None` if the frame has no masks.
 pub fn observed_still(frame: &Frame, inpaint: &InpaintMask, request: &Request<'_>) -> Option<Vec<u32>> {
     let mut observed = frame.inferred.unobserved.as_ref()?.observed();
     for (c, told) in observed.iter_mut().enumerate() {

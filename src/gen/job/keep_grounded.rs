@@ -1,5 +1,5 @@
-//! Makes generated things stand: crowns in the air get a stem, other floating voxels and voxels of objects without a box are
-//! removed. Both are counted for the report.
+//! Corrects floating voxels of generated occupancy. Crowns in the air get a stem; other floating voxels and voxels of
+//! objects without a box are removed. Both are counted for the report.
 
 use super::composite::composite;
 use super::region::Region;
@@ -17,14 +17,14 @@ const MARGIN_M: f64 = 0.6;
 /// Number of corrected voxels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Grounded {
-    /// Put under crowns as stems.
+    /// Voxels added under crowns as stems.
     pub stems: usize,
-    /// Removed: they hung in the air, or belonged to an object without a box.
+    /// Voxels removed because they floated or belonged to an object without a box.
     pub dropped: usize,
 }
 
-/// Corrects `generated` inside the region. These stay as they are: what the source held (unless `all` is inpainted), voxels
-/// of boxes and paint, and what may be held by something outside the grid.
+/// Corrects `generated` inside the region. Left as they are: voxels of the source (unless `all` is inpainted), voxels
+/// of boxes and paint, and groups that may be held by something outside the grid.
 pub fn keep_grounded(
     frame: &Frame,
     region: &Region,
@@ -51,7 +51,7 @@ pub fn keep_grounded(
             out.dropped += 1;
         }
     }
-    // Whether something stands depends on what is around the region too.
+    // Support also depends on the voxels around the region.
     let whole = composite(source, generated, region, &frame.painted);
     let occupied = occupied(&whole);
     let stands = support::supported(
@@ -67,7 +67,7 @@ pub fn keep_grounded(
         let new: Vec<_> = group.iter().copied().filter(|c| is_new(&whole, *c)).collect();
         let class = main_class(&whole, &group);
         let is_crown = class == Class::Vegetation && group.len() >= CROWN;
-        // Something at the top of the grid may go on above it and be held there; a tree may not.
+        // A group at the top of the grid may go on above it and be held there; a tree may not.
         let needs_stem = all && is_crown && !reaches_side(Extent::WINDOW, &group);
         let floats = needs_stem || is_known_to_float(&whole, frame.inferred.unobserved.as_ref(), &group);
         if new.is_empty() || !floats {
@@ -90,7 +90,7 @@ pub fn keep_grounded(
     out
 }
 
-/// Voxels of the region whose object class no box within reach has.
+/// Voxels of the region with an object class that no box within reach has.
 fn without_box(frame: &Frame, region: &Region, generated: &VoxelGrid) -> Vec<[usize; 3]> {
     let mut explained = vec![0u32; Window::COLUMNS];
     for b in frame.boxes.values() {

@@ -1,5 +1,5 @@
-//! Makes the result follow the user's boxes and ground where the networks did not: a placed box does not vanish, a removed
-//! one does not come back, painted ground stays. The corrections are counted for the report.
+//! Makes the result follow the user's boxes and ground where the networks did not: a placed box does not vanish, a
+//! removed one does not come back, painted ground stays. The corrections are counted for the report.
 
 use glam::DVec3;
 
@@ -9,21 +9,21 @@ use scene::draft::{ground_bin, ground_class};
 use scene::raster::box_cells;
 use scene::{BoxId, Class, Extent, Frame, SceneBox, VoxelGrid, Window, draft};
 
-/// A placed box counts as there if the share of its columns that hold its class is at least this part of the usual share of
-/// the frame's boxes. (Labels have holes, so their usual share is below that of complete worlds.)
+/// Least share of a placed box's columns that must hold its class for the box to count as present, as a part of the
+/// usual share of the frame's boxes. (Labels have holes, so their usual share is below that of complete worlds.)
 const THERE: f64 = 0.5;
-/// A frame counts as labels, whose objects are hollow, if a smaller share of its columns than this holds anything.
+/// Share of non-empty columns below which a frame counts as labels, whose objects are hollow.
 const SOLID: f64 = 0.8;
-/// A box of the source counts as never seen if its class fills a smaller share of its columns than this.
+/// Share of a source box's columns with its class below which the box counts as never seen.
 const SEEN: f64 = 0.05;
-/// A moved box keeps its voxels if its size changed by no more than this, m.
+/// Largest change of size at which a moved box keeps its voxels, m.
 const SAME_SIZE_M: f64 = 0.05;
-/// Voxels this far outside a removed box still belong to it, m.
+/// Distance outside a removed box up to which voxels still belong to it, m.
 const OVERHANG_M: f64 = 0.3;
 
-/// Corrects `generated` inside the region: puts in placed boxes that are mostly missing (hollow, if the frame's objects are),
-/// and clears the voxels of removed boxes. With `all` it examines every box, else only those that differ from the source.
-/// Returns how many boxes it corrected.
+/// Corrects `generated` inside the region: puts in placed boxes that are mostly missing (hollow, if the frame's objects
+/// are), and clears the voxels of removed boxes. With `all` it examines every box, otherwise only those that differ
+/// from the source. Returns the number of corrected boxes.
 pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut VoxelGrid) -> usize {
     let old = &frame.source.boxes;
     let changed = |id: &BoxId, b: &SceneBox| old.get(id) != Some(b);
@@ -42,17 +42,17 @@ pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut V
     corrected
 }
 
-/// What the boxes of a frame usually hold.
+/// Usual fill and kind of the boxes of a frame.
 struct Usual {
-    /// Share of its columns that a box of the source fills: the median over boxes that were seen. Without such boxes, the
-    /// share of all columns that hold something; 1 in an empty frame.
+    /// Usual share of a source box's columns that its class fills: the median over boxes that were seen. Without such
+    /// boxes, the share of all columns that hold something; 1 in an empty frame.
     fill: f64,
-    /// Objects are hollow, as in labels, in which many columns are empty.
+    /// True if objects are hollow, as in labels, in which many columns are empty.
     hollow: bool,
 }
 
 impl Usual {
-    /// From the boxes of a frame's source; `shown` is the grid that a new box joins.
+    /// Measures the boxes of a frame's source; `shown` is the grid that a new box joins.
     fn of(frame: &Frame, shown: &VoxelGrid) -> Self {
         let source = &frame.source;
         let seen = source.boxes.values().map(|b| filled(&source.occupancy, b));
@@ -84,8 +84,8 @@ fn filled(grid: &VoxelGrid, b: &SceneBox) -> f64 {
     there.count() as f64 / columns.len().max(1) as f64
 }
 
-/// Corrects columns of the region whose ground the user has just painted: if the networks left the old ground, or removed the
-/// ground, the layout's ground is put in. Returns how many columns it corrected.
+/// Corrects columns of the region whose ground the user has just painted: if the networks left the old ground, or
+/// removed the ground, the layout's ground is put in. Returns the number of corrected columns.
 pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) -> usize {
     let layouts = frame.layout.cells().iter().zip(frame.source.layout.cells());
     let mut corrected = 0;
@@ -113,8 +113,8 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
             && !found.iter().any(is_object)
             && held_ground(frame.source.occupancy.column(x, y), bin)
         {
-            // A hedge or a wall goes to its top, a hole is closed unless it was there before, as in frames of real labels;
-            // a crown above a gap may hang over the road.
+            // A hedge or a wall is removed up to its top. A hole is closed unless it was there before, as in frames of
+            // real labels. A crown above a gap may hang over the road.
             let column = generated.column_mut(x, y);
             let rooted = column[bin..].iter_mut().take_while(|l| **l != Class::FREE);
             rooted.for_each(|l| *l = Class::FREE);
@@ -125,7 +125,7 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
     corrected
 }
 
-/// True unless a column has a hole in its ground: a sidewalk lies a bin above the road.
+/// True unless a column has a hole in its ground. A sidewalk lies a bin above the road.
 fn held_ground(column: &[u8; Window::NZ], bin: usize) -> bool {
     column[bin] != Class::FREE
         || column
@@ -175,8 +175,8 @@ fn put_in(frame: &Frame, region: &Region, b: &SceneBox, usual: &Usual, generated
     true
 }
 
-/// Moves the voxels of a box of the source to where the box stands now: each voxel of the new box takes the label at the same
-/// place of the old one. What the networks put there is removed.
+/// Moves the voxels of a source box to the box's present place: each voxel of the new box takes the label at the same
+/// place of the old one. The networks' voxels of it are removed.
 fn carry(frame: &Frame, region: &Region, old: &SceneBox, new: &SceneBox, generated: &mut VoxelGrid) {
     let (source, class) = (&frame.source.occupancy, new.class.id());
     // Labels reach down to the ground below the box.

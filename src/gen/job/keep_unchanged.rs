@@ -1,6 +1,6 @@
 //! Takes over only what an edit changes: where the networks give a voxel the same label before and after the edit, the
-//! source's own label stays. So what the VAE cannot represent (holes of labels, thin things) is lost only where something
-//! changed.
+//! source's own label stays. So details that the VAE cannot represent (holes of labels, thin things) are lost only
+//! where something changed.
 
 use super::inpaint::InpaintMask;
 use super::region::Region;
@@ -8,12 +8,13 @@ use super::request::Request;
 use scene::raster::box_cells;
 use scene::{Extent, Frame, VoxelGrid, Window};
 
-/// Within this distance of a removed or changed box its class is not restored: it may have been a part of the box, m.
+/// Distance from a removed or changed box within which its class is not restored, since such a voxel may have been a
+/// part of the box, m.
 const SCRAPS_M: f64 = 1.2;
 
-/// Restores the source's labels in `generated`, in the region's columns, where it equals `decoded`, which is what the same
-/// decoder makes of the source. Skips columns that the user edited, cells of `inpaint`, and voxels near a removed box that
-/// have its class and lie in no other box. Returns how many voxels got their label back.
+/// Restores the source's labels in `generated`, in the region's columns, where it equals `decoded`, the same decoder's
+/// output for the source. Skips columns that the user edited, cells of `inpaint`, and voxels near a removed box that
+/// have its class and lie in no other box. Returns the number of restored voxels.
 pub fn keep_unchanged(
     frame: &Frame,
     region: &Region,

@@ -1,4 +1,4 @@
-//! What stands beside the roads, drawn by a network: a map is sampled, extruded on the ground, and things are read off it.
+//! Scenery drawn by a network: a map is sampled, extruded on the ground, and things are inferred from it.
 
 use std::sync::Arc;
 
@@ -11,15 +11,16 @@ use scene::{Background, BevLayer, Class, Scene, VoxelGrid, Window, draft, infer,
 
 /// Steps of the sampler.
 const STEPS: usize = 16;
-/// Crowns may hang over a road from this many bins above it, 2.8 m.
+/// Bins above a road from which crowns may hang over it: 2.8 m.
 const CLEARANCE: u8 = 7;
-/// Places among a cell's numbers: whether it stands, then heights.
+/// Indices into a cell's numbers: whether something stands there, followed by its heights.
 const BUILT: usize = 0;
 const LOW: usize = 2;
 const GROWN: usize = 4;
 
-/// The things that the network of `net` draws for a scene's frame: in `columns` (`[x][y]`), to suit the road and what stands
-/// elsewhere in its occupancy. `named`: vegetation, building and clutter where they are asked for, 0 to 1.
+/// The things that the network of `net` draws for a scene's frame in `columns` (`[x][y]`), to suit the road and the
+/// voxels that stand elsewhere in its occupancy. `named`: vegetation, building and clutter if the user chose them, 0 to
+/// 1.
 pub fn drawn_scenery(
     net: &Arc<SceneryNet>,
     scene: &Scene,
@@ -60,7 +61,8 @@ pub fn drawn_scenery(
     Ok(infer::background(&grid, &frame.layout))
 }
 
-/// Puts what a cell of a map says into a grid, but for what would stand on the road or in an object.
+/// Extrudes a cell of a map into free voxels of a grid. Objects keep their voxels, nothing manmade is put on the road,
+/// and crowns over it keep the clearance.
 fn extrude(numbers: &[f64], cell: usize, condition: &SceneryCondition, grid: &mut VoxelGrid) {
     let bins = |at: usize| scenery::bins_above(numbers[at] as f32).round().max(0.0) as u8;
     let mut parts = Vec::new();

@@ -10,50 +10,50 @@ use diffusion::solver::{Guidance, SolverKind};
 use nn::Precision;
 use scene::Density;
 
-/// What part of the scene is regenerated.
+/// Part of the scene that is regenerated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RegionMode {
-    /// What the edit touches; everything else stays bit-identical.
+    /// The edited region; everything else stays bit-identical.
     #[default]
     Auto,
-    /// All of it, from fresh noise.
+    /// The whole scene, from fresh noise.
     Full,
 }
 
-/// How much work a result is worth.
+/// Quality of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
-    /// Something to look at while editing: results may be coarser.
+    /// A quick result to show while editing; it may be coarser.
     Preview,
     /// The result to keep.
     #[default]
     Final,
 }
 
-/// Numbers of [`Density`] that the user chose, each 0 to 1. An edit keeps what is not chosen; in a new scene the networks
-/// decide it (except completeness, which is 1 there).
+/// Numbers of [`Density`] that the user chose, each 0 to 1. An edit keeps the numbers that are not chosen; in a new
+/// scene the networks decide them (except completeness, which is 1 there).
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Named {
-    /// How much grows.
+    /// Density of vegetation.
     pub vegetation: Option<f32>,
-    /// How much is built.
+    /// Density of buildings.
     pub building: Option<f32>,
-    /// How much low furniture stands about.
+    /// Density of low furniture.
     pub clutter: Option<f32>,
-    /// 1 for complete worlds, about 0.4 for what real labels hold.
+    /// 1 for complete worlds, about 0.4 for real labels.
     pub completeness: Option<f32>,
 }
 
 impl Named {
-    /// In the networks' order.
+    /// The values in the networks' order.
     pub fn values(&self) -> [Option<f32>; 4] {
         [self.vegetation, self.building, self.clutter, self.completeness]
     }
 
-    /// The same; numbers that are not chosen come from `other`.
+    /// These numbers, with those not chosen taken from `other`.
     pub fn or_else(&self, other: &Self) -> Self {
         Self {
             vegetation: self.vegetation.or(other.vegetation),
@@ -63,7 +63,7 @@ impl Named {
         }
     }
 
-    /// The same; numbers that are not chosen come from `density`.
+    /// These numbers, with those not chosen taken from `density`.
     pub fn or(&self, density: &Density) -> Self {
         self.or_else(&Self {
             vegetation: Some(density.vegetation),
@@ -74,49 +74,51 @@ impl Named {
     }
 }
 
-/// Every knob of a generation. Equal parameters are equal bit for bit, so they can name a cache entry.
+/// Every knob of a generation. Equality is bit for bit, so parameters can name a cache entry.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GenParams {
     /// Sampling steps, 1 to 1000.
     pub steps: u32,
-    /// How a step is made; with O-BELM the inversion is exact.
+    /// Solver of the steps; with O-BELM the inversion is exact.
     pub solver: SolverKind,
-    /// Classifier-free guidance weight; 1 = none, half the network calls, where inversion is good.
+    /// Classifier-free guidance weight. 1 means no guidance: half the network calls, and inversion is good.
     pub guidance: f64,
     /// See [`Guidance::rescale`].
     pub guidance_rescale: f64,
-    /// Fixes all noise.
+    /// Seed of all noise.
     pub seed: u64,
-    /// What is regenerated.
+    /// Part of the scene that is regenerated.
     pub region: RegionMode,
-    /// Cells that are regenerated in automatic mode although nothing was edited there. They change only if `strength` is
+    /// Cells that are regenerated in automatic mode although they were not edited. They change only if `strength` is
     /// above 0.
     #[serde(rename = "redraw", alias = "inpaint")]
     pub inpaint: InpaintMask,
-    /// 0: the region starts from the noise that its source comes from (inversion). Above 0: it starts from the source with
-    /// fresh noise added, at this share of the steps (SDEdit); 1 keeps nothing of the source. Then all tokens are computed.
+    /// Strength of fresh noise. 0: the region starts from the noise that its source comes from (inversion). Above 0: it
+    /// starts from the source with fresh noise added, at this share of the steps (SDEdit), and all tokens are computed;
+    /// 1 keeps nothing of the source.
     pub strength: f64,
     /// Fixed-point updates per inversion step; 0 = plain DDIM inversion.
     pub inversion_iterations: u32,
     /// Columns around an edit that are inpainted with it.
     pub halo_columns: u32,
-    /// Computes only the tokens around an edit; the others take part with their keys and values from the source.
+    /// True to compute only the tokens around an edit; the others take part with their keys and values from the source.
     pub local: bool,
     /// Tokens (3.2 m) around an edited region that are computed with it.
     pub halo_tokens: u32,
     /// Number format of the denoising network's matrix products.
     pub precision: Precision,
-    /// The middle blocks of the network are computed at every so many steps and reused in between; 1 = at every one.
+    /// Interval, in steps, at which the middle blocks of the network are computed; they are reused in between. 1 =
+    /// every step.
     pub reuse_steps: u32,
     /// Steps of the fine stage; 0 = none.
     pub fine_steps: u32,
-    /// How much work the result is worth.
+    /// Quality of the result.
     pub quality: Quality,
-    /// Densities and completeness asked for.
+    /// Densities and completeness that the user chose.
     pub named: Named,
-    /// Corrects the networks where they ignore the user: for example, puts in the draft of a placed box that is mostly
-    /// missing.
+    /// True to correct the networks where they ignore the user: for example, puts in the draft of a placed box that is
+    /// mostly missing.
     pub keep_objects: bool,
 }
 
@@ -150,10 +152,10 @@ type Bits = ([u32; 6], [u64; 4], [Option<u32>; 4], Choices);
 type Choices = (SolverKind, RegionMode, InpaintMask, Quality, Precision, [bool; 2]);
 
 impl GenParams {
-    /// Guidance with which layouts come out as asked for, see docs/trade.md.
+    /// Range of guidance in which layouts come out as asked for, see docs/trade.md.
     pub const MEASURED_GUIDANCE: [f64; 2] = [0.5, 2.0];
 
-    /// For all of a scene from its layout and boxes alone.
+    /// Parameters for a whole scene from its layout and boxes alone.
     pub fn whole_scene() -> Self {
         Self {
             region: RegionMode::Full,
@@ -167,7 +169,7 @@ impl GenParams {
         }
     }
 
-    /// Everything as bits: the basis of equality and hashing.
+    /// All parameters as bits: the basis of equality and hashing.
     fn bits(&self) -> Bits {
         // Adding 0 turns -0 into 0.
         let bits = |v: f64| (v + 0.0).to_bits();
@@ -227,7 +229,7 @@ impl GenParams {
         in_range("reuse_steps", f64::from(self.reuse_steps), 1.0, 100.0)
     }
 
-    /// What is worth knowing of values that are in range and beyond what was measured, a line each.
+    /// Notes on values that are in range but outside the measured range, a line each.
     pub fn notes(&self) -> Vec<String> {
         let [low, high] = Self::MEASURED_GUIDANCE;
         let guidance = (!(low..=high).contains(&self.guidance)).then(|| {
@@ -240,7 +242,7 @@ impl GenParams {
         guidance.into_iter().collect()
     }
 
-    /// The guidance that these parameters ask for.
+    /// Weight and rescaling of the guidance.
     pub fn guidance(&self) -> Guidance {
         Guidance {
             weight: self.guidance,

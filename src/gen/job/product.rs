@@ -14,23 +14,23 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use crate::contract::JobId;
 use crate::guard::{Handed, Panicked, guarded};
 
-/// Called after every update, from the worker's thread: wakes the event loop.
+/// Callback after every update, on the worker's thread: wakes the event loop.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// How many updates may wait for the receiver; beyond that, updates on the way are dropped.
+/// Number of updates that may wait for the receiver; beyond it, updates that are not terminal are dropped.
 pub(crate) const MOST_WAITING: usize = 64;
 
-/// One kind of thing that is made in the background. Lives on the worker's thread.
+/// A kind of product made in the background. Lives on the worker's thread.
 pub trait Product: 'static {
     /// A job.
     type Request: Send + 'static;
-    /// What the worker reports, on the way and at the end.
+    /// Update of a job, while it runs and at its end.
     type Update: Send + 'static;
 
     /// Does a job and returns its terminal update.
     fn make(&mut self, request: &Self::Request, ctx: &Ctx<'_, Self::Update>) -> Self::Update;
 
-    /// Called after a panic: throws away what may be half-done.
+    /// Called after a panic: discards state that may be half-done.
     fn reset(&mut self);
 
     /// The terminal update of a job that was given up for a newer one or on request.
@@ -51,25 +51,25 @@ pub trait Product: 'static {
 /// An update with its job.
 #[derive(Clone, Debug)]
 pub struct Event<U> {
-    /// Which job.
+    /// The job.
     pub id: JobId,
-    /// What became of it.
+    /// Its update.
     pub update: U,
 }
 
-/// How a running job of a worker talks to whoever asked for it.
+/// Connection of a running job to its caller.
 pub struct Ctx<'a, U> {
     stop: &'a (dyn Fn() -> bool + Sync),
     report: &'a (dyn Fn(U) + Sync),
 }
 
 impl<U> Ctx<'_, U> {
-    /// True if the job is not wanted any more. Ask between steps.
+    /// True if the job is not wanted any more. Check it between steps.
     pub fn should_stop(&self) -> bool {
         (self.stop)()
     }
 
-    /// Reports an update on the way. Terminal updates are ignored: the worker sends that itself.
+    /// Reports an update of a running job. Terminal updates are ignored: the worker sends those itself.
     pub fn tell(&self, update: U) {
         (self.report)(update);
     }
@@ -131,13 +131,13 @@ impl<R: Send + 'static, U: Send + 'static> Worker<R, U> {
         })
     }
 
-    /// Asks for a job; the running one and those that wait are given up.
+    /// Submits a job. The running job and the waiting ones are given up.
     pub fn submit(&mut self, request: R) -> JobId {
         let id = JobId(self.orders.newest.load(Ordering::Acquire) + 1);
-        // Before sending: the running job should end now, not when the thread takes the new one.
+        // Set before sending: the running job should end now, not when the thread takes the new one.
         self.orders.newest.store(id.0, Ordering::Release);
         if let Some(jobs) = &self.jobs {
-            // The thread ends only when this sender is gone, so somebody listens.
+            // The thread ends only when this sender is gone, so the send succeeds.
             let _ = jobs.send((id, Handed::new(self.name, request)));
         }
         id
@@ -165,7 +165,7 @@ impl<R, U> Drop for Worker<R, U> {
         self.orders.cancelled.store(u64::MAX, Ordering::Release);
         self.jobs = None;
         if let Some(thread) = self.thread.take() {
-            // An error here means a panic outside any job: nobody can be told any more.
+            // An error here means a panic outside any job; it cannot be reported any more.
             let _ = thread.join();
         }
     }

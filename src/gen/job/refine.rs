@@ -1,6 +1,6 @@
-//! The fine stage. The coarse latent is decoded, the result is encoded by the fine VAE, and a few steps of diffusion inpaint
-//! that finer latent, which has room for single voxels. Each cell has its own noise, so equal surroundings are refined
-//! alike in a source and in an edit of it.
+//! The fine stage. The coarse latent is decoded, the result is encoded by the fine VAE, and a few steps of diffusion
+//! inpaint that finer latent, which can represent single voxels. Each cell has its own noise, so equal surroundings are
+//! refined alike in a source and in an edit of it.
 
 use crate::contract::GenError;
 use crate::region::CELLS_PER_SIDE;
@@ -11,12 +11,12 @@ use nets::{CHANNELS, CellRect, DecoderInput, OccModels};
 use numeric::philox::{Stream, normal};
 use scene::VoxelGrid;
 
-/// Coarse cells around the wanted ones that are computed with them: 3.2 m, half of what the network sees. It was trained
-/// on crops, so it can do without the rest.
+/// Margin of coarse cells around the wanted ones that are computed with them: 3.2 m, half of what the network sees. It
+/// was trained on crops, so it does not need the rest.
 const AROUND: usize = 2;
 
-/// Decodes some cells of a coarse latent (50x50x8) with `input` for the decoder, and refines them in `steps` steps. With 0
-/// steps, or without a fine network, it only decodes. The other cells stay free.
+/// Decodes some cells of a coarse latent (50x50x8) with `input` for the decoder, and refines them in `steps` steps.
+/// With 0 steps, or without a fine network, it only decodes. All other cells stay free.
 pub fn decode_refined(
     models: &OccModels,
     latent: &[f32],

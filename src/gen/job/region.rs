@@ -1,4 +1,4 @@
-//! Which part of a scene an edit touches: the columns to be inpainted, and the latent cells that the networks generate for
+//! The region that an edit touches: the columns to be inpainted, and the latent cells that the networks generate for
 //! them.
 
 use scene::raster::box_cells;
@@ -10,7 +10,7 @@ pub const CELLS_PER_SIDE: usize = 50;
 pub const CELLS: usize = CELLS_PER_SIDE * CELLS_PER_SIDE;
 /// Columns along one side of a latent cell.
 pub const COLUMNS_PER_CELL: usize = Window::NX / CELLS_PER_SIDE;
-/// How far the voxels of an object may stand out of its box: one voxel.
+/// Largest distance of an object's voxels outside its box: one voxel.
 const OVERHANG_M: f64 = Window::VOXEL_M;
 
 /// Columns of the grid to be inpainted, and the latent cells to be generated for them.
@@ -19,19 +19,19 @@ pub struct Region {
     /// `[x][y]`, 40,000: columns whose labels come from the generated grid.
     pub columns: Vec<bool>,
     /// `[i][j]`, 2,500: latent cells that hold such a column. Their neighbours are left out: columns there keep their
-    /// labels, so new content has to join the kept content, not other new content that is thrown away.
+    /// labels, so new content must join kept content, not other new content that is discarded.
     pub cells: Vec<bool>,
     /// Lowest and highest x and y of the columns, both included; `None` if there are none.
     pub bounds: Option<([usize; 2], [usize; 2])>,
 }
 
 impl Region {
-    /// Nothing.
+    /// The empty region.
     pub fn empty() -> Self {
         Self::of_columns(vec![false; Window::COLUMNS])
     }
 
-    /// Everything.
+    /// The region of all columns.
     pub fn full() -> Self {
         Self::of_columns(vec![true; Window::COLUMNS])
     }
@@ -55,9 +55,9 @@ impl Region {
         }
     }
 
-    /// The region of an edit: what differs between a frame and the source of its occupancy. These are the columns whose map
-    /// layers changed, and the old and the new footprint of every box that was added, removed, moved, resized or given
-    /// another class; all grown by `halo_columns`. Painted voxels do not count: they are put over the result.
+    /// The region of an edit: the differences between a frame and the source of its occupancy. It holds the columns
+    /// whose map layers changed, and the old and the new footprint of every box that was added, removed, moved, resized
+    /// or given another class; all grown by `halo_columns`. Painted voxels do not count: they are put over the result.
     ///
     /// Columns of boxes that did not change are left out, so that no untouched object is cut.
     pub fn of_edit(frame: &Frame, halo_columns: usize) -> Self {
@@ -103,7 +103,7 @@ impl Region {
     }
 }
 
-/// Columns that hold ground by now, and of which the source knows nothing: those of a map that was made larger.
+/// Columns that hold ground now but were unknown to the source: those of a map that was made larger.
 fn never_generated(frame: &Frame) -> Vec<[usize; 2]> {
     let (now, source) = (&frame.occupancy, &frame.source.occupancy);
     let is_ground = |label: &u8| Class::from_id(*label).is_some_and(Class::is_ground);
@@ -180,7 +180,7 @@ pub fn edited_columns(frame: &Frame, halo_columns: usize) -> Vec<bool> {
     columns
 }
 
-/// True if two boxes are equal in all that occupancy shows (velocity, for example, it does not show).
+/// True if two boxes are equal in everything that occupancy shows (velocity, for example, is not shown).
 fn same_solid(a: &SceneBox, b: &SceneBox) -> bool {
     a.class == b.class && a.center_m == b.center_m && a.size_m == b.size_m && a.yaw_rad == b.yaw_rad
 }

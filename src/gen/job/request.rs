@@ -1,4 +1,4 @@
-//! What the user asked for, in voxels: where the boxes of a frame allow objects, which voxels are painted, and which columns
+//! The user's request in voxels: where the boxes of a frame allow objects, which voxels are painted, and which columns
 //! an edit changed.
 
 use glam::DVec3;
@@ -8,24 +8,24 @@ use scene::grid::NOT_PAINTED;
 use scene::raster::box_cells;
 use scene::{Class, Extent, Frame, SceneBox, VoxelGrid, Window, draft};
 
-/// How far the voxels of an object may stand out of its box: one voxel.
+/// Largest distance of an object's voxels outside its box: one voxel.
 pub const OVERHANG_M: f64 = Window::VOXEL_M;
 const OBJECTS: usize = Class::OBJECTS.len();
 
-/// Which voxels and columns of a frame the user has asked something for.
+/// Voxels and columns of a frame that the user's boxes, paint and edits ask for.
 pub struct Request<'a> {
     frame: &'a Frame,
-    /// `[x][y]`: how many bins from the lowest up each object class (ids 1 to 10) may fill.
+    /// `[x][y]`: number of bins from the lowest up that each object class (ids 1 to 10) may fill.
     heights: Vec<[u8; OBJECTS]>,
     /// `[x][y]`: columns in which a box of the source stood that is now gone, moved or of another class.
     left: Vec<bool>,
-    /// `[x][y]`: the same columns, those of new and changed boxes, those whose ground the layout changed, and new
+    /// `[x][y]`: those columns, the columns of new and changed boxes, those whose ground the layout changed, and new
     /// ground.
     edited: Vec<bool>,
 }
 
 impl<'a> Request<'a> {
-    /// From a frame and its source.
+    /// The request of a frame and its source.
     pub fn of(frame: &'a Frame) -> Self {
         let mut heights = vec![[0; OBJECTS]; Window::COLUMNS];
         for b in frame.boxes.values() {
@@ -74,12 +74,12 @@ impl<'a> Request<'a> {
         boxed || self.frame.painted.get(x, y, z) != NOT_PAINTED
     }
 
-    /// True for a column (index `[x][y]`) in which a box stood that is not there any more.
+    /// True for a column (index `[x][y]`) of a source box that is not there any more.
     pub fn left_by_a_box(&self, column: usize) -> bool {
         self.left[column]
     }
 
-    /// True for a column (index `[x][y]`) in which a box came, went or changed, or the ground did.
+    /// True for a column (index `[x][y]`) whose box or ground was added, removed or changed.
     pub fn edited(&self, column: usize) -> bool {
         self.edited[column]
     }
@@ -110,7 +110,8 @@ pub fn stands(label: u8) -> bool {
     Class::from_id(label).is_some_and(|c| c != Class::Free && !c.is_ground())
 }
 
-/// Voxels that a box accounts for: those of its class in its columns and a voxel around them, up to a voxel above it.
+/// Number of voxels that belong to a box: those of its class in its columns and a voxel around them, up to a voxel
+/// above it.
 pub fn voxels_of(grid: &VoxelGrid, b: &SceneBox) -> usize {
     let (mut count, bins) = (0, usize::from(bins_of(b)));
     box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
@@ -129,7 +130,7 @@ fn slot(label: u8) -> Option<usize> {
 fn bins_of(b: &SceneBox) -> u8 {
     let top_m = b.center_m.z + b.size_m.z / 2.0 + OVERHANG_M;
     let bins = Window::to_voxel_units(DVec3::new(0.0, 0.0, top_m)).z.ceil();
-    // A box under the ground is drawn one voxel high.
+    // A box under the ground counts as one voxel high.
     bins.clamp(1.0, Window::NZ as f64) as u8
 }
 

@@ -1,5 +1,5 @@
-//! What labels would hold of a box that no sensor ever saw: the faces of its draft that look towards a drive along the ego's
-//! x axis. Labels are hollow, and the far side of a vehicle is missing.
+//! Expected labels of a box that no sensor ever saw: the faces of its draft that look towards a drive along the ego's x
+//! axis. Labels are hollow, and the far side of a vehicle is missing.
 
 use std::collections::HashMap;
 
@@ -8,10 +8,10 @@ use glam::DVec3;
 use scene::draft::{box_columns, ground_bin};
 use scene::{BevLayout, Extent, SceneBox, Window};
 
-/// Where the drive's sensor was, ego frame, m.
+/// Positions of the drive's sensor, ego frame, m.
 const SENSORS_X_M: [f64; 7] = [-30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0];
 const SENSOR_Z_M: f64 = 1.84;
-/// Outward normals of a voxel's faces, but for the one below.
+/// Outward normals of a voxel's faces, except the lower one.
 const FACES: [[i64; 3]; 5] = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]];
 
 /// The voxels of a box's draft that such a drive sees, `[x, y, z]`, from the ground of `layout` up.

@@ -11,8 +11,8 @@ use crate::product::{Ctx, Product, Worker};
 pub type GenWorker = Worker<Job, JobUpdate>;
 
 impl GenWorker {
-    /// Starts the thread. `build` runs on it and makes the pipeline (reads weights), for the first job and again
-    /// after a panic or if it failed. Errors if the system gives no thread.
+    /// Starts the thread. `build` runs on it and makes the pipeline (reads weights): for the first job, and again after
+    /// a panic or if it failed. Errors if the system gives no thread.
     pub fn spawn<P, B>(build: B, wake: Wake) -> std::io::Result<Self>
     where
         P: Pipeline + 'static,

@@ -17,7 +17,7 @@ pub fn scene(index: u64) -> Scene {
     scene
 }
 
-/// The same without things beside the road: what the trade is measured on.
+/// Held-out world `index` as a scene without a list of things beside the road; the trade is measured on it.
 pub fn bare_scene(index: u64) -> Scene {
     let (world, seed) = world_of(TEST_SEED, index, |_| None);
     let grid = complete(&world, Vertical::Occ3d);

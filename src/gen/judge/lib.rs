@@ -18,7 +18,7 @@ pub trait Progress: Sync {
     fn at(&self, stage: &str, step: usize, steps: usize);
 }
 
-/// Ignores progress.
+/// Implementation that ignores progress.
 impl Progress for () {
     fn at(&self, _: &str, _: usize, _: usize) {}
 }

@@ -1,4 +1,5 @@
-//! How busy the machine is, which one it is, what memory is held: figures of a busy machine are worth little, those of another one nothing.
+//! Load, name and memory of the machine. Times taken on a busy machine are worth little, those of another machine
+//! nothing.
 
 use std::sync::LazyLock;
 
@@ -7,7 +8,7 @@ use serde::Serialize;
 /// Load per core above which times are not to be trusted.
 pub const BUSY: f64 = 0.5;
 
-/// What the machine does beside us.
+/// Load of the machine by all processes.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Load {
     /// Mean number of running processes over the last minute, per core; `None` where the system does not tell.
@@ -17,7 +18,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// Of now.
+    /// The load at this moment.
     pub fn now() -> Self {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let text = std::fs::read_to_string("/proc/loadavg").ok();
@@ -28,7 +29,7 @@ impl Load {
         }
     }
 
-    /// True if times taken now are not to be trusted.
+    /// True if the machine is too busy for times taken now to be trusted.
     pub fn is_busy(&self) -> bool {
         self.per_core.is_some_and(|l| l > BUSY)
     }
@@ -70,8 +71,8 @@ pub fn peak_rss_mb() -> Option<f64> {
     Some((kb / 102.4).round() / 10.0)
 }
 
-/// Lets the system forget the largest memory this process has held, so that the next one is that of what follows.
+/// Resets the peak of this process's memory, so that the next peak is that of what follows.
 pub fn forget_peak_memory() {
-    // Where it does not work, peaks are those of the whole run, which is what the reader must then assume.
+    // If the reset fails, peaks are those of the whole run, which readers must then assume.
     std::fs::write("/proc/self/clear_refs", "5").ok();
 }

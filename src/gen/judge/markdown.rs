@@ -1,4 +1,4 @@
-//! All suites one after another, and their figures as Markdown: `docs/figures.md` is made of it.
+//! Runs all suites one after another and writes their figures as Markdown: `docs/figures.md` is made of it.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -13,29 +13,29 @@ use crate::suite::{Options, Report, Suite};
 /// A figure of a suite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// What it is.
+    /// Name of the figure.
     pub figure: String,
     /// Its value; `None` if the run was too small to give one.
     pub value: Option<f64>,
     /// Its 95 % interval.
     pub interval: Option<[f64; 2]>,
-    /// Number of values that it is made of, if it was counted.
+    /// Number of values behind it, if they were counted.
     pub n: Option<u64>,
-    /// The least that it should be.
+    /// The bar: the least that it should be.
     pub least: Option<f64>,
 }
 
-/// What became of a suite.
+/// Outcome of a suite.
 pub struct Table {
     /// Its name.
     pub name: &'static str,
     /// Its title.
     pub title: &'static str,
-    /// The command that measures the same.
+    /// The command line that measures this suite alone.
     pub command: String,
     /// Time it took, s.
     pub wall_s: f64,
-    /// Report and rows; or why it was not measured, in one line.
+    /// Report and rows, or one line that says why it was not measured.
     pub found: Result<(Report, Vec<Row>), String>,
 }
 
@@ -48,7 +48,7 @@ fn row(figure: &str, value: Option<&Value>) -> Row {
         .map(|(mean, half)| [mean - half, mean + half]);
     let n = value.and_then(|v| v.get("n")?.as_u64());
     if n == Some(0) {
-        // The mean of nothing says nothing.
+        // A mean over no values is left out.
         return Row {
             figure: figure.to_owned(),
             value: None,
@@ -82,7 +82,8 @@ fn rows(suite: &Suite, report: &Report) -> Vec<Row> {
     shown.chain(bars).collect()
 }
 
-/// A path as reports show it: where it lies on this machine is nobody's business.
+/// A path as reports show it: the file's name alone for an absolute path, since folders of this machine do not belong
+/// there.
 pub(crate) fn told(path: &Path) -> String {
     let name = path.file_name().filter(|_| path.is_absolute());
     name.map_or_else(
@@ -91,7 +92,7 @@ pub(crate) fn told(path: &Path) -> String {
     )
 }
 
-/// The command line that runs a suite alone with options that differ from the usual ones.
+/// The command line that runs a suite alone; names the options that differ from the defaults.
 fn command(suite: &Suite, options: &Options) -> String {
     let usual = Options::default();
     let mut out = format!("sceneloom eval {} --frames {}", suite.name, options.frames);
@@ -129,7 +130,7 @@ fn command(suite: &Suite, options: &Options) -> String {
     out
 }
 
-/// Runs suites one after another, each with options of its own. One that cannot run does not keep the others from it.
+/// Runs suites one after another, each with its own options. A suite that cannot run does not stop the others.
 pub fn measure_all(
     suites: impl Iterator<Item = &'static Suite>,
     options: &dyn Fn(&Suite) -> Options,
@@ -157,7 +158,7 @@ pub fn measure_all(
 }
 
 impl Table {
-    /// For a report of all suites.
+    /// JSON of the table for a report of all suites.
     pub fn json(&self) -> Value {
         let mut out = match &self.found {
             Ok((report, _)) => report.json.clone(),

@@ -1,21 +1,22 @@
-//! What a suite is asked to do, and the command line that asks for the same.
+//! Options of a suite, and the command line that sets them.
 
 use std::path::PathBuf;
 
 use job::GenParams;
 
-/// Sizes and choices of a run. Suites read what concerns them.
+/// Sizes and choices of a run. A suite reads the options that concern it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Number of held-out worlds, or of frames of `data`.
     pub frames: usize,
-    /// Folder of Occ3D frames (`labels.npz`, at any depth) to judge the VAE or edits by instead; of `map` a project file.
+    /// Folder of Occ3D frames (`labels.npz`, at any depth) to judge the VAE or edits on instead; for `map`, a project
+    /// file.
     pub data: Option<PathBuf>,
     /// Vehicles of a scene that are removed, moved and changed, one by one, at most (editing).
     pub vehicles: usize,
     /// Presets of the quality slider to judge; all but the reference if none is named (editing).
     pub presets: Vec<String>,
-    /// Worlds whose objects say how many voxels a class has, at least (editing).
+    /// Worlds whose objects give the usual number of voxels of a class, at least (editing).
     pub band_worlds: usize,
     /// Random edits, one after another, that must change nothing outside their regions (editing).
     pub random_edits: usize,
@@ -25,13 +26,13 @@ pub struct Options {
     pub reference_frames: usize,
     /// Sentences to judge (layout): a file of one JSON object a line, or a folder of such files.
     pub prompts: Option<PathBuf>,
-    /// At most so many of them, spread evenly; none: all (layout).
+    /// Largest number of sentences, spread evenly; `None` takes all (layout).
     pub sentences: Option<usize>,
-    /// Who reads the sentences (layout).
+    /// Reader of the sentences (layout).
     pub reader: Who,
     /// Prompts on which the placers are compared, with and without memory (layout); 0 leaves that out.
     pub placer_prompts: usize,
-    /// No ablations of layout and boxes, no inpainted squares (generation).
+    /// Leaves out ablations of layout and boxes, and inpainted squares (generation).
     pub rows_only: bool,
     /// Parameters of whole scenes.
     pub scene_params: GenParams,
@@ -64,16 +65,16 @@ impl Default for Options {
     }
 }
 
-/// Who reads the sentences.
+/// Reader of the sentences.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Who {
-    /// Both readers, as in the program.
+    /// The two readers together, as in the program.
     #[default]
     Both,
-    /// Nobody: the readings that stand beside the sentences are carried out.
+    /// No reader: the readings given with the sentences are carried out.
     Given,
     /// The learned reader alone.
     Learned,
-    /// The grammar alone: what it does not read to the last word it does not read.
+    /// The grammar alone: a sentence that it does not read to the last word counts as not read.
     Grammar,
 }

@@ -1,4 +1,4 @@
-//! Where figures come from: which state of the program, when, on what machine.
+//! Origin of figures: state of the program, date and machine.
 
 use std::path::Path;
 use std::process::Command;
@@ -8,11 +8,11 @@ use serde::Serialize;
 
 use crate::machine;
 
-/// Heads a list of figures.
+/// Heading of a list of figures.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Origin {
-    /// Commit of the source tree that the program was built in, with `-dirty` if files differ from it; without the tree,
-    /// `version` and the program's.
+    /// Commit of the source tree that the program was built in, with `-dirty` if files differ from it. Without the
+    /// tree: `version` and the program's version.
     pub commit: String,
     /// Day (UTC), as 2026-11-25.
     pub date: String,
@@ -25,7 +25,7 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// Of now and here.
+    /// The origin of figures measured now, by this build on this machine.
     pub fn now(command: String) -> Self {
         let seconds = SystemTime::now()
             .duration_since(UNIX_EPOCH)
@@ -41,7 +41,7 @@ impl Origin {
     }
 }
 
-/// What git says of a folder; `None` without git, or if it is in no repository.
+/// Description of a folder's commit by git; `None` without git, or if the folder is in no repository.
 fn commit(folder: &Path) -> Option<String> {
     let mut git = Command::new("git");
     git.arg("-C").arg(folder);

@@ -24,14 +24,14 @@ pub(crate) fn with_interval(values: &[f64]) -> Value {
 
 /// A kind of evaluation.
 pub struct Suite {
-    /// As it is called on the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// What it tells, in one line.
+    /// Title in one line.
     pub title: &'static str,
     /// Figures of the report that are shown: name with unit, and JSON pointer to a number, to `mean` with `ci95`, or to `share`
     /// with `low` and `high`.
     pub figures: &'static [(&'static str, &'static str)],
-    /// It judges the files of `--data`, where they are given.
+    /// True if it judges the files of `--data`, where they are given.
     pub takes_data: bool,
     /// Makes options small, so that all suites together take about five minutes on two cores.
     pub quick: fn(&mut Options),
@@ -41,15 +41,15 @@ pub struct Suite {
     pub(crate) run: fn(&Options, &dyn Progress) -> anyhow::Result<Found>,
 }
 
-/// What a suite found.
+/// Outcome of a suite.
 pub struct Report {
-    /// Everything, with `bars`, `seeds` and `n`.
+    /// The whole report, with `bars`, `seeds` and `n`.
     pub json: Value,
     /// Its bars.
     pub bars: Vec<Bar>,
 }
 
-/// True if a bar is missed; a figure that is not there misses it.
+/// True if a bar is missed; a figure that is not a number misses it.
 fn is_missed((_, found, least): &Bar) -> bool {
     found.is_nan() || found < least
 }

@@ -372,7 +372,7 @@ pub fn named(name: &str) -> Option<&'static Suite> {
     SUITES.iter().find(|s| s.name == name)
 }
 
-/// Runs `with` on the networks of the options; the report names them.
+/// Runs `with` on the networks of the options. The report names the networks.
 fn with_pipeline(
     options: &Options,
     with: impl FnOnce(&mut OccPipeline) -> anyhow::Result<Found>,

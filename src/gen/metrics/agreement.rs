@@ -1,8 +1,8 @@
-//! Does occupancy obey its layout? Columns that hold a class against columns that the layout sets.
+//! Agreement of occupancy with its layout: columns that hold a class against columns that the layout sets.
 
 use scene::{BevLayer, Class, Frame, VoxelGrid};
 
-/// IoU over BEV columns of what the layout asks for and what the occupancy holds.
+/// IoU over BEV columns between the layout and the occupancy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct LayoutAgreement {
     /// Columns of driveable surface against the layers drivable area and car park, without the
@@ -54,7 +54,7 @@ impl AgreementCount {
         }
     }
 
-    /// The ratios.
+    /// The IoUs.
     pub fn iou(&self) -> LayoutAgreement {
         let ratio = |[both, either]: [u64; 2]| (either > 0).then(|| both as f64 / either as f64);
         LayoutAgreement {

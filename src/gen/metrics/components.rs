@@ -1,4 +1,4 @@
-//! Voxels that hang together: groups of 26 neighbours, as flat indices of `[x][y][z]`.
+//! Connected groups of voxels (26 neighbours), as flat indices of `[x][y][z]`.
 
 use scene::{VoxelGrid, Window};
 
@@ -26,7 +26,8 @@ pub fn around(at: usize) -> impl Iterator<Item = usize> {
         .filter(move |near| *near != at)
 }
 
-/// Everything inside that is connected to `group`, which is inside too; takes it out of `inside`.
+/// All voxels inside that are connected to `group`, with `group` itself, which is inside too. Takes them out of
+/// `inside`.
 pub fn spread(inside: &mut [bool], mut group: Vec<usize>) -> Vec<usize> {
     group.iter().for_each(|at| inside[*at] = false);
     let mut next = 0;

@@ -1,7 +1,7 @@
 //! Features of occupancy for distribution distances ("F3D"): an encoder with fixed weights that ship as
-//! `assets/weights/f3d.safetensors` and never change, so that figures of different models and days compare.
-//! It is that of the occupancy VAE of this project's second session (commit 5750f81), trained on procedural
-//! worlds, labels and drafts.
+//! `assets/weights/f3d.safetensors` and never change, so that figures of different models and days can be compared. It
+//! is the encoder of the occupancy VAE of this project's second session (commit 5750f81), trained on procedural worlds,
+//! labels and drafts.
 //!
 //! The features of a frame are the means over the 50x50 cells of its 192 channels after the last norm.
 //! Published F3D figures come from other extractors and do not compare.
@@ -29,7 +29,7 @@ pub struct Extractor {
 }
 
 impl Extractor {
-    /// The one that ships with the program.
+    /// The extractor that ships with the program.
     pub fn bundled() -> Result<Self, WeightsError> {
         let bytes = assets::weights::F3D;
         let mut file = WeightFile::parse("f3d.safetensors", bytes)?;

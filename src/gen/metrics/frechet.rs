@@ -2,8 +2,8 @@
 //! |m - n|^2 + tr A + tr B - 2 tr sqrt(AB). The last trace is the nuclear norm of Rx Ry^T with R the QR
 //! factors of the centred samples, so no matrix root is taken that could become complex.
 //!
-//! Finite sets give too much: with a true distance of 0 in 64 dimensions 22.6 at 100 samples, 2.2 at 1000.
-//! The number of samples belongs to every figure.
+//! The distance of finite sets is too large: with a true distance of 0 in 64 dimensions it is 22.6 at 100 samples and
+//! 2.2 at 1000. So every figure must be given with its number of samples.
 
 use nalgebra::DMatrix;
 
@@ -27,16 +27,16 @@ pub fn frechet_distance(x: &[Vec<f64>], y: &[Vec<f64>]) -> Result<f64, MetricErr
     Ok((shift + traces - 2.0 * nuclear / (nx * ny).sqrt()).max(0.0))
 }
 
-/// What the distance of more and more samples would come to: the bias falls with 1 / n, so twice the distance of all less
-/// that of halves leaves it out (to first order; the sets' own noise remains, also below 0). The halves are every second
-/// sample; errors as for [`frechet_distance`], each half counting.
+/// Extrapolation of the distance to infinitely many samples. The bias falls with 1 / n, so twice the distance of all
+/// samples less that of halves removes it (to first order; the sets' own noise remains, also below 0). The halves are
+/// every second sample. Errors are those of [`frechet_distance`], for each half too.
 pub fn frechet_extrapolated(x: &[Vec<f64>], y: &[Vec<f64>]) -> Result<f64, MetricError> {
     let half = |s: &[Vec<f64>], k: usize| -> Vec<Vec<f64>> { s.iter().skip(k).step_by(2).cloned().collect() };
     let [first, second] = [0, 1].map(|k| frechet_distance(&half(x, k), &half(y, k)));
     Ok(2.0 * frechet_distance(x, y)? - (first? + second?) / 2.0)
 }
 
-/// The mean, and the samples without it.
+/// The mean, and the samples less the mean.
 fn centred(samples: &[Vec<f64>], which: &'static str) -> Result<(Vec<f64>, DMatrix<f64>), MetricError> {
     let width = check(samples, which)?;
     let n = samples.len();
@@ -47,7 +47,7 @@ fn centred(samples: &[Vec<f64>], which: &'static str) -> Result<(Vec<f64>, DMatr
     Ok((mean, centred))
 }
 
-/// At least two samples, all as long as the first, all finite; their length.
+/// Checks that there are at least two samples, all as long as the first, all finite. Returns their length.
 pub(super) fn check(samples: &[Vec<f64>], which: &'static str) -> Result<usize, MetricError> {
     if samples.len() < 2 {
         return Err(MetricError::TooFew {

@@ -1,9 +1,9 @@
-//! Intersection over union of label grids, after Occ3D: free is excluded from the mean, and so is a
-//! class that neither grid has; how many classes were present is told beside the figure.
+//! Intersection over union of label grids, after Occ3D: free is excluded from the mean, and so is a class that neither
+//! grid has. The number of classes present is given with the figure.
 
 use scene::{Class, VoxelGrid, Window};
 
-/// Voxels counted per pair of true and predicted label; sums over frames, u64 so that it never saturates.
+/// Voxels counted per pair of true and predicted label. Sums over frames, in u64 so that it never saturates.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Confusion {
     counts: Vec<u64>, // [truth][prediction]
@@ -61,7 +61,7 @@ impl Confusion {
         (either > 0).then(|| both as f64 / either as f64)
     }
 
-    /// Mean IoU over the classes present in the truth, free excluded, and how many they were.
+    /// Mean IoU over the classes present in the truth, free excluded, and the number of these classes.
     pub fn mean_iou(&self) -> (Option<f64>, usize) {
         let in_truth = |c: &Class| (0..Class::COUNT).any(|p| self.counts[*c as usize * Class::COUNT + p] > 0);
         let present = Class::ALL

@@ -1,6 +1,6 @@
-//! Kernel distances between two sets of feature vectors: squared MMD with a Gaussian kernel, and KID, the
-//! same with the kernel (x.y / d + 1)^3 (Binkowski et al. 2018, arXiv 1801.01401). Both as unbiased
-//! U-statistics, which may be a little below zero.
+//! Kernel distances between two sets of feature vectors: squared MMD with a Gaussian kernel, and KID, which is squared
+//! MMD with the kernel (x.y / d + 1)^3 (Binkowski et al. 2018, arXiv 1801.01401). Both are unbiased U-statistics, which
+//! may be a little below zero.
 
 use super::frechet::check;
 use super::{MetricError, stats::mean_ci95};
@@ -8,7 +8,7 @@ use super::{MetricError, stats::mean_ci95};
 /// Smallest bandwidth of a Gaussian kernel.
 const LEAST_BANDWIDTH: f64 = 1e-12;
 
-/// A kernel of two samples.
+/// A kernel on pairs of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kernel {
     /// (x.y / d + 1)^3.
@@ -33,7 +33,7 @@ impl Kernel {
         }
     }
 
-    /// Of two samples.
+    /// Value of the kernel for two samples.
     pub(super) fn of(self, a: &[f64], b: &[f64]) -> f64 {
         match self {
             Kernel::Cubic => {
@@ -52,7 +52,8 @@ fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
-/// Squared maximum mean discrepancy as a biased V-statistic, every pair counted, at least 0: LidarDM's definition.
+/// Squared maximum mean discrepancy as a biased V-statistic: every pair counts, and it is at least 0. LidarDM's
+/// definition.
 pub fn mmd2_biased(kernel: Kernel, x: &[Vec<f64>], y: &[Vec<f64>]) -> Result<f64, MetricError> {
     let (wide, found) = (check(x, "x")?, check(y, "y")?);
     if wide != found {
@@ -91,8 +92,8 @@ pub fn mmd2(kernel: Kernel, x: &[Vec<f64>], y: &[Vec<f64>]) -> Result<f64, Metri
     Ok(within(x) + within(y) - 2.0 * between / (x.len() * y.len()) as f64)
 }
 
-/// Mean over `subsets` disjoint parts of the sets, and half of its 95 % interval: how far the figure can
-/// be trusted. Fewer parts where the sets are too small.
+/// Mean over `subsets` disjoint parts of the sets, and half of its 95 % interval. Takes fewer parts if the sets are too
+/// small.
 pub fn mmd2_with_interval(
     kernel: Kernel,
     x: &[Vec<f64>],

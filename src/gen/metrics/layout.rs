@@ -1,5 +1,5 @@
-//! How layouts look beside real ones: spacing, sizes, headings, lane widths, against aggregate figures of real drives
-//! (`assets/statistics/layout.json`, which names their origin), and how much layouts of one graph differ.
+//! Figures of layouts beside those of real drives: spacing, sizes, headings, lane widths
+//! (`assets/statistics/layout.json`, which names its origin). Also how much layouts of one graph differ.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -34,7 +34,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of some values; `None` for none.
+    /// The spread of some values; `None` for none.
     pub fn of(values: &[f64]) -> Option<Self> {
         (!values.is_empty()).then(|| Self {
             p5: quantile(values, 0.05),
@@ -49,11 +49,11 @@ impl Spread {
 /// One quantity of layouts and of real drives.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Which.
+    /// Name of the quantity.
     pub name: String,
-    /// Of the layouts.
+    /// Spread over the layouts.
     pub found: Spread,
-    /// Of real drives.
+    /// Spread over real drives.
     pub real: Spread,
 }
 
@@ -69,14 +69,14 @@ pub struct LayoutFigures {
     overlapping: usize,
 }
 
-/// Shares that ought to be near 0 or 1 whatever the layout.
+/// Shares that should be near 0 or 1 whatever the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Soundness {
     /// Pairs of boxes that overlap, share of all pairs within 15 m.
     pub overlapping_pairs: f64,
-    /// Vehicles whose centre is on road or car park.
+    /// Share of vehicles whose centre is on road or car park.
     pub vehicles_on_road: f64,
-    /// Moving vehicles within 15 degrees of their lane's direction.
+    /// Share of moving vehicles within 15 degrees of their lane's direction.
     pub moving_along_lane: f64,
 }
 
@@ -143,7 +143,8 @@ impl LayoutFigures {
         }
     }
 
-    /// Vehicles abreast: headings within 15 degrees, less than half a length apart along it, up to 6 m across.
+    /// Adds the distance of vehicles side by side: headings within 15 degrees, less than half a length apart along the
+    /// heading, 1 to 6 m across.
     fn side_by_side(&mut self, a: &SceneBox, b: &SceneBox) {
         if !(a.class.is_vehicle() && b.class.is_vehicle()) || a.heading().dot(b.heading()) < 0.9659 {
             return;
@@ -155,7 +156,7 @@ impl LayoutFigures {
         }
     }
 
-    /// Free space to the next vehicle in the same lane, bumper to bumper.
+    /// Adds the free space to the next vehicle in the same lane, bumper to bumper, m.
     fn gaps(&mut self, road: &RoadMap, boxes: &[&SceneBox]) {
         let mut in_lane: BTreeMap<usize, Vec<(f64, f64)>> = BTreeMap::new();
         for b in boxes.iter().filter(|b| b.class.is_vehicle()) {
@@ -178,7 +179,7 @@ impl LayoutFigures {
         }
     }
 
-    /// Metres of lane, and the distance to the next parallel lane at every fifth metre.
+    /// Adds metres of lane, and the distance to the next parallel lane at every fifth metre.
     fn lanes(&mut self, road: &RoadMap) {
         let inside = |p: &DVec2| p.abs().max_element() <= 40.0;
         let metres: usize = road
@@ -203,7 +204,7 @@ impl LayoutFigures {
         }
     }
 
-    /// Every quantity of which there are values and real figures, by name.
+    /// Every quantity that has values and real figures, by name.
     pub fn rows(&self) -> Vec<Row> {
         let real = real_figures();
         let found = self.values.iter().filter_map(|(name, values)| {
@@ -216,7 +217,7 @@ impl LayoutFigures {
         found.collect()
     }
 
-    /// Shares of what must not be.
+    /// Shares of overlaps, of vehicles on road and of vehicles along their lane.
     pub fn soundness(&self) -> Soundness {
         let share = |n: usize, of: usize| n as f64 / of.max(1) as f64;
         Soundness {
@@ -246,7 +247,7 @@ pub fn real_figures() -> BTreeMap<String, Spread> {
     let mut out = BTreeMap::new();
     for (class, axes) in file.sizes_m {
         for (axis, spread) in axes {
-            // The source has no median of sizes; they are nearly symmetric.
+            // The source gives no median of sizes; they are nearly symmetric.
             let p50 = spread.mean;
             out.insert(format!("{class}.{axis}_m"), Spread { p50, ..spread });
         }
@@ -261,18 +262,18 @@ pub fn real_figures() -> BTreeMap<String, Spread> {
     out
 }
 
-/// How much layouts of one graph differ.
+/// Difference between layouts of one graph.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Diversity {
     /// 1 less the intersection over union of the footprints, mean over pairs of layouts.
     pub footprints: f64,
     /// Distance between the places of the same node, m, mean over nodes and pairs.
     pub displacement_m: f64,
-    /// Pairs of layouts.
+    /// Number of pairs of layouts.
     pub pairs: usize,
 }
 
-/// Of layouts by node id, one for each seed; all 0 below two.
+/// Diversity of layouts by node id, one for each seed; all 0 below two.
 pub fn diversity(layouts: &[BTreeMap<u32, SceneBox>]) -> Diversity {
     let cells: Vec<BTreeSet<usize>> = layouts
         .iter()

@@ -24,23 +24,23 @@ pub mod two_sample;
 
 use thiserror::Error;
 
-/// Why a figure cannot be computed from the samples.
+/// Reason why a figure cannot be computed from the samples.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum MetricError {
     /// Fewer than two samples.
     #[error("{which} has {found} samples, expected at least 2")]
     TooFew {
-        /// Which set.
+        /// Name of the set.
         which: &'static str,
-        /// Its size.
+        /// Size of the set.
         found: usize,
     },
     /// Samples of different length.
     #[error("a sample has {found} numbers, expected {expected}")]
     Width {
-        /// Its length.
+        /// Length of the sample.
         found: usize,
-        /// That of the first sample.
+        /// Length of the first sample.
         expected: usize,
     },
     /// Fewer than four scenes, or scenes without windows.
@@ -52,7 +52,7 @@ pub enum MetricError {
     /// NaN or infinity.
     #[error("{which} holds a number that is not finite")]
     NotFinite {
-        /// Which set.
+        /// Name of the set.
         which: &'static str,
     },
 }

@@ -1,10 +1,10 @@
-//! Distances between sets of LiDAR sweeps as LidarDM defines them (Zyrianov et al. 2024, arXiv 2404.02903): occupied
-//! voxels seen from above. JSD of the maps' sum, MMD between single maps.
+//! Distances between sets of LiDAR sweeps as LidarDM defines them (Zyrianov et al. 2024, arXiv 2404.02903), on occupied
+//! voxels seen from above: JSD of the maps' sum, MMD between single maps.
 
 use super::MetricError;
 use super::kernel::{Kernel, mmd2_biased};
 
-/// Voxels along x and y, and along z.
+/// Number of voxels along x and y, and along z.
 const VOXELS: [usize; 2] = [640, 35];
 /// Lower corner in the sensor frame, m, and edges of a voxel.
 const LOWER_M: [f64; 3] = [-50.0, -50.0, -3.23];
@@ -38,8 +38,8 @@ pub fn bird_map(points_in_sensor: impl IntoIterator<Item = [f64; 3]>) -> Vec<f64
     map
 }
 
-/// Jensen-Shannon divergence in nats of two histograms, which are normalised first; 0 to ln 2. Two empty ones are
-/// alike, an empty one and another are as far apart as can be; negative and NaN counts are taken for nothing.
+/// Jensen-Shannon divergence in nats of two histograms, which are normalised first; 0 to ln 2. Two empty histograms
+/// have 0, an empty and a non-empty one ln 2. Negative and NaN counts are taken as 0.
 pub fn js_divergence(p: &[f64], q: &[f64]) -> f64 {
     let clean = |v: f64| if v > 0.0 && v.is_finite() { v } else { 0.0 };
     let sum = |h: &[f64]| h.iter().map(|v| clean(*v)).sum::<f64>();

@@ -1,18 +1,18 @@
-//! Logistic regression by Newton's method, and the area under the ROC curve: how much of an outcome a trivial predictor
-//! can tell.
+//! Logistic regression by Newton's method, and the area under the ROC curve: measures how much of an outcome a trivial
+//! predictor can tell.
 
 use numeric::linear::solve;
 
-/// Weight of the penalty on coefficients: keeps a class that was never lost finite.
+/// Weight of the penalty on coefficients: keeps the coefficient of a class that was never lost finite.
 const RIDGE: f64 = 1e-2;
 const STEPS: usize = 25;
 
-/// Coefficients of a fit: log odds are their product with the features.
+/// Coefficients of a fit: their product with the features gives the log odds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Logistic(Vec<f64>);
 
 impl Logistic {
-    /// Fits rows of equally many features to outcomes. One feature should be constant. `None` without rows, for rows of
+    /// Fits rows of equal length to outcomes. One feature should be constant. `None` without rows, for rows of
     /// different length and for numbers that are not finite.
     pub fn fit(rows: &[Vec<f64>], outcomes: &[bool]) -> Option<Self> {
         let n = rows.first()?.len();
@@ -61,8 +61,8 @@ impl Logistic {
     }
 }
 
-/// Area under the ROC curve: how likely a true outcome scores higher than a false one, ties counted half. NaN if one of
-/// them is missing.
+/// Area under the ROC curve: probability that a true outcome scores higher than a false one, with ties counted half.
+/// NaN if either kind is missing.
 pub fn auc(scores: &[f64], outcomes: &[bool]) -> f64 {
     let mut order: Vec<(f64, bool)> = scores.iter().copied().zip(outcomes.iter().copied()).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,9 +1,9 @@
-//! How well label and depth maps of a camera agree with the true ones: labels, depths, outlines.
+//! Agreement of a camera's label and depth maps with the true ones: labels, depths, outlines.
 
 use numeric::quantile::{median, quantile};
 use scene::sensor_data::RenderId;
 
-/// A label map with depths, row-major; depth is not above 0 where there is none.
+/// A label map with depths, row-major; a depth that is not above 0 means no surface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LabelledDepth {
     /// Pixels per row.
@@ -23,7 +23,7 @@ pub struct MapAgreement {
     outlines: [Outline; 2],
 }
 
-/// Outline pixels, and how many lie near one of the other map.
+/// Numbers of outline pixels, and of those near the outline of the other map.
 #[derive(Clone, Copy, Debug, Default)]
 struct Outline {
     found: usize,
@@ -32,7 +32,7 @@ struct Outline {
     truth_met: usize,
 }
 
-/// Distances within which outlines count as met, px (the larger of the distances along u and v).
+/// Distances within which outlines count as matching, px (the larger of the distances along u and v).
 pub const OUTLINE_PX: [usize; 2] = [1, 2];
 
 impl MapAgreement {
@@ -67,7 +67,7 @@ impl MapAgreement {
         (median(&self.errors_m), quantile(&self.errors_m, 0.95))
     }
 
-    /// F-score of the outlines for each of [`OUTLINE_PX`]; 1 if neither map has any.
+    /// F-score of the outlines for each of [`OUTLINE_PX`]; 1 if neither map has outlines.
     pub fn outline_f(&self) -> [f64; 2] {
         self.outlines.map(|o| {
             if o.found + o.truth == 0 {
@@ -89,7 +89,7 @@ fn outline(map: &LabelledDepth) -> Vec<bool> {
         .collect()
 }
 
-/// Pixels within `px` of a set one, along rows, then along columns.
+/// Pixels within `px` of a set one, grown along rows, then along columns.
 fn grown(set: &[bool], width: usize, px: usize) -> Vec<bool> {
     if width == 0 {
         return Vec::new();

@@ -1,5 +1,5 @@
-//! Statistics of a labelled grid: class mix, texture, thickness, holes. Used to compare simulated
-//! labels with what is known of real ones (`assets/statistics/occ3d.json`).
+//! Statistics of a labelled grid: class mix, texture, thickness, holes. Used to compare simulated labels with known
+//! figures of real ones (`assets/statistics/occ3d.json`).
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use scene::{Class, Relief, VoxelGrid, Window};
 const N: [usize; 3] = [Window::NX, Window::NY, Window::NZ];
 /// Distance in the flat `[x][y][z]` array to the next voxel along each axis.
 const STRIDE: [usize; 3] = [Window::NY * Window::NZ, Window::NZ, 1];
-/// Voxels from which a component of cars counts as a well-seen car.
+/// Number of voxels from which a component of cars counts as a well-seen car.
 const WELL_SEEN: usize = 100;
 
 /// Sums over frames, by name: (numerator, denominator).
@@ -21,7 +21,7 @@ pub struct OccupancyStatistics {
 impl OccupancyStatistics {
     /// Counts one frame.
     ///
-    /// What concerns heights is counted from the bin of the ground: `relief` is what the labels were made on.
+    /// Heights are counted from the bin of the ground; `relief` is the ground that the labels were made on.
     pub fn add(&mut self, grid: &VoxelGrid, relief: &Relief) {
         let labels = flat(grid);
         let level = levelled(&labels, relief);
@@ -39,13 +39,13 @@ impl OccupancyStatistics {
         }
     }
 
-    /// Means over the frames so far: ratios of sums, so that a frame counts by what it holds.
+    /// Means over the frames so far: ratios of sums, so that a frame with more content counts more.
     pub fn means(&self) -> BTreeMap<&str, f64> {
         let means = self.sums.iter().filter(|(_, (_, n))| *n > 0.0);
         means.map(|(name, (sum, n))| (name.as_str(), sum / n)).collect()
     }
 
-    /// Adds to a ratio of counts.
+    /// Adds to the numerator and denominator of a ratio of counts.
     pub fn ratio(&mut self, name: &str, part: usize, whole: usize) {
         let (sum, n) = self.sums.entry(name.into()).or_default();
         *sum += part as f64;
@@ -102,7 +102,7 @@ impl OccupancyStatistics {
     fn vertical(&mut self, labels: &[u8]) {
         let is_ground = |l: u8| Class::from_id(l).is_some_and(Class::is_ground);
         for column in labels.chunks_exact(Window::NZ) {
-            // Runs of what is no ground and touches neither end: a lone hit shows as a run of three.
+            // Runs of voxels that are not ground and touch neither end: a lone hit shows as a run of three.
             let mut run = 0;
             for (z, label) in column.iter().enumerate() {
                 if *label != Class::FREE && !is_ground(*label) {
@@ -126,7 +126,7 @@ impl OccupancyStatistics {
             };
             if let Some((bottom, top)) = heights(Class::Vegetation) {
                 let held = column.iter().filter(|l| **l == Class::Vegetation.id()).count();
-                // A mean over columns: each counts once.
+                // A mean over columns: each column counts once.
                 let (sum, n) = self
                     .sums
                     .entry("vegetation.column_fill_between_bottom_and_top".into())
@@ -192,7 +192,7 @@ fn for_occupied(labels: &[u8], mut visit: impl FnMut(usize, [usize; 3])) {
     }
 }
 
-/// Free outside the grid.
+/// Label at a place; free outside the grid.
 fn label_at(labels: &[u8], place: [isize; 3]) -> u8 {
     let inside = place.iter().zip(N).all(|(p, n)| (0..n as isize).contains(p));
     if inside {
@@ -206,7 +206,7 @@ fn label_at(labels: &[u8], place: [isize; 3]) -> u8 {
     }
 }
 
-/// Levelled labels without the columns whose ground lies below the grid's lowest bin: there no height is known.
+/// Levelled labels without the columns whose ground lies below the grid's lowest bin: no height is known there.
 fn in_range(level: &[u8], relief: &Relief) -> Vec<u8> {
     let mut out = level.to_vec();
     for (c, column) in out.chunks_exact_mut(Window::NZ).enumerate() {
@@ -231,8 +231,8 @@ fn levelled(labels: &[u8], relief: &Relief) -> Vec<u8> {
     out
 }
 
-/// Columns inside the road, closed with a disc of `radius` columns, that hold nothing in bin 0; and
-/// the columns of the closed road. What lies outside the grid does not limit the closing.
+/// Number of columns inside the road, closed with a disc of `radius` columns, that hold nothing in bin 0; and the
+/// number of columns of the closed road. The area outside the grid does not limit the closing.
 fn road_holes(labels: &[u8], radius: usize) -> (usize, usize) {
     let pad = 2 * radius;
     let (rows, columns) = (N[0] + 2 * pad, N[1] + 2 * pad);
@@ -246,7 +246,7 @@ fn road_holes(labels: &[u8], radius: usize) -> (usize, usize) {
         .flat_map(|dx| (-r..=r).map(move |dy| (dx, dy)))
         .filter(|(dx, dy)| dx * dx + dy * dy <= r * r)
         .collect();
-    // Grows what equals `from` by the disc.
+    // Grows the cells equal to `from` by the disc.
     let grow = |map: &[bool], from: bool| {
         let mut out = map.to_vec();
         for x in radius..rows - radius {

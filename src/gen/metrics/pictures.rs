@@ -1,27 +1,27 @@
-//! How alike pictures are where they show the same surface: from one moment to the next, or from camera to camera.
+//! Likeness of pictures where they show the same surface: from one moment to the next, or from camera to camera.
 
 use glam::DVec3;
 
 use scene::Camera;
 use sensors::appearance::CameraImage;
 
-/// Depths may differ by this share where two cameras see the same surface.
+/// Largest relative difference of depths at which two cameras count as seeing the same surface.
 const SAME_DEPTH: f64 = 0.05;
-/// What is nearer to a camera than this is not compared, m.
+/// Least distance from a camera at which surfaces are compared, m.
 const NEAREST_M: f64 = 0.1;
 
-/// A picture, and how it was taken.
+/// A picture with its camera and depths.
 #[derive(Clone, Copy, Debug)]
 pub struct Taken<'a> {
     /// The camera, a pinhole at the size of the picture.
     pub camera: &'a Camera,
     /// The picture.
     pub image: &'a CameraImage,
-    /// Depth of each pixel along the optical axis, m; 0 or less where there is nothing.
+    /// Depth of each pixel along the optical axis, m; 0 or less where there is no surface.
     pub depth_m: &'a [f32],
 }
 
-/// A sum of differences and how many there are.
+/// Sum and number of differences.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Difference {
     sum: f64,
@@ -29,8 +29,8 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Adds the pixels of `now` that `other` sees too: the mean over red, green and blue of how far their colours are apart,
-    /// 0 to 1. Colours of `other` are interpolated between its pixels.
+    /// Adds the pixels of `now` that `other` sees too. Their difference is the mean over red, green and blue of the
+    /// differences of their colours, 0 to 1. Colours of `other` are interpolated between its pixels.
     pub fn add(&mut self, now: &Taken<'_>, other: &Taken<'_>) {
         let (width, from_camera) = (now.image.width, now.camera.ego_from_camera());
         let to_other = other.camera.ego_from_camera().inverse();
@@ -51,20 +51,21 @@ impl Difference {
         self.sum / self.pixels as f64
     }
 
-    /// Pixels that were compared.
+    /// Number of pixels that were compared.
     pub fn pixels(&self) -> usize {
         self.pixels
     }
 }
 
-/// The point at depth 1 m behind a place of a picture, optical frame.
+/// The point at depth 1 m behind a position in a picture, optical frame.
 fn ray(camera: &Camera, u: f64, v: f64) -> DVec3 {
     let ([fx, fy], [cx, cy]) = (camera.focal_px, camera.center_px);
     DVec3::new((u - cx) / fx, (v - cy) / fy, 1.0)
 }
 
 impl Taken<'_> {
-    /// Red, green and blue, 0 to 255, of the surface at a point of the optical frame; none where another one is seen.
+    /// Red, green and blue, 0 to 255, of the surface at a point of the optical frame; `None` if another surface is seen
+    /// there.
     fn color_at(&self, p: DVec3) -> Option<[f64; 3]> {
         if p.z <= NEAREST_M {
             return None;

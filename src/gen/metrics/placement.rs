@@ -1,5 +1,5 @@
-//! Judges placements on held-out streets: their graphs keep what was stated and lose where everything stood; boxes placed
-//! from them are counted against the statements and set beside figures of real drives.
+//! Judges placements on held-out streets. Their graphs keep the statements and lose the positions of objects; boxes
+//! placed from them are checked against the statements and compared with figures of real drives.
 
 use std::collections::BTreeMap;
 
@@ -17,40 +17,40 @@ use scene::road_map::RoadMap;
 use scene::{BevLayout, SceneBox, Window};
 use world::draw::{Draw, hash};
 
-/// A way to place the objects of a graph: boxes in the order of `PlacementReport::nodes`.
+/// A placer of the objects of a graph. Gives boxes in the order of `PlacementReport::nodes`.
 pub type Place<'a> =
     &'a dyn Fn(&SceneGraph, &BevLayout, u64) -> Result<(Vec<SceneBox>, PlacementReport), PlacementError>;
 
-/// Figures of one way to place.
+/// Figures of one placer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlacementFigures {
-    /// Graphs.
+    /// Number of graphs.
     pub n: usize,
-    /// Objects in all.
+    /// Number of objects in all.
     pub objects: usize,
-    /// Objects for which no place was left, share.
+    /// Share of objects for which no place was left.
     pub dropped: f64,
-    /// Statements in all.
+    /// Number of statements in all.
     pub statements: usize,
-    /// Statements that hold, share.
+    /// Share of statements that hold.
     pub satisfied: f64,
-    /// How far the projection moved an object, m: mean over objects.
+    /// Distance by which the projection moved an object, m: mean over objects.
     pub mean_move_m: f64,
-    /// Objects that the projection left where they were, share.
+    /// Share of objects that the projection left in place.
     pub unmoved: f64,
-    /// Diffusion, median over graphs, s.
+    /// Time of the diffusion, median over graphs, s.
     pub diffusion_s: f64,
-    /// Projection, median over graphs, s.
+    /// Time of the projection, median over graphs, s.
     pub projection_s: f64,
-    /// What must not be.
+    /// Overlaps, and vehicles off the road or against their lane.
     pub soundness: Soundness,
-    /// Spacing, sizes, headings beside real ones.
+    /// Spacing, sizes and headings beside those of real drives.
     pub rows: Vec<Row>,
-    /// Of four seeds on the first graphs: footprints (1 - IoU) and displacement.
+    /// Diversity of four seeds on the first graphs: footprints (1 - IoU) and displacement.
     pub diversity: Diversity,
 }
 
-/// The graph of held-out street `index` of `seed` with everything unlocked and its own statements, and its layout.
+/// The graph of held-out street `index` of `seed` with all nodes unlocked and its own statements, and its layout.
 pub fn held_out(seed: u64, index: u64) -> (SceneGraph, BevLayout) {
     let (layout, boxes, _) = street(seed, index, |_| None);
     let road = RoadMap::new(&layout);
@@ -119,7 +119,7 @@ pub fn evaluate(place: Place<'_>, seed: u64, count: usize) -> Result<PlacementFi
     })
 }
 
-/// What the network is compared with: every object at a random place of the map, then the same projection.
+/// Baseline of the network: every object at a random place of the map, then the same projection.
 pub fn place_at_random(
     graph: &SceneGraph,
     layout: &BevLayout,

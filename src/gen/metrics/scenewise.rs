@@ -1,5 +1,5 @@
-//! Distances between sets of scenes by features of small windows. Windows of one scene are alike, so the scene is what
-//! counts: kernels are never taken within a scene, and intervals come from leaving scenes out (jackknife).
+//! Distances between sets of scenes by features of small windows. Windows of one scene are alike, so the scene is the
+//! unit: kernels are never taken within a scene, and intervals come from leaving scenes out (jackknife).
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -17,13 +17,13 @@ const LEAST_SPREAD: f64 = 1e-10;
 /// A distance and half of its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Distance {
-    /// Of all scenes.
+    /// Distance over all scenes.
     pub mean: f64,
-    /// Jackknife over scenes.
+    /// Half of its 95 % interval, from a jackknife over scenes.
     pub ci95: f64,
 }
 
-/// Half a 95 % interval from what is left when each of some groups is left out.
+/// Half of a 95 % interval from the values when each of some groups is left out.
 fn jackknife(left: &[f64]) -> f64 {
     let n = left.len() as f64;
     let mean = left.iter().sum::<f64>() / n;
@@ -31,7 +31,7 @@ fn jackknife(left: &[f64]) -> f64 {
     1.96 * (spread * (n - 1.0) / n).sqrt()
 }
 
-/// Equally many scenes of both sets, at least two; sound windows, as many numbers in each.
+/// Takes equally many scenes of each set, at least two. Checks that windows are finite and of equal length.
 fn scenes<'a>(x: &'a [Windows], y: &'a [Windows]) -> Result<[&'a [Windows]; 2], MetricError> {
     let n = x.len().min(y.len());
     let (x, y) = (&x[..n], &y[..n]);
@@ -46,7 +46,8 @@ fn scenes<'a>(x: &'a [Windows], y: &'a [Windows]) -> Result<[&'a [Windows]; 2], 
     Ok([x, y])
 }
 
-/// Both sets with the first one's mean 0 and spread 1 in every feature, so that each counts the same.
+/// The two sets, shifted and scaled so that the first has mean 0 and spread 1 in every feature and each feature counts
+/// the same.
 pub fn standardised(x: &[Windows], y: &[Windows]) -> Result<[Vec<Windows>; 2], MetricError> {
     let [x, y] = scenes(x, y)?;
     let rows: Vec<&Vec<f64>> = x.iter().flatten().collect();
@@ -69,7 +70,7 @@ pub fn standardised(x: &[Windows], y: &[Windows]) -> Result<[Vec<Windows>; 2], M
     Ok([set(x), set(y)])
 }
 
-/// Fréchet distance of all windows of both sets, as many scenes of each as the smaller has.
+/// Fréchet distance of the windows of the two sets; takes as many scenes of each as the smaller set has.
 pub fn frechet(x: &[Windows], y: &[Windows]) -> Result<Distance, MetricError> {
     let [x, y] = scenes(x, y)?;
     let groups = GROUPS.min(x.len());
@@ -92,7 +93,8 @@ pub fn frechet(x: &[Windows], y: &[Windows]) -> Result<Distance, MetricError> {
     })
 }
 
-/// Squared maximum mean discrepancy with the cubic kernel of KID. Unbiased: pairs of windows of one set are of two scenes.
+/// Squared maximum mean discrepancy with the cubic kernel of KID. Unbiased: two windows of one set are never of one
+/// scene.
 pub fn kernel(x: &[Windows], y: &[Windows]) -> Result<Distance, MetricError> {
     let [x, y] = scenes(x, y)?;
     let n = x.len();
@@ -123,7 +125,7 @@ pub fn kernel(x: &[Windows], y: &[Windows]) -> Result<Distance, MetricError> {
         let m = kept.len() as f64;
         within / (m * (m - 1.0)) - 2.0 * between / (m * m)
     };
-    // Of two scenes none can be left out.
+    // With only two scenes none can be left out.
     let left: Vec<f64> = (0..n).filter(|_| n > 2).map(|i| of(Some(i))).collect();
     Ok(Distance {
         mean: of(None),

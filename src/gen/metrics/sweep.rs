@@ -1,5 +1,5 @@
-//! Figures of LiDAR sweeps that real ones are known by: what their slots end on, ranges, echo strengths, lost echoes. The
-//! real values are in `assets/statistics/lidar.json`.
+//! Figures that characterise LiDAR sweeps: what their slots end on, ranges, echo strengths, lost echoes. The real
+//! values are in `assets/statistics/lidar.json`.
 
 use std::collections::BTreeMap;
 
@@ -8,16 +8,17 @@ use numeric::quantile::Sorted;
 use scene::{Class, LidarPattern, LidarSweep};
 use sensors::truth::{Echo, TruthRay};
 
-/// Rings that most hits on the own body lie in, of a pattern with 32.
+/// Number of low rings, which hold most hits on the vehicle's own body, in a pattern with 32.
 const LOW_RINGS: usize = 9;
-/// Real figures of ranges and strengths are those of echoes from here on, m; what is nearer is the own vehicle.
+/// Least range from which figures of ranges and strengths count echoes, as the real ones do, m; nearer echoes are of
+/// the own vehicle.
 const NEAREST_M: f64 = 3.0;
 /// Limits of the ranges by which lost echoes are counted, m.
 const RANGES_M: [f64; 6] = [3.0, 10.0, 20.0, 30.0, 40.0, 60.0];
-/// Of the echoes, every so many are a sample for the predictor of lost ones: neighbours are alike.
+/// Stride of the echoes that are samples for the predictor of lost ones; neighbours are alike.
 const SAMPLED: usize = 3;
 
-/// One echo for the predictor: its features, and if it was lost.
+/// One echo for the predictor: its features, and whether it was lost.
 type Sample = (Vec<f64>, bool);
 
 /// Sums over sweeps.
@@ -68,7 +69,7 @@ impl SweepFigures {
         self.sweeps += 1;
     }
 
-    /// Adds a sweep of the product; points nearer than 3 m of the class "others" are the own vehicle.
+    /// Adds a sweep of the product; points of class "others" nearer than 3 m count as the own vehicle.
     pub fn add_sweep(&mut self, sweep: &LidarSweep, pattern: &LidarPattern) {
         let columns = (pattern.columns_in_sector() as usize).max(1);
         let mut ends = vec![None; sweep.rays];
@@ -109,13 +110,13 @@ impl SweepFigures {
         self.strengths_of.entry(class.id()).or_default().push(strength);
     }
 
-    /// Share of a ring's slots that end on the own body, and that have no echo.
+    /// Share of a ring's slots that end on the own body, and share of those without an echo.
     pub fn ring(&self, ring: usize) -> [f64; 2] {
         let [slots, own, none] = self.by_ring[ring.min(31)];
         [own, none].map(|n| share(n, slots))
     }
 
-    /// Every figure by its name. Shares of slots, m, strengths of 255.
+    /// Every figure by its name. Units: shares of slots, m, strengths of 255.
     pub fn figures(&self) -> BTreeMap<String, f64> {
         let mut out = BTreeMap::new();
         let mut put = |name: &str, value: f64| {
@@ -172,8 +173,8 @@ impl SweepFigures {
         out
     }
 
-    /// How well class, range, angle and ring tell which echoes are lost: a logistic fit on every other sweep, judged on the
-    /// rest. NaN with fewer than two sweeps, or if none is lost.
+    /// Area under the ROC curve of a predictor of lost echoes by class, range, angle and ring: a logistic fit on every
+    /// other sweep, judged on the rest. NaN with fewer than two sweeps, or if no echo is lost.
     pub fn loss_auc(&self) -> f64 {
         let [train, test] = self.halves.each_ref().map(|half| {
             let (rows, lost): (Vec<Vec<f64>>, Vec<bool>) = half.iter().cloned().unzip();
@@ -187,7 +188,7 @@ impl SweepFigures {
     }
 }
 
-/// What of a ray may tell whether its echo is lost: range, angle, ring, class.
+/// Features of a ray that may predict a lost echo: a constant, range, angle, ring, class.
 pub fn loss_features(ray: &TruthRay, ring: usize) -> Vec<f64> {
     let (range_m, cosine) = (f64::from(ray.range_m), f64::from(ray.cos_incidence));
     let mut row = vec![

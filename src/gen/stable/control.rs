@@ -8,7 +8,8 @@ use crate::unet::{Around, Down, Extra, Levels, Middle, TimeEmbedding, told_to_ea
 use crate::weights::{Names, Weights};
 use crate::{Machine, StableError, wrong};
 
-/// Two 1x1 convolutions with a ReLU between, at the size of latents: the planes of a pixel say all there is to say about it.
+/// Encoder of multi-plane images: two 1x1 convolutions with a ReLU between, at the size of latents. A pixel is encoded
+/// from its own planes alone.
 pub struct MpiEncoder {
     layers: [Conv; 2],
     channels: usize,
@@ -16,13 +17,15 @@ pub struct MpiEncoder {
 }
 
 impl MpiEncoder {
-    /// Of weights named `position_encoder.0` and `position_encoder.2`. Errors if they do not fit the configuration.
+    /// Loads the layers from weights named `position_encoder.0` and `position_encoder.2`. Errors if they do not fit the
+    /// configuration.
     pub fn load(config: &MpiConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
         let (channels, width) = (config.conditioning_channels, config.embedding_channels);
         weights.build(machine, &[], |names| Self::of(names, channels, width, machine))
     }
 
-    /// Whether weights fit a configuration, by names, shapes and types alone. Errors list the first few that do not.
+    /// Checks that weights fit a configuration, by names, shapes and types alone. Errors list the first few that do
+    /// not.
     pub fn check(config: &MpiConfig, weights: &Weights) -> Result<(), StableError> {
         let (channels, width) = (config.conditioning_channels, config.embedding_channels);
         weights.check(&[], |names| Self::of(names, channels, width, &Machine::cpu()))
@@ -40,13 +43,13 @@ impl MpiEncoder {
         })
     }
 
-    /// Channels of its input: the class ids of all planes, from the nearest to the farthest, as plain numbers, 0 where there is
-    /// nothing; the last channel is the id that is seen first.
+    /// Channels of its input: the class ids of all planes, from the nearest to the farthest, as plain numbers, 0 for
+    /// empty; the last channel is the first visible id.
     pub fn channels(&self) -> usize {
         self.channels
     }
 
-    /// `[n, channels, rows, columns]` to `[n, width, rows, columns]`.
+    /// Encodes `[n, channels, rows, columns]` to `[n, width, rows, columns]`.
     pub fn forward(&self, planes: &Tensor) -> Result<Tensor, StableError> {
         let planes = planes.to_dtype(self.machine.dtype)?;
         let y = self.layers[0].forward(&planes)?.relu()?;
@@ -54,15 +57,15 @@ impl MpiEncoder {
     }
 }
 
-/// How the picture comes to the size of latents.
+/// Layers that bring the picture to the size of latents.
 enum Embedding {
-    /// From pixels, by convolutions of stride 2.
+    /// Convolutions of stride 2, from pixels.
     Pixels { all: Vec<Conv> },
-    /// At that size already.
+    /// Encoder of planes, which have that size already.
     Planes(MpiEncoder),
 }
 
-/// Half a UNet, which says what to add to the maps of a whole one.
+/// Half a UNet, whose outputs are added to the maps of a whole one.
 pub struct ControlNet {
     config: ControlConfig,
     embedding: Embedding,
@@ -76,12 +79,14 @@ pub struct ControlNet {
 }
 
 impl ControlNet {
-    /// Of weights; those of SyntheOcc have `controlnet_cond_embedding.position_encoder`. Errors if they do not fit the configuration.
+    /// Loads the network from weights; those of SyntheOcc have `controlnet_cond_embedding.position_encoder`. Errors if
+    /// they do not fit the configuration.
     pub fn load(config: ControlConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
         weights.build(machine, &[], |names| Self::of(&config, names, machine))
     }
 
-    /// Whether weights fit a configuration, by names, shapes and types alone. Errors list the first few that do not.
+    /// Checks that weights fit a configuration, by names, shapes and types alone. Errors list the first few that do
+    /// not.
     pub fn check(config: &ControlConfig, weights: &Weights) -> Result<(), StableError> {
         weights.check(&[], |names| Self::of(config, names, &Machine::cpu()))
     }
@@ -134,7 +139,7 @@ impl ControlNet {
         &self.config
     }
 
-    /// Pixels of its picture for each latent cell along a side: 1 if it is shown planes.
+    /// Pixels of its picture for each latent cell along a side: 1 if its input is planes.
     pub fn cell(&self) -> usize {
         match &self.embedding {
             Embedding::Planes(_) => 1,
@@ -142,12 +147,12 @@ impl ControlNet {
         }
     }
 
-    /// Whether it is shown planes of classes at the size of latents, not a picture from 0 to 1.
+    /// Whether its input is planes of classes at the size of latents, not a picture from 0 to 1.
     pub fn takes_planes(&self) -> bool {
         matches!(self.embedding, Embedding::Planes(_))
     }
 
-    /// What it makes of the picture `[n, channels, height, width]`; the same for all steps.
+    /// Embeds the picture `[n, channels, height, width]`; the result serves all steps.
     pub fn embed(&self, picture: &Tensor) -> Result<Tensor, StableError> {
         let picture = match self.config.is_bgr {
             true => picture.flip(&[1])?,
@@ -168,8 +173,8 @@ impl ControlNet {
         }
     }
 
-    /// What to add to the UNet's maps for noisy latents `[n, channels, rows, columns]` at training step `t`, times `scale`. `embedded` is of
-    /// [`embed`](Self::embed). Errors if sizes do not fit.
+    /// Values to add to the UNet's maps for noisy latents `[n, channels, rows, columns]` at training step `t`, times
+    /// `scale`. `embedded` is the result of [`embed`](Self::embed). Errors if sizes do not fit.
     pub fn forward(
         &self,
         x: &Tensor,

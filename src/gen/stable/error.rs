@@ -1,4 +1,4 @@
-//! Why weights are refused or a picture cannot be drawn. Every message is one line.
+//! Errors of weights that are refused and of pictures that cannot be drawn. Every message is one line.
 
 use std::path::PathBuf;
 
@@ -6,25 +6,25 @@ use diffusion::schedule::ScheduleError;
 use diffusion::solver::SolverError;
 use thiserror::Error;
 
-/// What this room refuses, or cannot do.
+/// Errors of this crate.
 #[derive(Debug, Error)]
 pub enum StableError {
     /// The system could not read a file or folder.
     #[error("{}: {source}", path.display())]
     Read {
-        /// Where it was looked for.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// A file or folder is not there, or is of another kind.
+    /// A file or folder is missing, or is of another kind.
     #[error("{}: expected {expected}, found {found}", path.display())]
     Folder {
-        /// Where it was looked for.
+        /// Path of the file or folder.
         path: PathBuf,
-        /// What should be there.
+        /// Description of the expected file or folder.
         expected: String,
-        /// What is there.
+        /// Description of the file or folder found.
         found: String,
     },
     /// Not a safetensors file, or a damaged one.
@@ -32,15 +32,15 @@ pub enum StableError {
     Malformed {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
-    /// A configuration that does not describe a network of this room.
+    /// A configuration that does not describe a network of this crate.
     #[error("{}: {reason}", path.display())]
     Config {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
     /// Tensors that are missing, have another shape or type, or belong to another network.
@@ -48,13 +48,13 @@ pub enum StableError {
     Tensors {
         /// The folder or file.
         path: PathBuf,
-        /// The first few names, and how many more.
+        /// The first few names, and the number of the others.
         reason: String,
     },
     /// An input of the wrong size.
     #[error("{what} has {found} values, expected {expected}")]
     Length {
-        /// Which input.
+        /// Name of the input.
         what: &'static str,
         /// Its length.
         found: usize,
@@ -64,17 +64,17 @@ pub enum StableError {
     /// A value that the pipeline does not take.
     #[error("{what} is {found}, expected {expected}")]
     Value {
-        /// Which input.
+        /// Name of the input.
         what: &'static str,
-        /// What was given.
+        /// The given value.
         found: String,
-        /// What may be given.
+        /// The allowed values.
         expected: String,
     },
-    /// NaN, infinity, or so large that the network would overflow.
+    /// NaN, infinity, or a number so large that the network would overflow.
     #[error("{what}: value {index} is {value}, expected finite numbers below 1e30")]
     NotFinite {
-        /// Which input or output.
+        /// Name of the input or output.
         what: &'static str,
         /// Index of the first such value.
         index: usize,
@@ -90,7 +90,7 @@ pub enum StableError {
     /// The solver refuses a state.
     #[error(transparent)]
     Solver(#[from] SolverError),
-    /// Whoever watched a run ended it. Not an error to show.
+    /// The caller stopped a run. Not shown as an error.
     #[error("stopped after step {step} of {steps}")]
     Stopped {
         /// Steps done, from 1.
@@ -98,14 +98,14 @@ pub enum StableError {
         /// All steps.
         steps: usize,
     },
-    /// Candle or the card could not compute.
+    /// Candle or the graphics card could not compute.
     #[error("candle: {0}")]
     Backend(String),
 }
 
 impl From<candle_core::Error> for StableError {
     fn from(error: candle_core::Error) -> Self {
-        // Below the first line stands where in the program it came from.
+        // The lines after the first tell where in the program the error came from.
         let text = error.to_string();
         Self::Backend(text.lines().next().unwrap_or("no message").trim().to_owned())
     }

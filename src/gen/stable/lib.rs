@@ -1,6 +1,6 @@
-//! Stable Diffusion 1.5 and 2.1 in candle, from public weights in folders as diffusers writes them, for pictures of driving
-//! scenes: text encoder, autoencoder, UNet, ControlNet, schedulers, and what SyntheOcc adds: planes of classes through 1x1
-//! convolutions, and attention to the neighbouring views and frames.
+//! Stable Diffusion 1.5 and 2.1 in candle, from public weights in folders as diffusers writes them, for pictures of
+//! driving scenes: text encoder, autoencoder, UNet, ControlNet, schedulers, and SyntheOcc's additions: planes of
+//! classes through 1x1 convolutions, and attention to the neighbouring views and frames.
 //!
 //! [`Pipeline::open`] checks every name and shape before it reads a number. [`Pipeline::draw`] is a pure function of its
 //! [`Request`]. Sources: Rombach et al. 2022 (arXiv 2112.10752), Zhang et al. 2023 (ControlNet, arXiv 2302.05543), Li et al.

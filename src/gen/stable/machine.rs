@@ -1,17 +1,17 @@
-//! Where networks run, and in which numbers.
+//! Device and number type that networks run in.
 
 use candle_core::{DType, Device};
 
 use crate::StableError;
 
-/// A processor or a card, and the type that weights are held and multiplied in there.
+/// A processor or a graphics card, with the type that weights are held and multiplied in.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    /// Where tensors lie.
+    /// Device of the tensors.
     pub(crate) device: Device,
     /// Type of weights and activations. Norms and softmax are always computed in 32 bits.
     pub(crate) dtype: DType,
-    /// Why this is the processor, though the build has a feature for a card.
+    /// Reason why this is the processor, though the build has a feature for a card.
     pub(crate) without_card: Option<String>,
 }
 
@@ -25,8 +25,8 @@ impl Machine {
         }
     }
 
-    /// The first card that this build has a feature for, in 16 bits (bfloat16 on CUDA, whose range no activation leaves; half
-    /// precision on Metal); the processor where there is none.
+    /// The first card that this build has a feature for, in 16 bits (bfloat16 on CUDA, whose range no activation
+    /// exceeds; half precision on Metal); otherwise the processor.
     pub fn best() -> Self {
         if cfg!(feature = "cuda") {
             Self::on_card(Device::new_cuda(0), DType::BF16)
@@ -52,12 +52,12 @@ impl Machine {
         }
     }
 
-    /// Why this is the processor, though the build has a feature for a card.
+    /// Reason why this is the processor, though the build has a feature for a card.
     pub fn without_card(&self) -> Option<&str> {
         self.without_card.as_deref()
     }
 
-    /// The same place, in 32 bits: the reference.
+    /// This device in 32 bits, for reference results.
     pub fn exact(&self) -> Self {
         Self {
             dtype: DType::F32,

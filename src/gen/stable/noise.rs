@@ -8,14 +8,14 @@ use crate::{StableError, check_finite, check_length};
 /// Size of latents: pictures, channels, rows, columns, in the order in which numbers lie.
 pub type LatentSize = [usize; 4];
 
-/// Numbers of so many latents.
+/// Number of values of such latents.
 pub(crate) fn count(size: LatentSize) -> usize {
     size.iter().product()
 }
 
-/// Standard normal noise, a function of the seed, the frame, and the place alone: Philox4x32-10 with the seed as its key, counted
-/// by (picture * rows * columns + row * columns + column, channel, frame, [`Stream::Pictures`]), by Box and Muller. The same
-/// on every machine and any number of threads; other than PyTorch's.
+/// Standard normal noise that depends on the seed, the frame and the place alone: Philox4x32-10 with the seed as its
+/// key, counted by (picture * rows * columns + row * columns + column, channel, frame, [`Stream::Pictures`]), by Box
+/// and Muller. It is equal on every machine and with any number of threads, and differs from PyTorch's.
 pub fn fresh(seed: u64, frame: u32, size: LatentSize) -> Vec<f32> {
     let [_, channels, rows, columns] = size;
     let cells = rows * columns;
@@ -27,10 +27,10 @@ pub fn fresh(seed: u64, frame: u32, size: LatentSize) -> Vec<f32> {
     (0..count(size)).map(at).collect()
 }
 
-/// The noise of the frame before, moved to where its surfaces are seen now. `from` names for each latent cell
-/// `[picture][row][column]` of this frame the cell of the frame before that showed the same surface; cells without one take
-/// `fresh` noise, and so does the second of two that name the same: the noise stays white and of unit spread. Errors if sizes
-/// do not fit or a cell is named that is not there.
+/// The noise of the frame before, moved to where its surfaces are seen now. For each latent cell
+/// `[picture][row][column]` of this frame, `from` gives the cell of the frame before that showed the same surface.
+/// Cells without one take `fresh` noise, and so does the second of two cells with the same origin: the noise stays
+/// white and of unit spread. Errors if sizes do not fit or a given cell does not exist.
 pub fn carried(
     before: &[f32],
     from: &[Option<u32>],
@@ -63,8 +63,9 @@ pub fn carried(
     Ok(out)
 }
 
-/// UniScene's noise prior (Li et al. 2024, equation 5): noise + `lambda` times latents of a reference frame as this frame sees
-/// them, 0 where it does not. 0.03 there. Errors if sizes do not fit or a number is not finite.
+/// UniScene's noise prior (Li et al. 2024, equation 5): noise + `lambda` times the latents of a reference frame, warped
+/// to this frame's view and 0 where it does not see them. UniScene takes 0.03. Errors if sizes do not fit or a number
+/// is not finite.
 pub fn with_prior(noise: &[f32], warped: &[f32], lambda: f32) -> Result<Vec<f32>, StableError> {
     check_length("latents of the reference", warped.len(), noise.len())?;
     check_finite("latents of the reference", warped)?;

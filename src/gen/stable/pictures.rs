@@ -6,7 +6,7 @@ use crate::{Machine, StableError, check_finite, check_length, wrong};
 
 /// Most pixels of a picture along a side.
 const MOST_PX: usize = 8192;
-/// Colours of a pixel.
+/// Number of colours of a pixel.
 const COLOURS: usize = 3;
 
 /// Pictures of one size: `[picture][row][column][3]`, sRGB from -1 to 1.
@@ -18,8 +18,8 @@ pub struct Pictures {
 }
 
 impl Pictures {
-    /// `count` pictures of `size` (height and width, px). Errors if the numbers do not fit, are not finite, or a side has more than 8192
-    /// pixels.
+    /// `count` pictures of `size` (height and width, px). Errors if the numbers do not fit, are not finite, or a side
+    /// has more than 8192 pixels.
     pub fn new(count: usize, size: [usize; 2], rgb: Vec<f32>) -> Result<Self, StableError> {
         if size.iter().any(|side| !(1..=MOST_PX).contains(side)) {
             let found = format!("{} x {}", size[0], size[1]);
@@ -38,19 +38,19 @@ impl Pictures {
         Ok(Self { count, size, rgb })
     }
 
-    /// Of bytes `[picture][row][column][3]`. Errors as [`new`](Self::new).
+    /// Pictures from bytes `[picture][row][column][3]`. Errors as [`new`](Self::new).
     pub fn from_bytes(count: usize, size: [usize; 2], bytes: &[u8]) -> Result<Self, StableError> {
         let rgb = bytes.iter().map(|b| f32::from(*b) / 127.5 - 1.0).collect();
         Self::new(count, size, rgb)
     }
 
-    /// As bytes; those of [`from_bytes`](Self::from_bytes) come back as they were.
+    /// The pictures as bytes; those of [`from_bytes`](Self::from_bytes) are restored exactly.
     pub fn to_bytes(&self) -> Vec<u8> {
         let byte = |v: &f32| ((v.clamp(-1.0, 1.0) + 1.0) * 127.5).round() as u8;
         self.rgb.iter().map(byte).collect()
     }
 
-    /// How many there are.
+    /// Number of pictures.
     pub fn count(&self) -> usize {
         self.count
     }
@@ -65,7 +65,8 @@ impl Pictures {
         &self.rgb
     }
 
-    /// With the pixels of `other` wherever `mask` `[picture][row][column]` is false, to the bit. Both are of the same size.
+    /// These pictures with the pixels of `other` wherever `mask` `[picture][row][column]` is false, to the bit. Both
+    /// are of the same size.
     pub(crate) fn except(mut self, mask: &[bool], other: &Self) -> Self {
         let pixels = self
             .rgb
@@ -79,7 +80,7 @@ impl Pictures {
         self
     }
 
-    /// `[n, 3, height, width]` in 32 bits.
+    /// The pictures as `[n, 3, height, width]` in 32 bits.
     pub(crate) fn tensor(&self, machine: &Machine) -> Result<Tensor, StableError> {
         let [height, width] = self.size;
         let x = Tensor::from_slice(&self.rgb, (self.count, height, width, COLOURS), &Device::Cpu)?;
@@ -88,7 +89,7 @@ impl Pictures {
             .to_device(&machine.device)?)
     }
 
-    /// Of `[n, 3, height, width]`, cut off at -1 and 1. Errors if a number is not finite.
+    /// Pictures from `[n, 3, height, width]`, clamped to -1 and 1. Errors if a number is not finite.
     pub(crate) fn of_tensor(x: &Tensor) -> Result<Self, StableError> {
         let (count, _, height, width) = x.dims4()?;
         let x = x.to_dtype(DType::F32)?.to_device(&Device::Cpu)?;

@@ -1,21 +1,21 @@
 //! Semantic multi-plane images as SyntheOcc's encoder takes them. Li et al. 2024, arXiv 2410.00337, equations 1 to 3.
 //!
-//! As their code has it: plane l lies at 0.2 (l + 1) m, 256 of them; a pixel is a latent cell; each plane holds the class id of the
-//! voxel that it cuts, as a plain number, 0 where there is none; channel 257 holds the id that is seen first.
+//! SyntheOcc's code puts plane l at 0.2 (l + 1) m and has 256 planes. A pixel is a latent cell. Each plane holds the
+//! class id of the voxel that it cuts, as a plain number, 0 if there is none. Channel 257 holds the first visible id.
 
 use crate::{StableError, wrong};
 
-/// The class of a surface to drive on.
+/// The class of driveable surface.
 const DRIVEABLE: u8 = 11;
-/// Largest class id; behind it come lines on the road, which their data does not have.
+/// Largest class id. Larger ids are lines on the road, which SyntheOcc's data does not have.
 const LAST_CLASS: u8 = 16;
 /// First id of a line on the road.
 const LINES_FIRST: u8 = LAST_CLASS + 1;
-/// Last of them.
+/// Last id of a line on the road.
 const LAST_LINE: u8 = 19;
 
-/// Planes `first` to `end` (not included) of a latent cell show `id`: 1 to 16 classes of Occ3D, 17 to 19 lines on the road, 0
-/// nothing.
+/// Planes `first` to `end` (not included) of a latent cell that show `id`: 1 to 16 are classes of Occ3D, 17 to 19 lines
+/// on the road, 0 is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
     /// The cell: picture * rows * columns + row * columns + column.
@@ -24,13 +24,13 @@ pub struct Run {
     pub first: usize,
     /// The plane behind the last.
     pub end: usize,
-    /// What is seen there.
+    /// Id that is seen there.
     pub id: u8,
 }
 
-/// The numbers `[picture][channel][row][column]` for [`Planes`](crate::Planes), of pictures of `cells` latent cells each; `channels` is
-/// [`Pipeline::plane_channels`](crate::Pipeline::plane_channels), one more than there are planes. Lines on the road become
-/// driveable surface. Errors if a run lies outside or has no such id.
+/// The numbers `[picture][channel][row][column]` for [`Planes`](crate::Planes), of pictures of `cells` latent cells
+/// each. `channels` is [`Pipeline::plane_channels`](crate::Pipeline::plane_channels), one more than there are planes.
+/// Lines on the road become driveable surface. Errors if a run lies outside or its id is too large.
 pub fn of_runs(
     pictures: usize,
     cells: usize,

@@ -1,4 +1,4 @@
-//! Which settings nothing beats in time and error at once.
+//! The front: settings that no other setting beats in time and error at once.
 
 use super::interval::Interval;
 
@@ -7,12 +7,12 @@ use super::interval::Interval;
 pub struct TradePoint {
     /// Wall time, s.
     pub wall_s: Interval,
-    /// Error, in whatever unit all of them have.
+    /// Error, in a unit common to all settings.
     pub error: Interval,
 }
 
 impl TradePoint {
-    /// True if this one is no worse in either, and better in one by more than the intervals.
+    /// True if `self` is no worse in time and error, and better in one of them by more than the intervals.
     fn beats(&self, other: &Self) -> bool {
         let faster = self.wall_s.below(&other.wall_s);
         let nearer = self.error.below(&other.error);
@@ -24,7 +24,7 @@ impl TradePoint {
     }
 }
 
-/// For each setting: true if none beats it. One with an infinite error is never on the front.
+/// For each setting, true if none beats it. A setting with an infinite error is never on the front.
 pub fn front(points: &[TradePoint]) -> Vec<bool> {
     points
         .iter()
@@ -33,7 +33,7 @@ pub fn front(points: &[TradePoint]) -> Vec<bool> {
 }
 
 /// Area between the front and a corner that every useful setting is better than, in log10 of time times error: larger
-/// is better. Errors are taken as they are, times by their logarithm, as the slider shows them.
+/// is better. Errors are taken as they are, and times by their logarithm, as the slider shows them.
 pub fn hypervolume(points: &[TradePoint], worst_s: f64, worst_error: f64) -> f64 {
     let mut of: Vec<(f64, f64)> = points
         .iter()

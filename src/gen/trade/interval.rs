@@ -27,14 +27,14 @@ impl Interval {
         value >= self.low && value <= self.high
     }
 
-    /// True if all of it lies below all of the other.
+    /// True if all of it lies below all of `other`.
     pub fn below(&self, other: &Self) -> bool {
         self.high < other.low
     }
 }
 
-/// Median of values and the 95 % interval of that median. NaN counts as infinity: a run that failed is no good run.
-/// One value is its own interval; none gives NaN.
+/// Median of values and the 95 % interval of that median. NaN counts as infinity, since a failed run must not look
+/// good. One value is its own interval; no values give NaN.
 pub fn bootstrap_median(values: &[f64], seed: u64) -> Interval {
     let mut sorted: Vec<f64> = values
         .iter()
@@ -53,7 +53,7 @@ pub fn bootstrap_median(values: &[f64], seed: u64) -> Interval {
     }
     let mut draw = Draw::new(seed, "bootstrap");
     let mut medians = Vec::with_capacity(RESAMPLES);
-    // A resample of sorted values need not be sorted to find its middle: counting how often each place is drawn does.
+    // The middle of a resample needs no sorting: counting how often each sorted value is drawn is enough.
     let mut counts = vec![0u32; n];
     for _ in 0..RESAMPLES {
         counts.fill(0);

@@ -1,8 +1,8 @@
-//! How long a setting will take for an edit of a given size, from what it took for edits of other sizes.
+//! Predicts the time of a setting for an edit of a given size, from its times for edits of other sizes.
 
 use serde::{Deserialize, Serialize};
 
-/// What an edit of a size took.
+/// Time of an edit of a given size.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SizedTime {
     /// Tokens that the denoising network computed.
@@ -11,19 +11,19 @@ pub struct SizedTime {
     pub wall_s: f64,
 }
 
-/// Wall time as a fixed part and one per token: the network's products grow with its tokens; keys, draft and composite
-/// do not.
+/// Wall time as a fixed part and a part per token: the network's products grow with its tokens; keys, draft and
+/// composite do not.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
-    /// Without any token, s.
+    /// Time without any token, s.
     pub fixed_s: f64,
-    /// Per token, s.
+    /// Time per token, s.
     pub per_token_s: f64,
 }
 
 impl Cost {
-    /// By least squares of relative errors, neither part below 0; `None` without a positive time. Times of one size
-    /// alone give no slope: then all is fixed.
+    /// Fits by least squares of relative errors, neither part below 0; `None` without a positive time. Times of a
+    /// single size give no slope: then the whole time is fixed.
     pub fn fit(times: &[SizedTime]) -> Option<Self> {
         let usable = times
             .iter()

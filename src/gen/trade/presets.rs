@@ -7,15 +7,15 @@ use diffusion::solver::SolverKind;
 use job::params::GenParams;
 use nn::Precision;
 
-/// The knobs that a preset sets; everything else of the parameters stays.
+/// The knobs that a preset sets; all other parameters stay.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PresetKnobs {
     /// Sampling steps.
     pub steps: u32,
-    /// How a step is made.
+    /// Solver of the sampling steps.
     pub solver: SolverKind,
-    /// Of the network's products.
+    /// Precision of the network's products.
     pub precision: Precision,
     /// Compute only the tokens around the edit.
     pub local: bool,
@@ -31,7 +31,7 @@ pub struct PresetKnobs {
 }
 
 impl PresetKnobs {
-    /// Those of some parameters.
+    /// The knobs of the given parameters.
     pub fn of(params: &GenParams) -> Self {
         Self {
             steps: params.steps,
@@ -61,34 +61,36 @@ impl PresetKnobs {
     }
 }
 
-/// Names that presets had, and have: files and settings keep them.
+/// Former and present names of presets, since files and settings may hold the former.
 const BEFORE: [(&str, &str); 1] = [("accurate", "careful")];
 
 /// One preset.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Preset {
-    /// What users call it: `draft`.
+    /// Name that users see, such as `draft`.
     pub name: String,
     /// Its settings.
     pub knobs: PresetKnobs,
     /// Share of the region's voxels that differ from the reference: median over edits and its interval.
     pub error: Interval,
-    /// The same among voxels that one of both holds occupied, where it was measured: most of a region is air.
+    /// Number of differing voxels over the number of the region's voxels that either grid holds occupied, if it was
+    /// measured: most of a region is air.
     #[serde(default)]
     pub error_of_occupied: Option<Interval>,
-    /// The share that nine of ten single edits lie between.
+    /// Interval of the share of differing voxels that nine of ten single edits fall into.
     pub error_of_one: [f64; 2],
-    /// Voxels above the ground that an edit brings though they are in neither the source nor the request: mean over edits,
-    /// where it was counted. Nearer to the reference is not less invented, so no preset is called accurate.
+    /// Invented voxels: voxels above the ground that an edit adds though they are in neither the source nor the
+    /// request. Mean over edits, if it was counted. A result nearer to the reference is not always less invented, so no
+    /// preset is called accurate.
     #[serde(default)]
     pub invented: Option<f64>,
-    /// Wall time of an edit whose source is ready.
+    /// Wall time of an edit whose source is prepared.
     pub cost: Cost,
     /// Wall time of inverting the source first, s.
     pub invert_s: f64,
-    /// Names of the results on the edits of the first held-out world (`label_hash`): a machine that gives the same has
-    /// the same errors.
+    /// Hashes of the results on the edits of the first held-out world (`label_hash`): a machine with the same hashes
+    /// has the same errors.
     pub probe: Vec<u64>,
 }
 
@@ -96,25 +98,25 @@ pub struct Preset {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Presets {
-    /// Which weights they were measured with: `hashes` of the `ModelCard` in `nets`.
+    /// Weights that the presets were measured with: `hashes` of the `ModelCard` in `nets`.
     pub weights: [u64; 3],
     /// The machine on which the times were taken.
     pub machine: String,
-    /// The build of the program that took them; empty for those that ship.
+    /// The build of the program that took the times; empty for the presets that ship.
     #[serde(default)]
     pub build: String,
-    /// Running processes per core then.
+    /// Running processes per core while the times were taken.
     #[serde(default)]
     pub load_per_core: Option<f64>,
-    /// What the errors are measured against.
+    /// Reference that the errors are measured against.
     pub reference: String,
-    /// The presets. Files call them by their first name.
+    /// The presets. Files use the name that this field had first.
     #[serde(rename = "stops", alias = "presets")]
     pub all: Vec<Preset>,
 }
 
 impl Presets {
-    /// Those measured for the shipped weights; times are of the machine named in them until the user calibrates.
+    /// The presets measured for the shipped weights. Times are of the machine named in them until the user calibrates.
     pub fn bundled() -> Self {
         let text = assets::trade::PRESETS;
         serde_json::from_str(text).unwrap_or_else(|_| Self {
@@ -127,7 +129,8 @@ impl Presets {
         })
     }
 
-    /// From what a user's machine was measured to take; refuses other weights and what makes no sense, in one line.
+    /// Reads presets that were measured on a user's machine. Refuses other weights and figures out of range, in one
+    /// line.
     pub fn parse(text: &str, weights: [u64; 3]) -> Result<Self, String> {
         let read: Self = serde_json::from_str(text).map_err(|e| e.to_string())?;
         if read.weights != weights {
@@ -160,12 +163,12 @@ impl Presets {
         }
     }
 
-    /// The preset of that name, or of one that it had before.
+    /// The preset of that name, present or former.
     pub fn named(&self, name: &str) -> Option<&Preset> {
         self.index_named(name).map(|i| &self.all[i])
     }
 
-    /// The place of the preset of that name, or of one that it had before.
+    /// Index of the preset of that name, present or former.
     pub fn index_named(&self, name: &str) -> Option<usize> {
         let of = |name: &str| self.all.iter().position(|s| s.name == name);
         of(name).or_else(|| of(BEFORE.iter().find(|(old, _)| *old == name)?.1))

@@ -50,7 +50,8 @@ const CHANNELS: usize = 8;
 /// Completeness from which on a scene may have no holes in its ground.
 const COMPLETE: f32 = 0.95;
 
-/// Decides when a long job sends a preview: after its first step, then so seldom that previews take a fifth of the time.
+/// Decides when a long job sends a preview: after its first step, then rarely enough that previews take a fifth of the
+/// time.
 #[derive(Default)]
 struct Glimpses {
     begun: Option<Instant>,
@@ -71,8 +72,8 @@ impl Glimpses {
     }
 }
 
-/// Generates occupancy. It keeps the trajectories of recent sources and of its own results in memory, so that the next
-/// edit of such a scene needs no inversion. Clones share that memory.
+/// Generates occupancy. Keeps the trajectories of recent sources and of its own results in memory, so that the next
+/// edit of such a scene needs no inversion. A clone shares what is in memory so far.
 #[derive(Clone)]
 pub struct OccPipeline {
     models: Arc<OccModels>,
@@ -81,14 +82,14 @@ pub struct OccPipeline {
     draft: Option<(VoxelGrid, Vec<f32>)>,
     /// The voxels beside the road in the last job.
     standing: Option<Standing>,
-    /// The part of the condition that is hidden from the network, to measure what that part is worth.
+    /// Part of the condition that is hidden from the network, to measure its value.
     ablation: Option<Ablation>,
-    /// What a whole map had come to when it was stopped.
+    /// Finished parts of a whole map whose generation was stopped.
     unfinished: Unfinished,
 }
 
 impl OccPipeline {
-    /// With these networks.
+    /// A pipeline with these networks.
     pub fn new(models: Arc<OccModels>) -> Self {
         Self {
             models,
@@ -100,12 +101,12 @@ impl OccPipeline {
         }
     }
 
-    /// Hides a part of every condition from the network, to measure what it is worth.
+    /// Hides a part of every condition from the network, to measure its value.
     pub fn ablate(&mut self, ablation: Option<Ablation>) {
         self.ablation = ablation;
     }
 
-    /// With the weights that ship with the program.
+    /// A pipeline with the weights that ship with the program.
     pub fn bundled() -> Result<Self, GenError> {
         Ok(Self::new(OccModels::bundled().map_err(GenError::failed)?))
     }
@@ -115,8 +116,8 @@ impl OccPipeline {
         &self.models
     }
 
-    /// The tokens that an edit computes: those of its region and a few around it. That works if the keys and values of all
-    /// other tokens are in memory from the source; `None` if all tokens must be computed.
+    /// The tokens that an edit computes: those of its region and a few around it. This works only if the keys and
+    /// values of all other tokens are in memory from the source; `None` if all tokens must be computed.
     fn local_tokens(
         &self,
         source: &Source,
@@ -131,7 +132,7 @@ impl OccPipeline {
         (known && sampler.guidance.weight == 1.0).then(|| tokens_of(cells, params.halo_tokens as usize))
     }
 
-    /// Encodes a draft. Cells that see only columns that are as in the last draft keep their latents.
+    /// Encodes a draft. Cells that see only columns unchanged since the last draft keep their latents.
     fn draft_latent(&mut self, draft: &VoxelGrid) -> Result<Vec<f32>, GenError> {
         let vae = &self.models.vae;
         let latent = match self.draft.take() {
@@ -218,7 +219,8 @@ impl OccPipeline {
         self.sources.front().map(|s| s.trajectory.latent_f32())
     }
 
-    /// Inverts the source of the job's frame now, so that a later edit finds it. Returns the network calls it took.
+    /// Inverts the source of the job's frame now, so that a later edit finds it in memory. Returns the number of
+    /// network calls.
     pub fn prepare(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<usize, GenError> {
         let mut report = GenReport::default();
         let cut = window::at_origin(job);
@@ -337,7 +339,7 @@ impl OccPipeline {
         self.inpaint(job, region, &job.params.inpaint, report, ctx)
     }
 
-    /// Regenerates a region of the window of the job's frame, whatever was edited in it.
+    /// Regenerates a region of the window of the job's frame, whether it was edited or not.
     pub fn inpaint_region(
         &mut self,
         job: &Job,
@@ -367,7 +369,7 @@ impl OccPipeline {
         let frame = job.scene.frame();
         let before = &frame.source.occupancy;
         if region.is_empty() {
-            // Nothing to inpaint: no network is asked.
+            // The region is empty: no network is called.
             return Ok(self.finish(job, before, before, &region, &mut report));
         }
         let ground = NewGround::of(frame);
@@ -408,7 +410,7 @@ impl OccPipeline {
         network.keys_values = keys_values;
         report.tokens = network.condition.tokens();
         let mut glimpses = Glimpses::default();
-        // A draft is done before a preview of it would be seen.
+        // A job of preview quality ends before a preview of it would be seen.
         let shows_steps = ctx.previews() && params.quality == Quality::Final;
         let edited = report.timed(Stage::Denoise, |report| {
             edit_with_replay(
@@ -535,7 +537,7 @@ impl Pipeline for OccPipeline {
     }
 }
 
-/// What is to be said of a whole scene whose things say what stands beside its roads.
+/// Note on a whole scene whose things describe the places beside its roads.
 fn given_note(things: usize, voxels: usize) -> String {
     let things = match things {
         1 => "1 thing says".to_owned(),

@@ -1,4 +1,4 @@
-//! The network as solvers see it, and what it is conditioned on.
+//! The network as solvers see it, and its condition.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use nets::{ColumnHeights, DecoderInput, KeysValues, Middle, OccModels, Prepared,
 use nn::Precision;
 use scene::{BevLayout, BoxId, Density, Extent, Frame, SceneBox, VoxelGrid, draft, raster};
 
-/// Keys and values by training step (its bits).
+/// Keys and values by training step (the bits of the step).
 pub type StepKeysValues = BTreeMap<u64, KeysValues>;
 
 /// A part of the condition that is hidden, as in UniScene's table 8 and X-Scene's table 7.
@@ -32,20 +32,20 @@ pub struct Condition {
     pub bev: Vec<u32>,
     /// Headings of objects.
     pub heading: Vec<u8>,
-    /// Densities and completeness asked for.
+    /// Densities and completeness that the user chose.
     pub named: Named,
     /// The layout extruded naively, with the background if it is given.
     pub draft: VoxelGrid,
-    /// The background is given.
+    /// True if the background is given.
     pub given: bool,
-    /// The networks do not get the draft.
+    /// True if the networks do not get the draft.
     pub draft_hidden: bool,
-    /// For each column of the draft: what stands there, and the height of the ground.
+    /// Heights of standing things and of the ground in each column of the draft.
     pub columns: Vec<ColumnHeights>,
 }
 
 impl Condition {
-    /// From layout, boxes and the background's voxels, without what the ablation hides.
+    /// Makes the condition from layout, boxes and the background's voxels, without the part that the ablation hides.
     pub fn new(
         layout: &BevLayout,
         boxes: &BTreeMap<BoxId, SceneBox>,
@@ -83,7 +83,7 @@ impl Condition {
 }
 
 impl Condition {
-    /// The input of the decoder; empty where the draft is hidden.
+    /// The input of the decoder; empty if the draft is hidden.
     pub fn decoder_input(&self) -> DecoderInput<'_> {
         DecoderInput {
             draft: (!self.draft_hidden).then_some(&self.draft),
@@ -103,18 +103,18 @@ pub struct Network {
     pub models: Arc<OccModels>,
     /// Its condition.
     pub condition: Prepared,
-    /// The same without layout and draft, for guidance.
+    /// The condition without layout and draft, for guidance.
     pub without: Option<Prepared>,
     /// Keys and values of the conditional branch. Each prediction renews those of the tokens that it computes and reads
-    /// the others. None if all tokens are computed and nobody keeps them.
+    /// the others. `None` if all tokens are computed and the keys and values are not needed later.
     pub keys_values: Option<StepKeysValues>,
-    /// How the denoising network's products are computed.
+    /// Precision of the denoising network's products.
     pub precision: Precision,
-    /// Compute the middle blocks at every so many predictions; 1 = at every one.
+    /// Interval, in predictions, at which the middle blocks are computed; 1 = every prediction.
     pub reuse_steps: u32,
-    /// Predictions so far.
+    /// Number of predictions so far.
     pub predictions: u32,
-    /// What the middle blocks added when they were last computed.
+    /// Output that the middle blocks added when they were last computed.
     pub added: Vec<f32>,
 }
 

@@ -1,19 +1,19 @@
-//! Ground that is new to a map. There is nothing to invert: it is drawn from noise, against what is around it on the map.
+//! Ground that is new to a map. It has no source to invert: it is drawn from noise to suit the map around it.
 
 use crate::contract::{GenParams, Named};
 use crate::region::{COLUMNS_PER_CELL, Region};
 use scene::{Class, Density, Extent, Frame, Window};
 
-/// What the source of a frame knows.
+/// Columns of a frame that its source knows, and those that are new.
 pub(super) struct NewGround<'a> {
     frame: &'a Frame,
-    /// `[x][y]`: columns of the map that are not new to it; all of the window if none is.
+    /// `[x][y]`: columns of the map that are not new to it; all columns of the window if none is new.
     known: Vec<bool>,
     is_new: Vec<bool>,
 }
 
 impl<'a> NewGround<'a> {
-    /// Of a frame of the window.
+    /// The known and new columns of a frame of the window.
     pub(super) fn of(frame: &'a Frame) -> Self {
         let columns = || Extent::WINDOW.all_columns();
         let is_new: Vec<bool> = columns().map(|[x, y]| frame.is_new_ground(x, y)).collect();
@@ -21,7 +21,7 @@ impl<'a> NewGround<'a> {
             let known = vec![true; is_new.len()];
             return Self { frame, known, is_new };
         }
-        // What the window shows beyond the map is free, and the map is a rectangle.
+        // Columns of the window beyond the map are free, and the map is a rectangle.
         let shown = |[x, y]: &[usize; 2]| frame.occupancy.column(*x, *y).iter().any(|l| *l != Class::FREE);
         let map = columns()
             .filter(shown)
@@ -40,7 +40,7 @@ impl<'a> NewGround<'a> {
         }
     }
 
-    /// True if an eighth of a region is new, or more: what lies around new ground is in it too.
+    /// True if at least an eighth of a region is new: a region around new ground also holds its surroundings.
     pub(super) fn is_in(&self, region: &Region) -> bool {
         let held = self.is_new.iter().zip(&region.columns).filter(|(_, held)| **held);
         let new = held.filter(|(new, _)| **new).count();
@@ -56,7 +56,8 @@ impl<'a> NewGround<'a> {
         }
     }
 
-    /// Cells of a region, and those in which no column is known: nothing is shown of them, and what is drawn is thrown away.
+    /// Cells of a region, and cells without any known column. The latter are drawn without context, and their result is
+    /// discarded.
     pub(super) fn drawn_with(&self, region: &Region) -> Vec<bool> {
         let side = Window::NX / COLUMNS_PER_CELL;
         let cell = |cell: usize| {
@@ -74,8 +75,8 @@ impl<'a> NewGround<'a> {
             .collect()
     }
 
-    /// What an edit keeps unless the user names others: the densities of what is known. New ground is generated like the rest, and
-    /// completely if there is no rest.
+    /// Densities that an edit keeps unless the user chooses others: those of the known columns. New ground is generated
+    /// like the rest, and completely if there is no rest.
     pub(super) fn density(&self) -> Named {
         if !self.known.contains(&true) {
             return Named {

@@ -1,4 +1,4 @@
-//! How well a source comes back when it is inverted and sampled again.
+//! Measures how well a source is restored when it is inverted and sampled again.
 
 use super::OccPipeline;
 use crate::contract::{GenError, GenParams, GenReport, Job, JobCtx, Named, Stage};
@@ -8,17 +8,17 @@ use diffusion::solver::{Guidance, Sampler};
 use nets::DecoderInput;
 use scene::{Scene, Unobserved, VoxelGrid};
 
-/// What inverting and sampling again gave.
+/// Result of inverting and sampling again.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundTrip {
     /// Relative RMS error of the latent.
     pub error: f64,
-    /// Standard deviation of the noise between.
+    /// Standard deviation of the noise in between.
     pub noise_std: f64,
 }
 
 impl OccPipeline {
-    /// What the VAE makes of the occupancy of a scene's frame; its decoder gets the frame's draft and masks.
+    /// The occupancy of a scene's frame, encoded and decoded by the VAE; the decoder gets the frame's draft and masks.
     pub fn reconstruct(&mut self, scene: &Scene) -> Result<VoxelGrid, GenError> {
         let frame = scene.frame();
         let condition = self.condition(scene, &frame.layout, &frame.boxes, Named::default());
@@ -33,7 +33,8 @@ impl OccPipeline {
             .map_err(GenError::failed)
     }
 
-    /// Inverts the source of the job's frame and samples it again, with the solver that edits of it use.
+    /// Inverts the source of the job's frame and samples it again, with the solver that edits of it use. Returns the
+    /// relative RMS error.
     pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
         let condition = self.condition_of_source(&job.scene);
         let known = self.source(
@@ -50,7 +51,8 @@ impl OccPipeline {
         })
     }
 
-    /// The same with exactly the solver asked for, where an edit would fall back to another; keeps nothing.
+    /// Inverts a source and samples it again with exactly the given solver, where an edit would fall back to another;
+    /// keeps nothing in memory.
     pub fn round_trip_of(
         &mut self,
         scene: &Scene,

@@ -1,5 +1,5 @@
-//! What an edit starts from: the trajectory that leads from noise to the frame's source, taken from memory or found by
-//! inversion; or the source with fresh noise added. Also decides which trajectories stay in memory.
+//! The starting point of an edit: the trajectory that leads from noise to the frame's source, taken from memory or
+//! found by inversion; or the source with fresh noise added. Also decides which trajectories stay in memory.
 
 use std::sync::Arc;
 
@@ -15,17 +15,17 @@ use nn::Precision;
 use scene::{Scene, VoxelGrid};
 use world::draw::hash;
 
-/// Trajectories kept; each is about 2 MB at ten steps.
+/// Number of trajectories kept; each is about 2 MB at ten steps.
 const KEPT_TRAJECTORIES: usize = 24;
-/// Memory for them, but for the latest.
+/// Most memory for them; the latest is kept in any case.
 const TRAJECTORY_BYTES: usize = 256 << 20;
-/// Memory for the keys and values of the latest of them.
+/// Most memory for the keys and values of the latest of them.
 const KEYS_VALUES_BYTES: usize = 256 << 20;
-/// About what those of one step take.
+/// Memory for the keys and values of one step, about.
 const STEP_BYTES: usize = 7_700_000;
 
-/// What a trajectory belongs to: labels under a layout. Several trajectories may lead there, for example from other
-/// densities; an edit can use any of them.
+/// Key of a trajectory: labels under a layout. Several trajectories may lead there, for example from other densities;
+/// an edit can use any of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SourceKey {
     occupancy: u64,
@@ -43,9 +43,9 @@ pub(super) struct Source {
     /// The solver for edits of it: O-BELM can only continue what it inverted itself.
     pub(super) solver: SolverKind,
     pub(super) trajectory: Arc<Trajectory>,
-    /// Keys and values of the network at the trajectory's states; none if they take too much memory.
+    /// Keys and values of the network at the trajectory's states; `None` if they take too much memory.
     pub(super) keys_values: Option<Arc<StepKeysValues>>,
-    pub(super) report: Option<InversionReport>, // none for a trajectory that sampling made
+    pub(super) report: Option<InversionReport>, // None for a trajectory that sampling made
 }
 
 /// An empty store for keys and values, if those of so many steps fit into memory.
@@ -53,7 +53,7 @@ pub(super) fn stored(steps: u32) -> Option<StepKeysValues> {
     (steps as usize * STEP_BYTES <= KEYS_VALUES_BYTES).then(StepKeysValues::new)
 }
 
-/// The same for parameters; none if blocks are reused between steps, which leave no keys and values.
+/// An empty store as of [`stored`]; `None` also if blocks are reused between steps, which leave no keys and values.
 pub(super) fn stored_for(params: &GenParams) -> Option<StepKeysValues> {
     stored(params.steps).filter(|_| params.reuse_steps <= 1)
 }
@@ -75,7 +75,7 @@ impl OccPipeline {
         }
     }
 
-    /// What a frame's source is generated from.
+    /// The condition that a frame's source is generated from.
     pub(super) fn condition_of_source(&mut self, scene: &Scene) -> Condition {
         let frame = scene.frame();
         let named = Named::default().or(&density_of_source(frame));
@@ -104,7 +104,7 @@ impl OccPipeline {
         }
     }
 
-    /// The trajectory of a frame's source, generated from `condition`: from memory, or inverted now.
+    /// The trajectory of a frame's source under `condition`: from memory, or inverted now.
     pub(super) fn source(
         &mut self,
         scene: &Scene,
@@ -139,7 +139,7 @@ impl OccPipeline {
             if solver != SolverKind::OBelm || inversion.moments_ok() {
                 break (trajectory, inversion);
             }
-            // The noise is far from normal: edits from it look wrong. Plain inversion is less exact, but its noise
+            // The noise is far from normal, and edits from it look wrong. Plain inversion is less exact, but its noise
             // is near normal, and replay needs no more.
             report.notes.push(format!(
                 "exact inversion gave unusual noise (std {:.2}, max {:.1}): plain inversion was used",
@@ -186,8 +186,8 @@ impl OccPipeline {
         Ok((sampler, source))
     }
 
-    /// Sampler and source for inpainting from fresh noise: the source with noise added, from the step on that the strength
-    /// asks for.
+    /// Sampler and source for inpainting from fresh noise: the source with noise added, from the step that the strength
+    /// gives.
     pub(super) fn noised(
         &mut self,
         scene: &Scene,
@@ -209,7 +209,7 @@ impl OccPipeline {
                 latent.into_iter().map(f64::from).collect()
             }
         };
-        // O-BELM samples well only what it inverted.
+        // O-BELM samples well only from its own inversions.
         let solver = match params.solver {
             SolverKind::OBelm => SolverKind::Ddim,
             other => other,

@@ -1,4 +1,4 @@
-//! What stands beside the road, as a part of the condition.
+//! Scenery as a part of the condition.
 
 use std::sync::Arc;
 
@@ -6,14 +6,15 @@ use crate::region::Region;
 use scene::background::Columns;
 use scene::{Background, BevLayout, Class, Extent, Relief, Scene, VoxelGrid, Window};
 
-/// How many things say what stands beside the roads of a scene, so that networks invent nothing else; `None` if they may.
+/// Number of things of a scene whose background describes the places beside its roads, so that the networks invent
+/// nothing else; `None` if they may invent.
 pub fn given(scene: &Scene) -> Option<usize> {
     let says = scene.background.describes_place() && !scene.frame().inferred.background;
     says.then(|| scene.background.len())
 }
 
-/// Puts things that the networks were not told of, because they say nothing of the place (signs, lamps), into what was generated
-/// in a region of the window.
+/// Puts things that the networks were not given, because they do not describe the place (signs, lamps), into the
+/// generated region of the window.
 pub fn keep_loose_things(scene: &Scene, region: &Region, generated: &mut VoxelGrid) {
     let frame = scene.frame();
     if given(scene).is_some() || frame.inferred.background {
@@ -30,7 +31,7 @@ pub fn keep_loose_things(scene: &Scene, region: &Region, generated: &mut VoxelGr
     }
 }
 
-/// Puts labels into a column wherever no object stands.
+/// Puts labels into a column except where an object stands.
 fn stand_in_column(labels: &[u8; Window::NZ], column: &mut [u8; Window::NZ]) {
     let held = labels
         .iter()
@@ -43,7 +44,7 @@ fn stand_in_column(labels: &[u8; Window::NZ], column: &mut [u8; Window::NZ]) {
     }
 }
 
-/// The voxels of a frame's background, kept from one job to the next: most edits leave it alone.
+/// The voxels of a frame's background, kept from one job to the next, since most edits leave it unchanged.
 #[derive(Clone)]
 pub struct Standing {
     background: Arc<Background>,
@@ -52,9 +53,9 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// The background of a scene's frame on the ground of `layout`; reuses `last` if nothing changed. `None` if no thing of it
-    /// says what kind of place it is (a sign alone silences no invention), or if it was guessed from voxels and lacks much of what
-    /// is there.
+    /// The background of a scene's frame on the ground of `layout`; reuses `last` if nothing changed. `None` if none of
+    /// its things describes the kind of place (a sign alone does not stop invention), or if it was inferred from
+    /// voxels, which misses many things.
     pub fn of(scene: &Scene, layout: &BevLayout, last: Option<&Self>) -> Option<Self> {
         given(scene)?;
         let same =
@@ -77,7 +78,7 @@ impl Standing {
         })
     }
 
-    /// Puts it into a draft wherever no object stands.
+    /// Puts the background into a draft except where an object stands.
     pub fn stand_in(&self, draft: &mut VoxelGrid) {
         for ([x, y], labels) in &*self.columns {
             stand_in_column(labels, draft.column_mut(*x, *y));

@@ -1,4 +1,4 @@
-//! Maps of another extent than the networks' window: a job is done window by window, and what the networks made of each is
+//! Maps of another extent than the networks' window: a job is done window by window, and the result of each window is
 //! put back into the map.
 
 use std::borrow::Cow;
@@ -21,7 +21,8 @@ pub(super) fn at_origin(job: &Job) -> Option<Job> {
     })
 }
 
-/// The same job on what stands still, and what moves and is a draft.
+/// The job on the scene that the networks are asked about ([`Scene::for_generation`]): standing content, and moving
+/// objects that are still drafts.
 fn standing(job: &Job) -> Cow<'_, Job> {
     match job.scene.for_generation() {
         Cow::Borrowed(_) => Cow::Borrowed(job),
@@ -57,8 +58,8 @@ pub(super) fn in_window(
     })
 }
 
-/// Runs a job window by window. Previews and the result are of the whole map. A whole map that was stopped before goes on
-/// from where it was.
+/// Runs a job window by window. Previews and the result are of the whole map. A whole map that was stopped before is
+/// resumed.
 pub(super) fn over_the_map(
     job: &Job,
     ctx: &JobCtx<'_>,
@@ -133,7 +134,7 @@ pub(super) fn over_the_map(
     }
     report.region_share = report.region_columns as f64 / job.scene.frame().extent().columns() as f64;
     let occupancy = map.scene.frame().occupancy.clone();
-    // Windows overlap, and what is drawn beyond their own part is thrown away.
+    // Holes only of the parts that were taken over: windows overlap, and the rest of each result is discarded.
     report.close(holes.into_iter().collect());
     report.voxels_changed = job.scene.frame().source.occupancy.count_different(&occupancy);
     Ok(GenResult {
@@ -146,20 +147,20 @@ pub(super) fn over_the_map(
 /// A part as a job in the window at the origin.
 struct Cut {
     job: Job,
-    /// The columns of that window, `[x][y]`, that are taken over; none: those of the part's task.
+    /// Flags of the columns of that window, `[x][y]`, that are taken over; `None` for those of the part's task.
     columns: Option<Vec<bool>>,
 }
 
 /// A map that is being generated.
 struct Map {
-    /// As far as it is.
+    /// The scene as generated so far.
     scene: Scene,
-    /// The job's; cells to inpaint go as they are done.
+    /// The job's parameters; cells to inpaint are removed once they are done.
     params: GenParams,
 }
 
 impl Map {
-    /// A part of a round, of the map as it was before the round; `None` if nothing is left to do there.
+    /// Cuts a part of a round out of the map as it was before the round; `None` if nothing is left to do there.
     fn cut(&self, before: &Scene, round: &[Part], part: &Part) -> Option<Cut> {
         let mut scene = window(before, part.place);
         let mut params = GenParams {
@@ -180,7 +181,7 @@ impl Map {
                 let cells = InpaintMask::of_cells(cells).from_cell(part.place.0);
                 params.region = RegionMode::Auto;
                 params.strength = 1.0;
-                // An object across the seam was drawn by halves: it is drawn again, by one part alone.
+                // An object across the seam was drawn in two halves: it is drawn again, by one part alone.
                 let first_at = |b: &SceneBox| {
                     let touching = round.iter().filter(|p| p.seam_touches(part.place, b));
                     touching.map(|p| p.place).min()
@@ -196,7 +197,7 @@ impl Map {
                     frame.source = Arc::new(source);
                 });
                 params.inpaint = cells.clone();
-                // Its halo may lie in the cells of another part: those are taken over from there.
+                // Its halo may lie in the cells of another part: that part takes those columns over.
                 let mut own = cells.columns(Extent::WINDOW);
                 for b in &again {
                     box_cells(Extent::WINDOW, b, inpaint::KEPT_M, |x, y| {
@@ -220,7 +221,7 @@ impl Map {
         })
     }
 
-    /// The map's voxels with a result in its place.
+    /// The map's voxels with a result put in its place.
     fn with(&self, part: &Part, cut: &Cut, result: &GenResult) -> VoxelGrid {
         let mut occupancy = self.scene.frame().occupancy.clone();
         let made = part.place.to_window().back().grid(&result.occupancy);
@@ -243,7 +244,7 @@ impl Map {
         occupancy
     }
 
-    /// Notes where on the map a result that was taken over has closed holes, and forgets those that it drew over.
+    /// Records the closed holes of a result on the map, and forgets earlier ones in columns that it redraws.
     fn note_holes(&self, part: &Part, cut: &Cut, result: &GenResult, holes: &mut BTreeSet<[usize; 3]>) {
         let (window, map) = (part.place.extent(), self.scene.frame().extent());
         let on_map = |x: usize, y: usize| {
@@ -274,7 +275,7 @@ impl Map {
         holes.extend(closed.filter_map(|[x, y, z]| on_map(*x, *y).map(|[x, y]| [x, y, *z])));
     }
 
-    /// Takes a result over.
+    /// Takes over a result.
     fn take(&mut self, part: &Part, cut: &Cut, result: &GenResult) {
         let occupancy = self.with(part, cut, result);
         let settled = match &part.task {
@@ -291,7 +292,7 @@ impl Map {
     }
 }
 
-/// What lies in a window of a scene. Roads go on beyond the border of the map, as in all that the networks have seen.
+/// The content of a window of a scene. Roads are continued beyond the border of the map, as in the training data.
 fn window(scene: &Scene, place: Place) -> Scene {
     let (to_window, extent, map) = (place.to_window(), place.extent(), scene.frame());
     let mut scene = scene.window_at(to_window);

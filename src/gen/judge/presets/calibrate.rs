@@ -23,7 +23,7 @@ use world::draw::Draw;
 /// Calibration ends after this, with what was measured so far.
 const AT_MOST: Duration = Duration::from_secs(28);
 
-/// What is asked for.
+/// Kinds of measurement.
 pub enum Task {
     /// Times of all presets.
     Calibrate(Presets),
@@ -35,28 +35,28 @@ pub enum Task {
 pub struct Refine {
     /// The scene with the edit, before it was generated.
     pub edited: Arc<Scene>,
-    /// How it was generated.
+    /// Parameters of the generation.
     pub params: GenParams,
-    /// What that gave.
+    /// Result of the generation.
     pub result: VoxelGrid,
     /// The reference's settings.
     pub reference: Preset,
 }
 
-/// What came of it.
+/// Messages from the thread.
 #[derive(Clone, Debug)]
 pub enum News {
-    /// So many of so many parts are done.
+    /// Parts done, and all parts.
     Progress(usize, usize),
-    /// Presets with this machine's times; true if their results are the very ones whose errors are known.
+    /// Presets with this machine's times. True if the results are bit by bit those whose errors are known.
     Calibrated(Presets, bool),
     /// Share of the region's voxels in which the result differs from the reference.
     Refined(f64),
-    /// One line.
+    /// Error in one line.
     Failed(String),
 }
 
-/// A task on its way. Dropping it stops the thread soon.
+/// A running task. Dropping it stops the thread soon.
 pub struct Measurement {
     news: Receiver<News>,
     stop: Arc<AtomicBool>,
@@ -111,13 +111,13 @@ struct Told<'a> {
 
 impl Told<'_> {
     fn say(&self, news: News) {
-        // Nobody listens any more once the window has let go.
+        // Sending fails once the window has let go of the measurement; that is fine.
         let _ = self.out.send(news);
         (self.wake)();
     }
 }
 
-/// A preset whose source stands ready, and the times its runs took.
+/// A preset whose source is prepared, and the times of its runs.
 struct Ready {
     preset: usize,
     pipeline: OccPipeline,
@@ -179,7 +179,7 @@ fn calibrate(
         for (c, case) in cases.iter().enumerate() {
             let (time, hash) = run(&pipeline, case, params.clone(), &ctx)?;
             same &= of.probe.get(c) == Some(&hash);
-            // The first run of all warms up.
+            // The very first run only warms up.
             if k > 0 || c > 0 {
                 times[c].push(time);
             }
@@ -226,7 +226,7 @@ fn calibrate(
     Ok(News::Calibrated(presets, same))
 }
 
-/// Names this build of the program: figures of another one may not hold.
+/// Name of this build of the program: figures of another build may not hold.
 pub fn build() -> String {
     let exe = std::env::current_exe().and_then(std::fs::metadata);
     let stamp = exe.ok().and_then(|m| {
@@ -239,7 +239,7 @@ pub fn build() -> String {
 /// Runs the reference on the same edit.
 fn refined(of: &Refine, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>) -> Result<News, GenError> {
     let params = of.reference.knobs.on(of.params.clone());
-    // Inversion and sampling: so many steps each.
+    // Inversion and sampling take the same number of steps each.
     let steps = 2 * params.steps as usize;
     let half = std::sync::atomic::AtomicUsize::new(0);
     let report = |update: JobUpdate| {

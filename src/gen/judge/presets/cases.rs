@@ -1,4 +1,4 @@
-//! What is measured on: scenes with one edit each.
+//! Cases of the trade: scenes with one edit each.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use crate::trials::Trial;
 use editor::Document;
 use scene::Scene;
 
-/// Kinds of edits per scene: a small one, one that brings something new, a large one.
+/// Kinds of edits per scene: a small one, one that adds an object, a large one.
 pub const KINDS: [&str; 3] = ["remove", "add", "road"];
 
 /// A scene before and after an edit.
@@ -16,7 +16,7 @@ pub struct Case {
     pub name: String,
     /// The scene before.
     pub before: Arc<Scene>,
-    /// The same with the edit, not yet regenerated.
+    /// The scene with the edit, not yet regenerated.
     pub after: Arc<Scene>,
 }
 

@@ -1,4 +1,4 @@
-//! The presets of the quality slider, chosen from what was measured.
+//! Chooses the presets of the quality slider from the measurements.
 
 use std::path::Path;
 
@@ -15,7 +15,8 @@ use nets::OccModels;
 use numeric::quantile::{median, quantile};
 use trade::{Cost, Interval, Preset, PresetKnobs, Presets, TradePoint, bootstrap_median, front, knee};
 
-/// Presets from the front: the fastest, the knee, the most exact, and those between them that lie well apart, and the reference.
+/// Presets from the front: the fastest, the knee, the most exact, those between them that lie well apart, and the
+/// reference.
 pub fn presets_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Presets {
     let points: Vec<TradePoint> = rows.iter().map(|r| r.point()).collect();
     let kept = well_apart(rows, &points);
@@ -35,7 +36,8 @@ pub fn presets_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Pr
     }
 }
 
-/// Rows of the front in the order of their times, only those whose time rises and whose error falls by enough to be felt.
+/// Rows of the front in the order of their times. Keeps a row only if its time rises and its error falls enough to be
+/// noticed.
 fn well_apart(rows: &[&Row], points: &[TradePoint]) -> Vec<usize> {
     let on_front = front(points);
     let mut order: Vec<usize> = (0..rows.len())
@@ -47,7 +49,7 @@ fn well_apart(rows: &[&Row], points: &[TradePoint]) -> Vec<usize> {
         let of = |k: usize| (points[k].wall_s.median, points[k].error.median);
         match kept.last().map(|k| of(*k)) {
             Some((_, error)) if of(i).1 >= 0.85 * error => {}
-            // Nearly as fast and much nearer: nobody would choose the other.
+            // Nearly as fast and far more exact: it replaces the row before.
             Some((wall_s, error)) if of(i).0 <= 1.1 * wall_s => {
                 if of(i).1 < 0.5 * error {
                     kept.pop();
@@ -60,7 +62,7 @@ fn well_apart(rows: &[&Row], points: &[TradePoint]) -> Vec<usize> {
     kept
 }
 
-/// What the kept ones are called, from the fastest to the most exact.
+/// Names of the kept rows, from the fastest to the most exact.
 fn names(kept: &[TradePoint]) -> Vec<String> {
     let last = kept.len().saturating_sub(1);
     let middle = knee(kept).unwrap_or(0);
@@ -82,7 +84,7 @@ fn names(kept: &[TradePoint]) -> Vec<String> {
     (0..kept.len()).map(name).collect()
 }
 
-/// A row as a preset; `None` if nothing can be predicted of its time.
+/// A row as a preset; `None` if its time cannot be predicted.
 fn preset(name: String, row: &Row, point: TradePoint) -> Option<Preset> {
     let errors = row.all(|o| o.error);
     let probe = row.outcomes.iter().take(cases::KINDS.len());
@@ -99,8 +101,8 @@ fn preset(name: String, row: &Row, point: TradePoint) -> Option<Preset> {
     })
 }
 
-/// The reference as a preset. One step of all tokens, from the dense setting, gives what it takes; `None` if that was not
-/// measured.
+/// The reference as a preset. Its time is computed from one step of all tokens in the dense setting; `None` if that
+/// setting was not measured.
 fn reference_preset(rows: &[&Row], reference: GenParams) -> Option<Preset> {
     let dense = rows.iter().find(|r| {
         let p = &r.setting.params;

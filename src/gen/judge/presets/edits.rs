@@ -1,4 +1,5 @@
-//! Edits and whole scenes under many settings, against the same with so many steps that more change nothing.
+//! Edits and whole scenes under many settings, each compared with a reference of so many steps that more change
+//! nothing.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -23,12 +24,12 @@ use nets::{LATENT, OccModels};
 use scene::{Class, Extent, Scene, VoxelGrid, Window};
 use world::draw::{Draw, hash};
 
-/// Settings whose sources stand ready side by side while their runs take turns.
+/// Settings whose sources are kept ready at the same time while their runs take turns.
 const SIDE_BY_SIDE: usize = 8;
-/// Largest file of a kept reference, bytes: labels and a latent, with room.
+/// Largest file of a kept reference, bytes: room for labels and a latent.
 const LARGEST_REFERENCE: u64 = 64 << 20;
 
-/// What every setting is compared with.
+/// Result that every setting is compared with.
 #[derive(Clone)]
 pub struct Reference {
     /// Labels.
@@ -37,12 +38,12 @@ pub struct Reference {
     pub latent: Vec<f32>,
 }
 
-/// What a setting made of a case.
+/// Outcome of a setting on a case.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Outcome {
     /// Share of the region's voxels that differ from the reference; infinite where there is no result.
     pub error: f64,
-    /// The same among voxels that one of both holds occupied.
+    /// Number of differing voxels over the number of the region's voxels that either of the two holds occupied.
     pub error_of_occupied: f64,
     /// Mean IoU with the reference in the region.
     pub miou: f64,
@@ -53,7 +54,7 @@ pub struct Outcome {
     pub invented: f64,
     /// Share of voxels changed along the inner border of the region.
     pub seam: f64,
-    /// Must be 0.
+    /// Voxels outside the region that changed; must be 0.
     pub untouched_voxels_changed: usize,
     /// FNV-1a of the labels outside the region, which every setting must share.
     pub untouched_hash: u64,
@@ -63,9 +64,9 @@ pub struct Outcome {
     pub tokens: usize,
     /// Calls of the network, without inversion.
     pub network_calls: usize,
-    /// Wall times of single runs with the source ready, s.
+    /// Wall times of single runs from a prepared source, s.
     pub wall_s: Vec<f64>,
-    /// Of getting the source ready, s.
+    /// Time to prepare the source, s.
     pub invert_s: f64,
     /// Wall time by stage of the last run, s.
     pub stages_s: BTreeMap<String, f64>,
@@ -81,14 +82,14 @@ pub struct Bench {
     pub models: Arc<OccModels>,
     /// Steps of the reference.
     pub reference_steps: u32,
-    /// Where references are kept between runs, if anywhere.
+    /// Folder that keeps references between runs, if there is one.
     pub kept_in: Option<PathBuf>,
 }
 
 /// Steps of the reference's fine stage.
 const REFERENCE_FINE_STEPS: u32 = 16;
 
-/// Parameters of the reference for those of a setting.
+/// Parameters of the reference for the parameters of a setting.
 pub fn reference_params(base: GenParams, steps: u32) -> GenParams {
     GenParams {
         steps,
@@ -110,7 +111,7 @@ impl Bench {
         }
     }
 
-    /// The reference of a case; from the folder of kept ones if it is there.
+    /// The reference of a case; read from the folder of kept references if it is there.
     pub fn reference(
         &self,
         pipeline: &mut OccPipeline,
@@ -151,7 +152,7 @@ impl Bench {
         Ok(reference)
     }
 
-    /// How far `result` lies from the reference in the region that an edit touches.
+    /// Measures the distance of `result` from the reference in the region that an edit touches.
     pub fn compare(
         case: &Case,
         params: &GenParams,
@@ -225,8 +226,9 @@ impl Bench {
         }
     }
 
-    /// Cases of one scene under all settings, `repeats` timed runs each, in random turns. Sources are ready when the
-    /// clock starts, as they are in the window; what that took stands beside it. Outcomes by case, then by setting.
+    /// Runs the cases of one scene under all settings, `repeats` timed runs each, in random turns. Sources are ready
+    /// when the clock starts, as they are in the window; the time to prepare them is given separately. Outcomes by
+    /// case, then by setting.
     #[allow(clippy::too_many_arguments)] // what is measured, how often, and who listens
     pub fn run(
         &self,

@@ -1,4 +1,4 @@
-//! Times and shares as people read them.
+//! Times and shares as text for people.
 
 /// 0.05 as `50 ms`.
 pub fn seconds(s: f64) -> String {

@@ -1,4 +1,4 @@
-//! Measures settings on edits and scenes, and puts what several processes measured together.
+//! Measures settings on edits and scenes, and merges the measurements of several processes.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use nets::OccModels;
 /// Outcomes of every setting on every case, as one process found them.
 #[derive(Default, Serialize, Deserialize)]
 pub struct Raw {
-    /// By part: names of cases and, for each, outcomes in the order of the settings.
+    /// Names of cases by part, each with its outcomes in the order of the settings.
     pub parts: BTreeMap<String, Vec<(String, Vec<Outcome>)>>,
 }
 
@@ -35,7 +35,7 @@ impl Plan {
         for part in ["edit", "scene"].into_iter().filter(|p| self.has(p)) {
             let (base, settings) = self.settings(part);
             let found = self.cases(part)?;
-            // Those of one scene share what makes it ready.
+            // Cases of one scene share its preparation.
             let scenes: Vec<&[Case]> = found.chunk_by(|a, b| Arc::ptr_eq(&a.before, &b.before)).collect();
             for (i, some) in scenes.iter().enumerate() {
                 let seed = self.seed ^ i as u64 ^ self.process << 32;
@@ -51,7 +51,7 @@ impl Plan {
     }
 }
 
-/// Adds the times of another process. Errors if anything else is not the same.
+/// Adds the times of another process. Errors if its cases, errors or hashes differ.
 pub fn add_times(all: &mut Raw, more: Raw) -> anyhow::Result<()> {
     for (part, cases) in more.parts {
         let known = all

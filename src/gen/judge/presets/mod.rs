@@ -1,4 +1,5 @@
-//! What each knob of speed costs: settings of the knobs run on the same cases, in random turns, against named references.
+//! Measures the cost of each speed knob: settings of the knobs run on the same cases, in random turns, against named
+//! references.
 
 pub mod calibrate;
 pub mod cases;

@@ -1,4 +1,4 @@
-//! A run of `sceneloom trade`: what is measured, and what is made of it.
+//! A run of `sceneloom trade`: the plan of its measurements, and what is made of them.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,10 +22,10 @@ use nets::OccModels;
 use scene::Scene;
 use trade::{PresetKnobs, Presets, TradePoint, front, hypervolume};
 
-/// What can be measured.
+/// Parts that can be measured.
 pub const PARTS: [&str; 5] = ["edit", "scene", "lidar", "splat", "vae"];
 
-/// What is measured, and how often.
+/// Scenes, parts and numbers of a measurement.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
     /// Scene whose edits are measured; without one, held-out worlds.
@@ -38,15 +38,15 @@ pub struct Plan {
     pub repeats: usize,
     /// Steps of the reference, 2 to 1000.
     pub reference_steps: u32,
-    /// Random settings across all knobs, beside each knob by itself.
+    /// Number of random settings across all knobs, beside each knob by itself.
     pub draws: usize,
-    /// Only these settings, as the report names them; all if none is named.
+    /// Settings to measure, by their names in the report; empty for all.
     pub only: Vec<String>,
     /// Folder that keeps the references between runs.
     pub keep_references: Option<PathBuf>,
-    /// Fixes draws and turns.
+    /// Seed of draws and turns.
     pub seed: u64,
-    /// Which process of a larger run this is: its turns are its own.
+    /// Number of this process in a larger run; it changes the turns.
     pub process: u64,
 }
 
@@ -59,13 +59,13 @@ pub struct Mark {
     pub wall_s: [f64; 3],
     /// Error, share of voxels: median and interval.
     pub error: [f64; 3],
-    /// Nothing beats it.
+    /// True if it lies on the front: no setting beats it in time and error.
     pub on_front: bool,
-    /// It is a preset of the slider, and this one is called so.
+    /// Name of the preset of the slider that this setting became, if it became one.
     pub preset: Option<String>,
 }
 
-/// What a run found.
+/// Results of a run.
 #[derive(Default)]
 pub struct Found {
     /// One entry per setting of every part.
@@ -76,12 +76,12 @@ pub struct Found {
     pub presets: Option<Presets>,
     /// Figures over all settings of a part.
     pub figures: Value,
-    /// How far half of the reference's steps lie from the reference; null if edits were not measured.
+    /// Difference between half of the reference's steps and the reference; null if edits were not measured.
     pub self_check: Value,
 }
 
 impl Plan {
-    /// Checks the numbers. Errors in one line: which option, what was found, what was expected.
+    /// Checks the numbers. Errors are one line: the option, the value found and the value expected.
     pub fn check(&self) -> anyhow::Result<()> {
         if let Some(unknown) = self.parts.iter().find(|p| !PARTS.contains(&p.as_str())) {
             bail!("--parts {unknown}: expected {}", PARTS.join(", "));
@@ -110,7 +110,7 @@ impl Plan {
         (base, settings)
     }
 
-    /// What a part is measured on. Errors name the scene's file.
+    /// Cases of a part. Errors name the scene's file.
     pub(super) fn cases(&self, part: &str) -> anyhow::Result<Vec<Case>> {
         let whole = |scene: Scene, name: String| {
             let scene = Arc::new(scene);
@@ -142,7 +142,7 @@ impl Plan {
         self.parts.iter().any(|p| p == part)
     }
 
-    /// What the outcomes say, and what the sensors' knobs cost, which is measured here. Errors if weights or the scene cannot be
+    /// Summarises the outcomes, and measures the cost of the sensors' knobs. Errors if weights or the scene cannot be
     /// used.
     pub fn report(
         &self,
@@ -220,7 +220,8 @@ impl Plan {
         Ok(())
     }
 
-    /// How far half of the reference's steps lie from the reference, on the first case: what its own error is like.
+    /// Difference between half of the reference's steps and the reference, on the first case: an estimate of the
+    /// reference's own error.
     fn self_check(&self, models: &Arc<OccModels>, progress: &dyn Progress) -> anyhow::Result<Value> {
         if !self.has("edit") {
             return Ok(Value::Null);

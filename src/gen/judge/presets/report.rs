@@ -1,4 +1,4 @@
-//! What the report says of each setting, as JSON and for a person.
+//! The report on each setting, as JSON and for a person.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use super::settings::Setting;
 use numeric::quantile::{median, quantile};
 use trade::{Cost, SizedTime, TradePoint, bootstrap_median};
 
-/// What the report says of a setting.
+/// A setting with its outcomes, as a row of the report.
 pub(super) struct Row {
     pub(super) setting: Setting,
     pub(super) outcomes: Vec<Outcome>,

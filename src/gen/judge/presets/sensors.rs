@@ -1,4 +1,4 @@
-//! What the sensors' knobs trade: samples and beams of the LiDAR, cut-offs of the splats, the two VAEs.
+//! Time against error of the sensors' knobs: samples and beams of the LiDAR, cut-offs of the splats, the two VAEs.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -25,10 +25,10 @@ use trade::{Interval, bootstrap_median};
 
 /// Samples per ray of the reference.
 const REFERENCE_SAMPLES: usize = 4096;
-/// Of the rays, every so many are compared with the reference.
+/// Stride of the rays that are compared with the reference.
 const COMPARED: usize = 16;
 
-/// One setting of one of these parts.
+/// One setting of these parts.
 pub struct Measured {
     /// `lidar`, `splat`, `vae`.
     pub part: &'static str,
@@ -42,11 +42,11 @@ pub struct Measured {
     pub figures: Value,
     /// Largest memory held, MB.
     pub peak_rss_mb: Option<f64>,
-    /// It differs from the reference in what it shows, not only in how exactly.
+    /// True if it shows something else than the reference, not only less exactly.
     pub other_target: bool,
 }
 
-/// Runs `work` so many times; what the last one gave, and the times in s.
+/// Runs `work` `repeats` times. Returns the last result, and the times in s.
 fn timed<T>(repeats: usize, mut work: impl FnMut() -> T) -> (T, Vec<f64>) {
     let mut times = Vec::new();
     loop {
@@ -135,7 +135,7 @@ pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
         let (low, high) = (-30.0, 10.0);
         let step = (high - low) / f64::from(beams - 1);
         pattern.elevations_deg = (0..beams).map(|b| low + step * f64::from(b)).collect();
-        // The cast alone, without what lies beyond the voxels.
+        // The exact cast alone, without surfaces beyond the voxels.
         pattern.beyond_grid = false;
         let mut walls = Vec::new();
         for i in 0..frames as u64 {
@@ -235,7 +235,7 @@ fn map_errors(maps: &[CameraMaps], truth: &[CameraMaps]) -> (f64, f64) {
     )
 }
 
-/// Both VAEs: what encoding and decoding takes, and what of the labels is lost on the way (model error: no knob buys it).
+/// The two VAEs: time of encoding and decoding, and labels lost on the way (model error: no knob buys it).
 pub fn vaes(models: &Arc<OccModels>, frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
     let fine = fine_vae()?;
     let mut out = Vec::new();

@@ -13,11 +13,11 @@ pub struct Setting {
     pub name: String,
     /// All parameters.
     pub params: GenParams,
-    /// It asks for another result than the reference: how far it lies from that is no error of its numerics.
+    /// True if it asks for another result than the reference: its distance to the reference is then no numerical error.
     pub other_target: bool,
 }
 
-/// What the knobs are called where they differ from `base`.
+/// Name of the knobs, by those that differ from `base`.
 pub fn name_of(knobs: &PresetKnobs, base: &PresetKnobs) -> String {
     let mut parts = vec![format!("{} steps", knobs.steps)];
     if knobs.solver != base.solver {
@@ -61,12 +61,12 @@ impl List {
         list
     }
 
-    /// Adds a setting that asks for the same as the reference.
+    /// Adds a setting with the reference's target.
     fn add(&mut self, params: GenParams) {
         self.put(params, None);
     }
 
-    /// Adds one with `extra` to its name: what else it asks for makes another target of it.
+    /// Adds a setting with `extra` in its name, if given: it then has another target than the reference.
     fn put(&mut self, params: GenParams, extra: Option<String>) {
         let name = name_of(&PresetKnobs::of(&params), &PresetKnobs::of(&self.base));
         if params.check().is_ok() && !self.settings.iter().any(|s| s.params == params) {
@@ -78,7 +78,7 @@ impl List {
         }
     }
 
-    /// In full precision and in int8.
+    /// Adds a setting in full precision and in int8.
     fn add_both_precisions(&mut self, params: GenParams) {
         self.add(params.clone());
         self.add(GenParams {
@@ -87,7 +87,7 @@ impl List {
         });
     }
 
-    /// Steps, solvers, fixed points, neighbours, reuse: one knob of edits after another.
+    /// Adds settings of one knob of edits after another: steps, solvers, fixed points, neighbours, reuse.
     fn add_knobs(&mut self) {
         let base = self.base.clone();
         for steps in [2, 4, 6, 10, 20, 33, 50] {
@@ -140,7 +140,7 @@ impl List {
         }
     }
 
-    /// The fine stage beside few and many steps.
+    /// Adds the fine stage beside few and many steps.
     fn add_fine_stages(&mut self) {
         let base = self.base.clone();
         for steps in [2, 4, 10] {
@@ -165,7 +165,7 @@ impl List {
         }
     }
 
-    /// What asks for another result than the reference.
+    /// Adds settings whose target is not that of the reference.
     fn add_other_targets(&mut self) {
         let base = self.base.clone();
         for guidance in [1.5, 3.0] {
@@ -190,7 +190,7 @@ impl List {
         }
     }
 
-    /// `draws` settings of a Latin hypercube.
+    /// Adds `draws` settings of a Latin hypercube.
     fn add_draws(&mut self, draws: usize, seed: u64) {
         let mut draw = Draw::new(seed, "hypercube");
         let mut columns: [Vec<usize>; 6] = std::array::from_fn(|_| (0..draws).collect());
@@ -199,7 +199,7 @@ impl List {
                 column.swap(i, draw.below(i + 1));
             }
         }
-        // Value i of n of a knob for the rank that the draw gave.
+        // Chooses one of the knob's n values by the rank that was drawn.
         let pick = |knob: usize, i: usize, n: usize| columns[knob][i] * n / draws.max(1);
         for i in 0..draws {
             self.add(GenParams {

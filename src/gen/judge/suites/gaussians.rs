@@ -1,5 +1,5 @@
-//! `eval gaussians`: how near pictures of the Gaussians of a scene come to those of the renderer, from places that were not baked
-//! from.
+//! `eval gaussians`: compares pictures of a scene's Gaussians with those of the renderer, from places that were not
+//! baked from.
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -19,22 +19,23 @@ use sensors::appearance::{Appearance, Quality};
 use sensors::bake::{self, BakeOptions, draw, stands};
 use world::template::TEMPLATES;
 
-/// Size of the pictures judged, px; larger than those that are baked from.
+/// Size of the judged pictures, px; larger than the pictures that are baked from.
 const SIZE: [u32; 2] = [400, 225];
-/// Cameras that are judged of a scene.
+/// Number of cameras that are judged in a scene.
 const VIEWS: usize = 24;
-/// How far the vehicle is from the place beside which it stands, m, and how far it is turned, degrees.
+/// Distance of the vehicle from the place beside which it stands, m, and its turn, degrees.
 const ASIDE_M: [f64; 2] = [1.0, 2.0];
 const TURNED_DEG: [f64; 2] = [5.0, 20.0];
-/// The median that is wanted, dB.
+/// Bar of the median, dB.
 const WANTED_DB: f64 = 26.0;
 /// Bytes of a Gaussian in the PLY.
 const PLY_BYTES: f64 = 77.0;
 
-/// A drive after every so many templates.
+/// Number of templates before each drive.
 const DRIVE_AFTER: usize = 3;
 
-/// Scene `i` of those that are judged: templates one after another, and drives between them, at a moment of their own.
+/// Scene `i` of those that are judged: templates one after another with drives between them. A drive is shown at its
+/// middle.
 fn scene_of(i: usize) -> anyhow::Result<(String, Scene)> {
     let round = (i / (DRIVE_AFTER + 1), i % (DRIVE_AFTER + 1));
     if round.1 == DRIVE_AFTER {
@@ -48,14 +49,14 @@ fn scene_of(i: usize) -> anyhow::Result<(String, Scene)> {
     Ok((name.to_owned(), scene))
 }
 
-/// Cameras that were not baked from: on vehicles beside the places that were, and in drives about every second one on the
-/// way itself, midway between two of the places there.
+/// Cameras that were not baked from: on vehicles beside the baked places, and in drives about every second one on the
+/// path itself, midway between two of the baked places.
 fn unseen(scene: &Scene, stands: &[Pose], seed: u64) -> Vec<Camera> {
     let mut draw = Draw::new(seed, "unseen poses");
     let is_free = |pose: &Pose| stands::is_free(scene.frame(), &scene.rig, pose);
     let on_way: Vec<Pose> = bake::between(scene).into_iter().filter(is_free).collect();
     let mut out = Vec::new();
-    // Where there is no room beside the places, fewer are judged.
+    // If there is too little room beside the places, fewer cameras are judged.
     for _ in 0..VIEWS * 200 {
         if out.len() == VIEWS {
             break;
@@ -92,7 +93,7 @@ fn psnr_db(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
     -10.0 * mean.max(1e-12).log10()
 }
 
-/// A scene that was judged, as it stands in the report.
+/// A judged scene, as it stands in the report.
 fn judged(i: usize) -> anyhow::Result<Value> {
     let (name, scene) = scene_of(i)?;
     let scene = scene.with_rig_in_world();
@@ -100,7 +101,7 @@ fn judged(i: usize) -> anyhow::Result<Value> {
     let before = Instant::now();
     let mut baked = bake::bake_scene(&scene, &options, &|_| true).context("cancelled")?;
     let bake_s = before.elapsed().as_secs_f64();
-    // Cameras are in the world.
+    // Cameras are in world coordinates.
     baked.place(&scene.frame().world_from_ego);
     let places = bake::places(&scene, &options);
     let appearance = Appearance::with_things(scene.frame(), &scene.background, &scene.rig, &scene.conditions);
@@ -122,7 +123,7 @@ fn judged(i: usize) -> anyhow::Result<Value> {
 }
 
 impl Options {
-    /// Pictures of baked scenes beside the renderer's, from unseen poses.
+    /// Compares pictures of baked scenes with the renderer's, from unseen poses.
     pub(crate) fn gaussians(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
         let mut rows = Vec::new();
         for i in 0..self.frames {

@@ -26,13 +26,13 @@ use world::voxelize::{Drive, Vertical, complete, labels};
 
 /// Samples of a ray without the prior (UniScene's first stage).
 const UNIFORM: usize = 144;
-/// UniScene, table 5: voxel cast and learned, MMD and JSD. What is asked for are the ratios.
+/// UniScene, table 5: voxel cast over learned, MMD and JSD. The bars are about these ratios.
 const MMD_RATIO: f64 = 8.15 / 2.40;
 const JSD_RATIO: f64 = 0.149 / 0.108;
 /// The longest a sweep may take, s.
 const SWEEP_S: f64 = 0.25;
 
-/// What one method made of all sweeps.
+/// Figures of one method over all sweeps.
 #[derive(Default)]
 struct Method {
     range_error_m: Vec<f64>,
@@ -43,7 +43,7 @@ struct Method {
 }
 
 impl Method {
-    /// Adds a sweep: what each ray found, and which of the found came back.
+    /// Adds a sweep: the range found by each ray, and whether a found echo came back.
     fn add(
         &mut self,
         rays: &[Ray],
@@ -70,7 +70,8 @@ impl Method {
             }
         }
         self.points += points.len();
-        // Height above the sensor and distances are those of its own frame; a turn about the vertical does no harm.
+        // `bird_map` takes heights above the sensor and distances in its own frame; a turn about the vertical does not
+        // matter.
         self.maps.push(bird_map(points));
     }
 
@@ -93,7 +94,7 @@ impl Method {
     }
 }
 
-/// True if a distance along the ray lies in the grid: outside, nobody knows anything.
+/// True if a distance along the ray lies in the grid: outside, there are no labels.
 fn in_grid(ray: &Ray, t: f64) -> bool {
     let p = ray.origin + ray.direction * t;
     t >= ray.range_m[0] && Window::voxel_at(p).is_some()
@@ -112,7 +113,7 @@ struct Echoes {
     real_strength: Vec<f64>,
     lost: Vec<f64>,     // predicted share, of echoes that were lost
     returned: Vec<f64>, // of those that came back
-    /// What could be known of the same echoes, and whether they were lost; sweeps in turn.
+    /// Known features of the same echoes, and whether they were lost; sweeps go to the two parts in turn.
     known: [(Vec<Vec<f64>>, Vec<bool>); 2],
     sweeps: usize,
 }
@@ -140,14 +141,14 @@ impl Echoes {
         }
     }
 
-    /// How often an echo that was lost has a greater predicted share than one that came back; 0.5 = no information.
+    /// Probability that a lost echo has a greater predicted share than one that came back; 0.5 = no information.
     fn drop_auc(&self) -> f64 {
         let scores = [&self.lost[..], &self.returned[..]].concat();
         let lost: Vec<bool> = (0..scores.len()).map(|i| i < self.lost.len()).collect();
         auc(&scores, &lost)
     }
 
-    /// The same of who knows the true class, range and angle: a logistic fit on every other sweep, judged on the rest.
+    /// The AUC that true class, range and angle allow: a logistic fit on every other sweep, judged on the rest.
     fn known_auc(&self) -> Option<f64> {
         let [(rows, lost), (test, outcomes)] = &self.known;
         let fit = Logistic::fit(rows, lost)?;
@@ -330,7 +331,7 @@ fn raised(grid: &VoxelGrid) -> VoxelGrid {
 }
 
 impl Options {
-    /// Complete worlds, and labels as a drive through them would give.
+    /// Judges complete worlds, and labels as a drive through them would give.
     pub(crate) fn lidar(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
         let net = match &self.weights {
             Some(dir) => LidarNet::from_dir(dir)?,
@@ -374,7 +375,7 @@ impl Options {
         let share = |n: usize| n as f64 / all;
         report["truth"] =
             json!({ "returned": share(returned), "lost": share(lost), "nothing": share(nothing) });
-        // A logistic fit on class, range, angle and ring: what a drop head can learn at least.
+        // A logistic fit on class, range, angle and ring: the least that a drop head can learn.
         report["truth"]["lost_auc"] = json!(real.loss_auc());
         report["sweeps"] = lidar_rows(&product)?.0.into();
         report["model"] = net.name().into();

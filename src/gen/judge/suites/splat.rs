@@ -1,4 +1,4 @@
-//! `eval splat`: camera maps by splats and by marching beside those of the analytic worlds.
+//! `eval splat`: camera maps by splats and by marching, compared with those of the analytic worlds.
 
 use std::time::Instant;
 
@@ -19,14 +19,15 @@ use sensors::splat::{self, SplatOptions};
 use world::World;
 use world::voxelize::{Vertical, complete};
 
-/// Size of the pictures judged; that of the editor's views.
+/// Size of the judged pictures; that of the editor's views.
 const SIZE: [u32; 2] = splat::VIEW_SIZE;
-/// Size of the pictures timed.
+/// Size of the timed pictures.
 const TIMED: [u32; 2] = [800, 450];
-/// Shapes of the boxes' solids are drawn from another seed than the worlds': nobody knows those.
+/// Seed of the shapes of the boxes' solids. It differs from the worlds' seed, since the true shapes are unknown in
+/// practice.
 const SHAPE_SEED: u64 = 77;
 
-/// The ways to draw, and what each is called.
+/// The ways to draw, with their names.
 const WAYS: [(&str, Option<(GroundHeight, bool)>); 5] = [
     ("splat", None),
     ("march", Some((GroundHeight::AsLabelled, false))),
@@ -45,7 +46,7 @@ struct Figures {
     ms: Vec<f64>,
 }
 
-/// Paint is not part of the analytic worlds: it counts as road.
+/// Labels with lane paint as road: paint is not part of the analytic worlds.
 fn without_paint(maps: CameraMaps) -> LabelledDepth {
     let road = Class::DriveableSurface.id();
     LabelledDepth {
@@ -59,7 +60,7 @@ fn without_paint(maps: CameraMaps) -> LabelledDepth {
     }
 }
 
-/// What a camera would see of the analytic world inside the grid's height.
+/// Maps of a camera in the analytic world inside the grid's height.
 fn truth(world: &World, camera: &Camera) -> LabelledDepth {
     let [width, height] = SIZE;
     let rays = CameraRays::new(camera, width, height);
@@ -70,7 +71,7 @@ fn truth(world: &World, camera: &Camera) -> LabelledDepth {
             let along = rays.at(u as f64 + 0.5, v as f64 + 0.5).direction;
             let dir = along.normalize();
             let hit = world.cast(rays.origin, dir, 200.0);
-            // Of higher things the grid knows nothing.
+            // The grid holds nothing of higher things.
             let low = hit.filter(|h| rays.origin.z + dir.z * h.range_m < Window::MAX_M[2]);
             low.map_or((0, -1.0), |h| (h.class.id(), (h.range_m / along.length()) as f32))
         })
@@ -84,7 +85,7 @@ fn truth(world: &World, camera: &Camera) -> LabelledDepth {
 }
 
 impl Options {
-    /// Label agreement, depth error and outlines of every way to draw maps; no bars.
+    /// Judges label agreement, depth error and outlines of every way to draw maps; no bars.
     pub(crate) fn splat(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
         let rig = SensorRig::default();
         let mut found: [Figures; WAYS.len()] = Default::default();

@@ -1,4 +1,4 @@
-//! Edits that `eval editing` tries, and what makes each a success.
+//! Edits that `eval editing` tries, and the conditions of their success.
 
 mod places;
 
@@ -14,14 +14,14 @@ pub const KINDS: [&str; 6] = ["remove", "add", "move", "class", "road", "crossin
 const GONE: f64 = 0.95;
 /// Share of the columns of a new footprint that must hold its class.
 const FILLED: f64 = 0.60;
-/// Share of painted columns that must show it.
+/// Share of painted columns that must show the paint.
 const PAINTED: f64 = 0.90;
-/// Vehicles that show fewer voxels are as good as not there.
+/// Fewest voxels of a vehicle that counts as visible.
 const LEAST_VOXELS: usize = 10;
 
 /// An edit, and how to tell whether it worked.
 pub struct Trial {
-    /// What is done.
+    /// The edit.
     pub edit: Edit,
     gone: Option<SceneBox>,
     filled: Option<SceneBox>,
@@ -29,7 +29,7 @@ pub struct Trial {
     road: Vec<[usize; 2]>,
 }
 
-/// Shares that a trial reached; `None` where it does not ask for one.
+/// Shares that a trial reached; `None` for those that do not apply.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Reached {
     /// Voxels of the removed object that became ground or free.
@@ -49,8 +49,8 @@ impl Reached {
 }
 
 impl Trial {
-    /// An edit of a kind that suits the frame, of the nearest car if it is of a vehicle; `None` if there is nothing to do
-    /// it to.
+    /// An edit of a kind that suits the frame; an edit of a vehicle takes the nearest car. `None` if the frame holds no
+    /// fitting object or place.
     pub fn propose(kind: &str, frame: &Frame, seed: u64) -> Option<Self> {
         Some(match kind {
             "remove" | "move" | "class" => Self::of_vehicle(kind, frame, nearest_car(frame)?, seed)?,
@@ -60,8 +60,8 @@ impl Trial {
         })
     }
 
-    /// An edit of a vehicle: `remove`, `move` (to a free place on the road) or else another class. `None` if there is no
-    /// place to move it to.
+    /// An edit of a vehicle: `remove`, `move` (to a free place on the road), else a change of class. `None` if there is
+    /// no place to move it to.
     pub fn of_vehicle(kind: &str, frame: &Frame, vehicle: SceneBox, seed: u64) -> Option<Self> {
         let (id, gone) = (vehicle.id, Some(vehicle));
         Some(match kind {
@@ -129,12 +129,12 @@ impl Trial {
         }
     }
 
-    /// The box as it was, where one goes, moves or changes its class.
+    /// The box before the edit, if it goes, moves or changes its class.
     pub fn gone(&self) -> Option<&SceneBox> {
         self.gone.as_ref()
     }
 
-    /// The box as it is to be, where one comes, moves or changes its class.
+    /// The box after the edit, if it comes, moves or changes its class.
     pub fn filled(&self) -> Option<&SceneBox> {
         self.filled.as_ref()
     }
@@ -168,8 +168,8 @@ fn nearest_car(frame: &Frame) -> Option<SceneBox> {
         .copied()
 }
 
-/// Vehicles that the occupancy shows, from the nearest to the farthest; of more than `most` as many, evenly spread over
-/// that order.
+/// Vehicles that the occupancy shows, from the nearest to the farthest. If there are more than `most`, as many are
+/// taken evenly over that order.
 pub fn vehicles(frame: &Frame, most: usize) -> Vec<SceneBox> {
     let shown = |b: &&SceneBox| b.class.is_vehicle() && voxels_of(&frame.occupancy, b) >= LEAST_VOXELS;
     let mut found: Vec<SceneBox> = frame.boxes.values().filter(shown).copied().collect();
@@ -178,8 +178,8 @@ pub fn vehicles(frame: &Frame, most: usize) -> Vec<SceneBox> {
     (0..most).map(|i| found[i * found.len() / most]).collect()
 }
 
-/// Share of the voxels of the box's class over its footprint that became ground, free or what replaces
-/// it; `None` if there were none.
+/// Share of the voxels of the box's class over its footprint that became ground, free or the class that replaces it;
+/// `None` if there were none.
 fn removed_share(
     b: &SceneBox,
     replaced: Option<Class>,

@@ -6,8 +6,7 @@ use scene::raster::{box_cells, disc_cells};
 use scene::{BevLayer, BoxId, BoxLabel, Class, Extent, Frame, PolylineKind, SceneBox, Window};
 use world::draw::Draw;
 
-/// A place on road that nothing stands on, along the nearest lane: for a new box of a class, or for
-/// `moved`.
+/// A free place on road along the nearest lane, for a new box of a class or for `moved`.
 pub fn on_free_road(frame: &Frame, class: Class, moved: Option<SceneBox>, seed: u64) -> Option<SceneBox> {
     let mut draw = Draw::new(seed, "free road");
     let objects: u32 = Class::OBJECTS

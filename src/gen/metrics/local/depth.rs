@@ -1,5 +1,6 @@
-//! Windows of depth images: how depth steps and bends from pixel to pixel, where it ends, random convolutions. On a plane
-//! one over the depth is linear in the picture, so facades and ground bend nowhere and rubble everywhere.
+//! Features of windows of depth images: steps and bends of depth from pixel to pixel, share of sky, random
+//! convolutions. On a plane 1 / depth is linear in the picture, so facades and ground have no bends and rubble has them
+//! everywhere.
 
 use super::Windows;
 use super::random::{Bank, Map};
@@ -11,7 +12,7 @@ const WINDOW: [usize; 2] = [15, 16];
 const FILTERS: usize = 24;
 /// Depth at which the signal is one half, m.
 const MIDDLE_M: f64 = 10.0;
-/// Bounds of the logarithm of neighbouring depths' ratio, and of the bend relative to the signal.
+/// Bounds of the bins: of the logarithm of the ratio of neighbouring depths, and of the bend relative to the signal.
 const STEPS: [f64; 5] = [0.02, 0.06, 0.15, 0.4, 1.0];
 const BENDS: [f64; 4] = [0.01, 0.04, 0.12, 0.4];
 /// Depth that stands for the sky, m.
@@ -31,8 +32,8 @@ pub fn names() -> Vec<String> {
     out
 }
 
-/// Features of the windows of one image, in the order of [`names`]. `depth_m` is row-major, not above 0 where there is
-/// sky; what is not [`IMAGE`] wide and high gives none.
+/// Features of the windows of one image, in the order of [`names`]. `depth_m` is row-major, not above 0 for sky. An
+/// image of another size than [`IMAGE`] gives no windows.
 pub fn windows(depth_m: &[f32]) -> Windows {
     let [columns, rows] = IMAGE.map(|n| n as usize);
     if depth_m.len() != rows * columns {

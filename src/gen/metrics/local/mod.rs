@@ -1,5 +1,5 @@
-//! Features of small windows, by hand and by random convolutions with fixed weights: what pooled features of a whole
-//! frame do not see. No weights are trained, so figures of different days and models compare.
+//! Features of small windows, hand-made and by random convolutions with fixed weights. They show what pooled features
+//! of a whole frame miss. No weights are trained, so figures of different days and models can be compared.
 
 pub mod depth;
 pub mod occupancy;

@@ -1,16 +1,17 @@
-//! Windows of 8 x 8 columns of occupancy, and patches of 3 x 3 windows: class shares, patterns of 2 x 2 columns and of
-//! 2 x 2 x 2 voxels (how masks are bounded: edges, corners, thin lines), steps of height, runs, random convolutions.
+//! Features of windows of 8 x 8 columns of occupancy, and of patches of 3 x 3 windows: class shares, patterns of 2 x 2
+//! columns and of 2 x 2 x 2 voxels (the borders of masks: edges, corners, thin lines), steps of height, runs, random
+//! convolutions.
 
 use super::Windows;
 use super::random::{Bank, Map, normal};
 use scene::{Class, VoxelGrid, Window};
 use world::draw::Draw;
 
-/// Columns of a window each way.
+/// Columns of a window along each side.
 pub const WINDOW: usize = 8;
-/// Windows of a frame each way.
+/// Windows of a frame along each side.
 pub const SIDE: usize = Window::NX / WINDOW;
-/// Windows of a patch each way.
+/// Windows of a patch along each side.
 const PATCH: usize = 3;
 
 const NY: usize = Window::NY;
@@ -31,7 +32,7 @@ const RUNS: [&str; 4] = [
 ];
 const OCTANTS: usize = 7;
 
-/// What is known of one column.
+/// Masks, occupancy, tops and runs of one column.
 #[derive(Clone, Copy, Default)]
 struct Column {
     masks: u8,
@@ -122,7 +123,8 @@ fn convolved(grid: &VoxelGrid) -> Windows {
     Bank::new("occupancy", CHANNELS, 3, FILTERS).means(&map, [WINDOW, WINDOW])
 }
 
-/// All but the convolutions of the window that starts at a column; every figure per column of the window.
+/// All features except the convolutions of the window that starts at a column. Every figure is per column of the
+/// window.
 fn by_hand(grid: &VoxelGrid, columns: &[Column], x0: usize, y0: usize) -> Vec<f64> {
     let mut shares = [0u32; 17];
     let mut patterns = [[0u32; PATTERNS.len()]; MASKS.len()];

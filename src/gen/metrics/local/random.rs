@@ -25,7 +25,7 @@ pub fn normal(draw: &mut Draw) -> f64 {
 }
 
 impl Bank {
-    /// The bank of that name: the same one every time.
+    /// The bank of that name; the same name always gives the same weights.
     pub fn new(name: &str, channels: usize, side: usize, filters: usize) -> Self {
         let mut draw = Draw::new(1, name);
         let inputs = side * side * channels;
@@ -43,8 +43,8 @@ impl Bank {
         }
     }
 
-    /// Mean of every filter's positive part over every whole window of `window` places, row by row; filters reach beyond
-    /// their window, and stay inside the map.
+    /// Mean of every filter's positive part over every whole window of `window` places, row by row. Filters reach
+    /// beyond their window, but stay inside the map.
     pub fn means(&self, map: &Map<'_>, window: [usize; 2]) -> Vec<Vec<f64>> {
         let (down, across) = (map.rows / window[0], map.columns / window[1]);
         (0..down * across)

@@ -1,4 +1,4 @@
-//! Holes in the ground: columns inside the area of a ground class where there is neither ground nor anything on it.
+//! Holes in the ground: columns inside the area of a ground class that hold neither ground nor anything on it.
 
 use super::{ShapeFigures, share};
 use scene::{Class, VoxelGrid, Window};
@@ -17,14 +17,14 @@ pub const NAMES: [&str; 4] = [
     "holes.sidewalk",
     "holes.terrain",
 ];
-/// Radius of the disc that areas are closed with, columns: what is narrower than 2.4 m belongs to the area around it.
+/// Radius of the disc that closes areas, columns: gaps narrower than 2.4 m belong to the area around them.
 const RADIUS: usize = 3;
-/// Columns around the grid, so that what lies outside does not limit the closing.
+/// Width of the margin around the grid, columns, so that the area outside does not limit the closing.
 const PAD: usize = 2 * RADIUS;
 const SIDE: usize = Window::NX + 2 * PAD;
 const NY: usize = Window::NY;
 
-/// Place of a column in a padded map.
+/// Index of a column in a padded map.
 fn padded(c: usize) -> usize {
     (c / NY + PAD) * SIDE + c % NY + PAD
 }
@@ -56,7 +56,7 @@ fn grow(map: &[i8], disc: &[isize]) -> Vec<i8> {
     out
 }
 
-/// Where the disc touches nothing that is not set.
+/// Cells whose disc touches no cell that is unset.
 fn shrink(map: &[i8], disc: &[isize]) -> Vec<bool> {
     let mut out: Vec<bool> = map.iter().map(|v| *v >= 0).collect();
     for x in RADIUS..SIDE - RADIUS {
@@ -72,7 +72,7 @@ fn shrink(map: &[i8], disc: &[isize]) -> Vec<bool> {
 pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
     let disc = disc();
     for (class, name) in CLASSES.into_iter().zip(NAMES) {
-        // The bin of the ground, -1 where there is none of this class.
+        // The bin of the ground, -1 for columns without this class.
         let mut area = vec![-1i8; SIDE * SIDE];
         for c in 0..Window::COLUMNS {
             let column = grid.column(c / NY, c % NY);
@@ -84,7 +84,7 @@ pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
         let closed = shrink(&around, &disc);
         let (mut holes, mut columns) = (0, 0);
         for c in (0..Window::COLUMNS).filter(|c| closed[padded(*c)]) {
-            // At most one bin above the highest ground around it, something must be there.
+            // A column without any voxel up to one bin above the highest ground around it is a hole.
             let highest = around[padded(c)].max(0) as usize + 1;
             let column = grid.column(c / NY, c % NY);
             columns += 1;

@@ -1,4 +1,4 @@
-//! What is built, seen from above: how much edge it has, in how many parts, how even its roofs are.
+//! Manmade voxels seen from above: length of their edges, number of parts, evenness of roofs.
 
 use super::{ShapeFigures, share};
 use numeric::quantile::median;
@@ -8,14 +8,14 @@ use scene::{Class, VoxelGrid, Window};
 pub const EDGE: &str = "edge_per_manmade_column";
 /// Groups of manmade columns that touch by a side or a corner.
 pub const PARTS: &str = "manmade_parts";
-/// Their median size in columns.
+/// Median size of these groups in columns.
 pub const PART_COLUMNS: &str = "manmade_part_median_columns";
 /// Share of the neighbouring pairs of manmade columns whose highest manmade voxels differ in height.
 pub const ROOF_STEPS: &str = "roof_steps";
 
 const NY: usize = Window::NY;
 
-/// The highest manmade voxel of every column, `[x][y]`; `None` where there is none.
+/// The highest manmade voxel of every column, `[x][y]`; `None` for columns without one.
 pub fn tops(grid: &VoxelGrid) -> Vec<Option<usize>> {
     let top = |column: &[u8]| column.iter().rposition(|l| *l == Class::Manmade.id());
     (0..Window::COLUMNS)

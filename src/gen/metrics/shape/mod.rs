@@ -1,5 +1,5 @@
-//! Shapes of one frame in numbers: outlines, parts and roofs of what is built, holes in the ground, crowns and other
-//! things that rest on nothing. Each figure moves when the fault it is named after is put in by hand.
+//! Shapes of one frame in numbers: outlines, parts and roofs of manmade voxels, holes in the ground, crowns and other
+//! things without support. Each figure changes when the fault it is named after is put in by hand.
 
 mod holes;
 mod manmade;
@@ -10,10 +10,10 @@ use std::collections::BTreeMap;
 
 use scene::VoxelGrid;
 
-/// Figures of a frame by name; one that the frame has no matter for (no wall, no sidewalk) is missing.
+/// Figures of a frame by name. A figure is missing if the frame has nothing to measure it on (no wall, no sidewalk).
 pub type ShapeFigures = BTreeMap<&'static str, f64>;
 
-/// What each figure is, in the order of tables: name, one line.
+/// Description of each figure, in the order of tables: name, one line.
 pub const FIGURES: [(&str, &str); 14] = [
     (
         manmade::EDGE,
@@ -59,7 +59,7 @@ pub fn shape(grid: &VoxelGrid) -> ShapeFigures {
     out
 }
 
-/// Adds a ratio, if there is anything to be a part of.
+/// Adds a ratio, unless the whole is 0.
 fn share(out: &mut ShapeFigures, name: &'static str, part: usize, whole: usize) {
     if whole > 0 {
         out.insert(name, part as f64 / whole as f64);

@@ -1,5 +1,5 @@
-//! How straight walls run: the outlines of manmade parts seen from above, followed side by side, with a line fitted to
-//! every short stretch (its principal axis).
+//! Straightness of walls: the outlines of manmade parts seen from above are followed side by side, and a line is fitted
+//! to every short stretch (its principal axis).
 
 use super::manmade::tops;
 use super::{ShapeFigures, share};
@@ -12,15 +12,15 @@ pub const DEVIATION_M: &str = "wall_deviation_m";
 
 /// Sides before and behind the middle of a stretch; 9 sides are 3.6 m of a wall along an axis.
 const REACH: usize = 4;
-/// RMS distance to the line up to which a stretch counts as straight, columns: a line of any direction, drawn in
-/// columns, stays below it, and a corner of 90 degrees (0.9) far above.
+/// RMS distance to the line up to which a stretch counts as straight, columns. A line of any direction, drawn in
+/// columns, stays below it; a corner of 90 degrees (0.9) is far above.
 const STRAIGHT_COLUMNS: f64 = 0.35;
-/// Outlines around fewer sides are no walls: posts, lamps, signs.
+/// Fewest sides of an outline that counts as a wall; shorter ones are posts, lamps, signs.
 const FEWEST_SIDES: usize = 12;
 
 const NX: usize = Window::NX;
 const NY: usize = Window::NY;
-/// Steps along +x, +y, -x, -y; the next one is a turn to the left.
+/// Steps along +x, +y, -x, -y; the next in the list is a turn to the left.
 const STEP: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
 /// A side of a column as a step between two corners of the column raster, with the part on its left: (corner, direction).
@@ -39,7 +39,7 @@ fn middle(side: Side) -> (f64, f64) {
     )
 }
 
-/// For every side of an outline the one before and behind it, where the outline does not end at the grid.
+/// For every side of an outline, the sides before and behind it, unless the outline ends at the edge of the grid.
 struct Outlines {
     before: Vec<Option<Side>>,
     behind: Vec<Option<Side>>,
@@ -75,7 +75,7 @@ impl Outlines {
             let (dx, dy) = STEP[direction];
             let x = (corner / (NY + 1)) as isize + dx;
             let y = (corner % (NY + 1)) as isize + dy;
-            // To the right first: parts that touch by a corner are one, so that a thin slanting wall is not cut up.
+            // Turns right first: parts that touch by a corner are one, so that a thin slanting wall is not cut up.
             let turns =
                 [direction + 3, direction, direction + 1].map(|d| side(x as usize, y as usize, d % 4));
             if let Some(to) = turns.into_iter().find(|s| present[*s]) {
@@ -90,7 +90,7 @@ impl Outlines {
         }
     }
 
-    /// The sides around one, `REACH` each way; `None` near an end and on the outline of something small.
+    /// A side with `REACH` sides before and behind it; `None` near an end and on the outline of something small.
     fn stretch(&self, middle: Side) -> Option<Vec<Side>> {
         let walk = |links: &[Option<Side>], n: usize| -> Option<Vec<Side>> {
             let mut at = middle;
@@ -103,7 +103,7 @@ impl Outlines {
         };
         let mut out = walk(&self.before, REACH)?;
         let behind = walk(&self.behind, REACH)?;
-        // A closed outline that comes round again too soon.
+        // Leaves out a closed outline that returns to its start too soon.
         let mut at = middle;
         for _ in 1..FEWEST_SIDES {
             match self.behind[at] {
@@ -118,7 +118,7 @@ impl Outlines {
     }
 }
 
-/// RMS distance of points to the line through them that fits best.
+/// RMS distance of points to the line that fits them best.
 fn deviation(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
     let (sx, sy) = points.iter().fold((0.0, 0.0), |s, p| (s.0 + p.0, s.1 + p.1));

@@ -1,10 +1,10 @@
-//! What rests on nothing: crowns without a trunk, and voxels of any class that nothing connects to the ground.
+//! Things without support: crowns without a trunk, and voxels of any class that are not connected to the ground.
 
 use super::{ShapeFigures, share};
 use crate::components::{around, components, flat, place, spread};
 use scene::{Class, VoxelGrid, Window};
 
-/// Groups of vegetation (26 neighbours, [`SMALLEST_CROWN`] voxels or more) none of whose voxels stands on anything else.
+/// Groups of vegetation (26 neighbours, [`SMALLEST_CROWN`] voxels or more) in which no voxel stands on another class.
 pub const CROWNS: &str = "crowns_without_trunk";
 /// Share of all vegetation voxels that are in such groups.
 pub const CROWN_SHARE: &str = "vegetation_without_trunk";
@@ -13,10 +13,10 @@ pub const PARTS: &str = "unsupported_parts";
 /// Voxels of such groups.
 pub const VOXELS: &str = "unsupported_voxels";
 
-/// Voxels from which a group of leaves counts as a crown.
+/// Number of voxels from which a group of leaves counts as a crown.
 const SMALLEST_CROWN: usize = 4;
 
-/// What touches a side of the grid may be held by something outside.
+/// True if the group touches a side of the grid: something outside may then hold it.
 fn at_side(group: &[usize]) -> bool {
     group.iter().any(|at| {
         let [x, y, _] = place(*at);
@@ -28,7 +28,7 @@ pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
     let labels = flat(grid);
     let leaf = Class::Vegetation.id();
     let is_ground = |l: u8| Class::from_id(l).is_some_and(Class::is_ground);
-    // A plant takes the place of the ground's own voxel, in whatever bin the ground lies.
+    // A plant replaces the ground's own voxel, in the bin that the ground lies in.
     let in_ground =
         |at: usize| around(at).any(|near| place(near)[2] == place(at)[2] && is_ground(labels[near]));
     let rests = |at: usize| {

@@ -1,11 +1,11 @@
-//! By which features two sets of scenes differ most, for whoever has to mend the generator.
+//! The features by which two sets of scenes differ most, as a guide to mending the generator.
 
 use serde::Serialize;
 
 use crate::local::Windows;
 use crate::stats::interval;
 
-/// A feature and how far the sets are apart in it.
+/// A feature, and the difference of the sets in it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tell {
     /// Name of the feature.
@@ -18,8 +18,8 @@ pub struct Tell {
     pub sigmas: f64,
 }
 
-/// The `count` features that differ most, the clearest first; each scene counts by the mean of its windows. `names` are of
-/// the first features; those beyond are left out.
+/// The `count` features that differ most, the clearest first. Each scene counts by the mean of its windows. `names`
+/// belong to the first features; features beyond them are left out.
 pub fn tells(x: &[Windows], y: &[Windows], names: &[String], count: usize) -> Vec<Tell> {
     let of = |set: &[Windows], f: usize| {
         let scene = |w: &Windows| w.iter().map(|row| row[f]).sum::<f64>() / w.len() as f64;

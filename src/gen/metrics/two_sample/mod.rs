@@ -1,5 +1,6 @@
-//! Can two sets of scenes be told apart? A classifier learns it on one half of the scenes and is judged on the other
-//! (Lopez-Paz and Oquab 2017, arXiv 1610.06545): .5 is guessing, 1 certainty. Halves are of scenes, never of windows.
+//! Can two sets of scenes be told apart? A classifier learns to on one half of the scenes and is judged on the other
+//! (Lopez-Paz and Oquab 2017, arXiv 1610.06545): .5 is guessing, 1 certainty. Halves are made of scenes, never of
+//! windows.
 
 mod differing_features;
 mod net;
@@ -15,13 +16,13 @@ pub use differing_features::{Tell, tells};
 use net::Net;
 use world::draw::Draw;
 
-/// Random splits into halves; each half is judged once in each.
+/// Number of random splits into halves; each half of a split is judged once.
 const SPLITS: usize = 3;
 
 /// Accuracy of a classifier on scenes that it has not seen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Accuracy {
-    /// Share of right answers; both sets count the same.
+    /// Share of right answers; the two sets count the same.
     pub mean: f64,
     /// Half of its 95 % interval.
     pub ci95: f64,
@@ -34,19 +35,19 @@ impl Accuracy {
     }
 }
 
-/// What came of the test.
+/// Result of the test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TwoSample {
-    /// Of single windows.
+    /// Accuracy on single windows.
     pub window: Accuracy,
-    /// Of whole scenes, by the mean answer for their windows.
+    /// Accuracy on whole scenes, by the mean answer for their windows.
     pub scene: Accuracy,
-    /// Scenes of each set.
+    /// Number of scenes of each set.
     pub scenes: usize,
 }
 
-/// Tells the scenes of `a` from those of `b`; as many of each as the smaller set has, at least four, each with at least
-/// one window.
+/// Tells the scenes of `a` from those of `b`. Takes as many of each as the smaller set has, at least four, each with at
+/// least one window.
 pub fn two_sample(a: &[Windows], b: &[Windows], seed: u64) -> Result<TwoSample, MetricError> {
     let n = a.len().min(b.len());
     for (set, which) in [(a, "x"), (b, "y")] {
@@ -59,7 +60,7 @@ pub fn two_sample(a: &[Windows], b: &[Windows], seed: u64) -> Result<TwoSample, 
         let (found, expected) = (b[0][0].len(), a[0][0].len());
         return Err(MetricError::Width { found, expected });
     }
-    // Accuracies of a pair of scenes, one of each set, which stay in the same half: what an answer is biased by drops out.
+    // Accuracies of a pair of scenes, one of each set, which stay in the same half: a bias of the answers cancels.
     let folds: Vec<(u64, Vec<usize>, Vec<usize>)> = (0..SPLITS as u64)
         .flat_map(|split| {
             let mut order: Vec<usize> = (0..n).collect();
@@ -90,7 +91,7 @@ pub fn two_sample(a: &[Windows], b: &[Windows], seed: u64) -> Result<TwoSample, 
     })
 }
 
-/// Learns on some pairs of scenes; of each of the others the share of right windows and of right scenes.
+/// Learns on some pairs of scenes. Gives the share of right windows and of right scenes for each of the other pairs.
 fn judge(
     a: &[Windows],
     b: &[Windows],
@@ -119,13 +120,14 @@ fn judge(
     each.collect()
 }
 
-/// Mean over pairs of scenes. The two halves judge each other, so what one finds by chance the other tends to find too,
-/// and so do further splits: the interval is that of one half, with Student's t for its few scenes.
+/// Mean over pairs of scenes. The two halves judge each other, so chance findings of one tend to show in the other, and
+/// in further splits too. So the interval is that of one half, with Student's t for its few scenes.
 fn accuracy(pairs: &[f64]) -> Accuracy {
     let half = pairs.len() / 2;
     let (mean, standard_error) = interval(pairs);
     let wider = (pairs.len() as f64 / half as f64).sqrt() * t_quantile_975(half - 1);
-    // Answers that are all right have no spread; one pair that is wrong by half is the least that cannot be excluded.
+    // Answers that are all right have no spread; one pair that is half wrong is the least error that cannot be
+    // excluded.
     let least = 0.5 / pairs.len() as f64;
     Accuracy {
         mean,

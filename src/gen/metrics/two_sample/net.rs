@@ -8,9 +8,9 @@ const HIDDEN: usize = 24;
 const BATCH: usize = 64;
 const EPOCHS: usize = 20;
 const RATE: f64 = 3e-3;
-/// Share of a weight that is taken off per step, times the rate.
+/// Weight decay: share of a weight taken off per step, times the rate.
 const DECAY: f64 = 0.03;
-/// Features are held within so many standard deviations.
+/// Features are clamped to so many standard deviations.
 const LARGEST: f64 = 5.0;
 
 /// A trained classifier.
@@ -81,7 +81,7 @@ impl Net {
         let mut step = 0;
         for epoch in 0..EPOCHS {
             shuffle(&mut order, draw);
-            // The rate falls to 0 along a straight line.
+            // The rate falls linearly to 0.
             let rate = RATE * (1.0 - epoch as f64 / EPOCHS as f64);
             for batch in order.chunks(BATCH) {
                 let mut gradient = vec![0.0; self.weights.len()];
@@ -109,7 +109,7 @@ impl Net {
         }
     }
 
-    /// Above 0 for what looks like the rows labelled true.
+    /// Score of a row: above 0 if it looks like the rows labelled true.
     pub fn score(&self, row: &[f64]) -> f64 {
         self.output(&self.hidden(&self.input(row)))
     }

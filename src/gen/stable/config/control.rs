@@ -11,13 +11,13 @@ use crate::StableError;
 /// Sizes of a ControlNet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlConfig {
-    /// Those of the half UNet.
+    /// Sizes of the half UNet.
     pub unet: UnetConfig,
-    /// Channels of the picture that it is shown: 3, or the planes of SyntheOcc.
+    /// Channels of its input picture: 3, or the planes of SyntheOcc.
     pub conditioning_channels: usize,
-    /// Channels of the convolutions that the picture goes through.
+    /// Channels of the convolutions that embed the picture.
     pub embedding: Vec<usize>,
-    /// Whether the picture's colours are expected from blue to red.
+    /// Whether the picture's colours are expected in the order blue, green, red.
     pub is_bgr: bool,
 }
 
@@ -41,7 +41,7 @@ fn embedding() -> Vec<usize> {
 }
 
 impl ControlConfig {
-    /// Of a file. Errors in one line if a value is not known here.
+    /// Reads a configuration file. Errors in one line if a value is not known here.
     pub fn read(path: &Path) -> Result<Self, StableError> {
         let value: Value = read_json(path, MOST_BYTES)?;
         Self::of(value).map_err(|reason| refused(path, reason))
@@ -83,14 +83,14 @@ impl ControlConfig {
 /// Sizes of the encoder of multi-plane images.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct MpiConfig {
-    /// Planes, and one channel for the first visible class: 257 in SyntheOcc.
+    /// Number of planes, plus one channel for the first visible class: 257 in SyntheOcc.
     pub conditioning_channels: usize,
     /// Channels of the UNet's first level.
     pub embedding_channels: usize,
 }
 
 impl MpiConfig {
-    /// Of a file. Errors in one line if a size is out of range.
+    /// Reads a configuration file. Errors in one line if a size is out of range.
     pub fn read(path: &Path) -> Result<Self, StableError> {
         read_config(path, |c: &Self| {
             check_range("conditioning_channels", c.conditioning_channels, 1..=4096)?;

@@ -1,5 +1,5 @@
-//! The `config.json` of each part, as typed values. What changes a computation and is not known here is refused in one line; what
-//! does not matter for drawing is passed over.
+//! The `config.json` of each part, as typed values. A value that changes a computation and is not known here is refused
+//! in one line; values that do not matter for drawing are ignored.
 
 mod control;
 mod scheduler;
@@ -22,21 +22,21 @@ pub use text::{Activation, TextConfig, TokenizerConfig};
 pub use unet::{Block, Connector, Heard, UnetConfig};
 pub use vae::VaeConfig;
 
-/// Most bytes of a configuration.
+/// Largest size of a configuration, bytes.
 const MOST_BYTES: u64 = 1 << 20;
 
 /// One number for all levels, or one for each.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "a whole number, or a list of them")]
 pub enum Each {
-    /// For all.
+    /// One number for all levels.
     All(usize),
-    /// For each level, from the finest to the coarsest.
+    /// One number for each level, from the finest to the coarsest.
     Of(Vec<usize>),
 }
 
 impl Each {
-    /// For each of so many levels; `None` if there is another number of them.
+    /// The numbers of so many levels; `None` if the list has another length.
     pub fn of(&self, levels: usize) -> Option<Vec<usize>> {
         match self {
             Self::All(n) => Some(vec![*n; levels]),
@@ -46,13 +46,14 @@ impl Each {
     }
 }
 
-/// A JSON file as the wanted type. Errors in one line if it cannot be read, has more than `most` bytes, or says something else.
+/// Reads a JSON file as the wanted type. Errors in one line if it cannot be read, has more than `most` bytes, or has
+/// other content.
 pub(crate) fn read_json<T: DeserializeOwned>(path: &Path, most: u64) -> Result<T, StableError> {
     let bytes = read_bounded(path, most)?;
     serde_json::from_slice(&bytes).map_err(|e| refused(path, e.to_string()))
 }
 
-/// The bytes of a regular file of at most `most` bytes.
+/// Reads a regular file of at most `most` bytes.
 pub(crate) fn read_bounded(path: &Path, most: u64) -> Result<Vec<u8>, StableError> {
     let unread = |source| StableError::Read {
         path: path.to_owned(),
@@ -73,7 +74,7 @@ pub(crate) fn read_bounded(path: &Path, most: u64) -> Result<Vec<u8>, StableErro
     }
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(unread)?;
-    // It may grow while it is read.
+    // The file may grow while it is read.
     file.take(most + 1).read_to_end(&mut bytes).map_err(unread)?;
     if bytes.len() as u64 > most {
         return Err(refused(
@@ -84,7 +85,7 @@ pub(crate) fn read_bounded(path: &Path, most: u64) -> Result<Vec<u8>, StableErro
     Ok(bytes)
 }
 
-/// The configuration of a file: read, then checked by its own `check`.
+/// Reads the configuration of a file and checks it by `check`.
 fn read_config<T: DeserializeOwned>(
     path: &Path,
     check: impl FnOnce(&T) -> Result<(), String>,
@@ -95,7 +96,7 @@ fn read_config<T: DeserializeOwned>(
     Ok(config)
 }
 
-/// JSON as Python writes it, in which numbers may be `Infinity`, `-Infinity` and `NaN`: those become `null`.
+/// JSON text with the numbers `Infinity`, `-Infinity` and `NaN`, which Python writes, replaced by `null`.
 fn plain_numbers(text: &[u8]) -> Vec<u8> {
     let mut out = Vec::with_capacity(text.len());
     let (mut rest, mut quoted) = (text, false);

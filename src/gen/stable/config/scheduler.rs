@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use super::{check_plain, check_range, read_config};
 use crate::StableError;
 
-/// How a prediction becomes the next state. All are deterministic.
+/// Method that computes the next state from a prediction. All are deterministic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize)]
 pub enum SchedulerKind {
     /// First order.
@@ -20,7 +20,7 @@ pub enum SchedulerKind {
     /// DPM-Solver++ of second order.
     #[serde(rename = "DPMSolverMultistepScheduler")]
     DpmPp,
-    /// Euler steps in noise per signal: DDIM with steps of its own.
+    /// Euler steps in noise per signal: DDIM with timesteps of its own.
     #[serde(rename = "EulerDiscreteScheduler")]
     Euler,
     /// UniPC of second order.
@@ -29,7 +29,7 @@ pub enum SchedulerKind {
 }
 
 impl SchedulerKind {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Self; 5] = [Self::Ddim, Self::Pndm, Self::DpmPp, Self::Euler, Self::UniPc];
 
     /// Name for users.
@@ -44,7 +44,7 @@ impl SchedulerKind {
     }
 }
 
-/// How the variances of the training steps were chosen.
+/// Rule by which the variances of the training steps were chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BetaSchedule {
@@ -57,7 +57,7 @@ pub enum BetaSchedule {
     Cosine,
 }
 
-/// What the UNet says.
+/// Quantity that the UNet predicts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum Predicts {
     /// The noise.
@@ -69,7 +69,7 @@ pub enum Predicts {
     V,
 }
 
-/// Where the sampling steps lie among the training steps.
+/// Positions of the sampling steps among the training steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Steps {
@@ -77,7 +77,7 @@ pub enum Steps {
     Leading,
     /// From the noisiest step back.
     Trailing,
-    /// Evenly between both.
+    /// Evenly spaced between the two ends.
     Linspace,
 }
 
@@ -99,16 +99,16 @@ pub struct SchedulerConfig {
     /// The variances between.
     #[serde(default = "linear")]
     pub beta_schedule: BetaSchedule,
-    /// What is added to the steps of [`Steps::Leading`].
+    /// Offset added to the steps of [`Steps::Leading`].
     #[serde(default)]
     pub steps_offset: usize,
-    /// Whether the step behind the last is clean data, not the first training step. DDIM and PNDM only.
+    /// Whether the level after the last step is clean data, not the first training step. DDIM and PNDM only.
     #[serde(default)]
     pub set_alpha_to_one: Option<bool>,
-    /// Where the steps lie; without it the method's own.
+    /// Positions of the steps; `None` takes the method's own.
     #[serde(default)]
     pub timestep_spacing: Option<Steps>,
-    /// What the UNet says.
+    /// Quantity that the UNet predicts.
     #[serde(default)]
     pub prediction_type: Predicts,
     /// Whether the noisiest step is pure noise (Lin et al. 2023).
@@ -131,8 +131,8 @@ fn linear() -> BetaSchedule {
     BetaSchedule::Linear
 }
 
-/// Fields that change the method, and the values that are known here. `clip_sample` is passed over, as pipelines of Stable Diffusion
-/// do: latents are not bounded by 1.
+/// Fields that change the method, and the values that are known here. `clip_sample` is ignored, as in pipelines of
+/// Stable Diffusion: latents are not bounded by 1.
 const PLAIN: [(&str, &[&str]); 13] = [
     ("algorithm_type", &["\"dpmsolver++\""]),
     ("final_sigmas_type", &["\"zero\""]),
@@ -150,7 +150,7 @@ const PLAIN: [(&str, &[&str]); 13] = [
 ];
 
 impl SchedulerConfig {
-    /// Of a file. Errors in one line if a value is not known here.
+    /// Reads a configuration file. Errors in one line if a value is not known here.
     pub fn read(path: &Path) -> Result<Self, StableError> {
         read_config(path, Self::check)
     }

@@ -1,4 +1,4 @@
-//! `text_encoder/config.json`, and what is needed of the tokenizer's.
+//! `text_encoder/config.json`, and the needed part of the tokenizer's configuration.
 
 use std::path::Path;
 
@@ -21,17 +21,18 @@ pub enum Activation {
 /// Sizes of the text encoder.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct TextConfig {
-    /// Words it knows.
+    /// Size of the vocabulary.
     pub vocab_size: usize,
     /// Width of a token.
     pub hidden_size: usize,
     /// Width inside its multilayer perceptrons.
     pub intermediate_size: usize,
-    /// Layers. Files of 2.1 have one less than the network they were cut from, so the last of theirs is the one to take.
+    /// Layers. Files of 2.1 have one less than the network they were cut from, so the last layer of the file is the one
+    /// to take.
     pub num_hidden_layers: usize,
     /// Heads.
     pub num_attention_heads: usize,
-    /// Tokens of a text.
+    /// Number of tokens of a text.
     #[serde(default = "tokens")]
     pub max_position_embeddings: usize,
     /// Epsilon of its norms.
@@ -53,7 +54,7 @@ fn quick() -> Activation {
 }
 
 impl TextConfig {
-    /// Of a file. Errors in one line if a value is not known here.
+    /// Reads a configuration file. Errors in one line if a value is not known here.
     pub fn read(path: &Path) -> Result<Self, StableError> {
         read_config(path, |c: &Self| {
             check_range("vocab_size", c.vocab_size, 2..=1_000_000)?;
@@ -75,15 +76,16 @@ impl TextConfig {
     }
 }
 
-/// What a folder says of its tokenizer.
+/// Settings of the tokenizer in a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TokenizerConfig {
-    /// The token that fills up short texts.
+    /// The token that pads short texts.
     pub pad: Option<String>,
 }
 
 impl TokenizerConfig {
-    /// Of `tokenizer_config.json` and `special_tokens_map.json` in a folder, either of which may be absent. Errors if one cannot be read.
+    /// Reads `tokenizer_config.json` and `special_tokens_map.json` in a folder, either of which may be absent. Errors
+    /// if one cannot be read.
     pub fn read(folder: &Path) -> Result<Self, StableError> {
         for name in ["tokenizer_config.json", "special_tokens_map.json"] {
             let path = folder.join(name);

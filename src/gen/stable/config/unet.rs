@@ -9,10 +9,10 @@ use serde_json::{Map, Value};
 use super::{Each, check_plain, check_range, check_widths, read_config};
 use crate::StableError;
 
-/// Whether a level listens to the text.
+/// Kind of a level: with or without attention to the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Block {
-    /// With transformer blocks.
+    /// Convolutions with transformer blocks.
     #[serde(rename = "CrossAttnDownBlock2D", alias = "CrossAttnUpBlock2D")]
     Listens,
     /// Convolutions alone.
@@ -20,7 +20,7 @@ pub enum Block {
     Plain,
 }
 
-/// How what several neighbours say is joined (`neighboring_attn_type`).
+/// Way to join the attention to several neighbours (`neighboring_attn_type`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Heard {
@@ -31,7 +31,7 @@ pub enum Heard {
     Concat,
 }
 
-/// What stands between that attention and the rest (`zero_module_type`); zero before training.
+/// Layer between that attention and the block it adds to (`zero_module_type`); zero before training.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub enum Connector {
     /// A linear layer.
@@ -41,7 +41,7 @@ pub enum Connector {
     /// A factor tanh(alpha) for each channel.
     #[serde(rename = "gated")]
     Gated,
-    /// Nothing.
+    /// No layer.
     #[serde(rename = "none")]
     None,
 }
@@ -55,7 +55,7 @@ pub struct UnetConfig {
     /// Channels of its output.
     #[serde(default = "four")]
     pub out_channels: usize,
-    /// Whether the cosines of a timestep stand before its sines.
+    /// Whether the cosines of a timestep come before its sines.
     #[serde(default = "yes")]
     pub flip_sin_to_cos: bool,
     /// Shift of the number of frequencies.
@@ -83,25 +83,25 @@ pub struct UnetConfig {
     /// Transformer blocks in each place.
     #[serde(default = "one")]
     pub transformer_layers_per_block: Each,
-    /// In spite of its name the number of heads.
+    /// Number of heads, in spite of its name.
     #[serde(default = "heads")]
     pub attention_head_dim: Each,
-    /// The number of heads, where it is given.
+    /// Number of heads, if it is given.
     #[serde(default)]
     pub num_attention_heads: Option<Each>,
-    /// Whether tokens enter and leave transformers through linear layers, not through 1x1 convolutions.
+    /// Whether tokens enter and leave transformers through linear layers instead of 1x1 convolutions.
     #[serde(default)]
     pub use_linear_projection: bool,
-    /// SyntheOcc: neighbours of each view. Its presence puts attention to them into every transformer block.
+    /// SyntheOcc: neighbours of each view. If present, every transformer block has attention to them.
     #[serde(default)]
     pub neighboring_view_pair: Option<BTreeMap<String, Vec<usize>>>,
-    /// SyntheOcc: how they are joined.
+    /// SyntheOcc: way to join them.
     #[serde(default)]
     pub neighboring_attn_type: Heard,
-    /// SyntheOcc: what stands behind.
+    /// SyntheOcc: layer behind that attention.
     #[serde(default)]
     pub zero_module_type: Connector,
-    /// Of this program: attention to the frames before and after; `"add"` is the only kind.
+    /// Attention to the frames before and after, an addition of this program; `"add"` is the only kind.
     #[serde(default)]
     pub cross_frame_attn_type: Option<Heard>,
     #[serde(flatten)]
@@ -161,7 +161,7 @@ const PLAIN: [(&str, &[&str]); 23] = [
 ];
 
 impl UnetConfig {
-    /// Of a file. Errors in one line if a value is not known here.
+    /// Reads a configuration file. Errors in one line if a value is not known here.
     pub fn read(path: &Path) -> Result<Self, StableError> {
         read_config(path, |c: &Self| {
             c.check()?;
@@ -173,7 +173,7 @@ impl UnetConfig {
         })
     }
 
-    /// Fails at what no network of this room has.
+    /// Fails at values that no network of this crate has.
     pub(super) fn check(&self) -> Result<(), String> {
         check_plain(&self.rest, &PLAIN)?;
         let levels = self.block_out_channels.len();
@@ -218,7 +218,7 @@ impl UnetConfig {
         self.neighbours().map(|_| ())
     }
 
-    /// Heads of each level.
+    /// Number of heads of each level.
     pub(crate) fn heads(&self) -> Option<Vec<usize>> {
         let heads = self
             .num_attention_heads
@@ -227,13 +227,13 @@ impl UnetConfig {
         heads.of(self.block_out_channels.len())
     }
 
-    /// Transformer blocks in each place of each level.
+    /// Number of transformer blocks in each place of each level.
     pub(crate) fn depths(&self) -> Option<Vec<usize>> {
         self.transformer_layers_per_block
             .of(self.block_out_channels.len())
     }
 
-    /// The neighbours of each view; none if the network draws views one by one.
+    /// The neighbours of each view; empty if the network draws views one by one.
     pub(crate) fn neighbours(&self) -> Result<Vec<Vec<usize>>, String> {
         let Some(pairs) = &self.neighboring_view_pair else {
             return Ok(Vec::new());

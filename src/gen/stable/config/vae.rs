@@ -13,7 +13,7 @@ use crate::StableError;
 pub struct VaeConfig {
     /// Channels of each level, from the finest to the coarsest.
     pub block_out_channels: Vec<usize>,
-    /// Residual blocks of each level on the way down; on the way up one more.
+    /// Residual blocks of each level on the way down; the way up has one more.
     #[serde(default = "one")]
     pub layers_per_block: usize,
     /// Channels of a latent.
@@ -22,7 +22,7 @@ pub struct VaeConfig {
     /// Groups of the norms.
     #[serde(default = "groups")]
     pub norm_num_groups: usize,
-    /// What latents are multiplied by for the UNet.
+    /// Factor of latents for the UNet.
     #[serde(default = "scale")]
     pub scaling_factor: f64,
     #[serde(flatten)]
@@ -56,7 +56,7 @@ const PLAIN: [(&str, &[&str]); 9] = [
 ];
 
 impl VaeConfig {
-    /// Of a file. Errors in one line if a value is not known here.
+    /// Reads a configuration file. Errors in one line if a value is not known here.
     pub fn read(path: &Path) -> Result<Self, StableError> {
         read_config(path, |c: &Self| {
             check_plain(&c.rest, &PLAIN)?;

@@ -6,10 +6,11 @@ use super::{Linear, softmax};
 use crate::StableError;
 use crate::weights::Names;
 
-/// Most scores that are held at once: 256 MiB. Larger attentions go through their queries part by part.
+/// Most scores that are held at once: 256 MiB. Larger attentions are computed for a part of their queries at a time.
 const MOST_SCORES: usize = 1 << 26;
 
-/// Queries, keys, values and the layer behind, with names as in a UNet: `to_q`, `to_k`, `to_v`, `to_out.0`.
+/// The layers of an attention: query, key, value and output, with names as in a UNet: `to_q`, `to_k`, `to_v`,
+/// `to_out.0`.
 #[derive(Clone, Debug)]
 pub(crate) struct Attention {
     query: Linear,
@@ -20,7 +21,8 @@ pub(crate) struct Attention {
 }
 
 impl Attention {
-    /// Of a UNet: tokens of `width` that look at tokens of `context`; only the layer behind has a bias. `heads` divides `width`.
+    /// Loads an attention of a UNet: tokens of `width` attend to tokens of `context`; only the output layer has a bias.
+    /// `heads` divides `width`.
     pub fn load(
         names: &Names<'_>,
         width: usize,
@@ -36,7 +38,8 @@ impl Attention {
         })
     }
 
-    /// With biases, and the first of several names that the file has for query, key, value and the layer behind.
+    /// Loads an attention with biases. Each of query, key, value and output takes the first of its names that the file
+    /// has.
     pub fn load_named(
         names: &Names<'_>,
         [query, key, value, out]: [&[&str]; 4],
@@ -53,8 +56,8 @@ impl Attention {
         })
     }
 
-    /// Tokens `x` `[batch, tokens, width]` look at `context` `[batch, others, ..]`. `mask` `[tokens, others]` is added to the
-    /// scores.
+    /// Attention of tokens `x` `[batch, tokens, width]` to `context` `[batch, others, ..]`. `mask` `[tokens, others]`
+    /// is added to the scores.
     pub fn forward(&self, x: &Tensor, context: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
         let (batch, tokens, width) = x.dims3()?;
         let each = width / self.heads;
@@ -63,7 +66,7 @@ impl Attention {
             let x = x.reshape((batch, tokens, self.heads, each))?.transpose(1, 2)?;
             x.contiguous()?.reshape((batch * self.heads, tokens, each))
         };
-        // The scale goes to the queries, so that products stay small.
+        // The scale is applied to the queries, so that products stay small.
         let scale = 1.0 / (each as f64).sqrt();
         let queries = by_head(&self.query.forward(x)?.affine(scale, 0.0)?)?;
         let keys = by_head(&self.key.forward(context)?)?.t()?.contiguous()?;
@@ -89,7 +92,8 @@ impl Attention {
     }
 }
 
-/// What lets each of `tokens` look at itself and those before it: 0 there, a large negative number elsewhere.
+/// Mask that lets each of `tokens` attend to itself and those before it: 0 for these, a large negative number for the
+/// others.
 pub(crate) fn causal_mask(tokens: usize, device: &Device) -> Result<Tensor> {
     let all = (0..tokens).flat_map(|i| (0..tokens).map(move |j| if j > i { -1e30f32 } else { 0.0 }));
     Tensor::from_vec(all.collect::<Vec<_>>(), (tokens, tokens), device)

@@ -5,7 +5,7 @@ use candle_core::{Result, Tensor};
 use crate::StableError;
 use crate::weights::Names;
 
-/// Most numbers of the matrix that a band of a map is unfolded to: 16 MiB, which a processor's cache nearly holds.
+/// Most numbers of the matrix that a band of a map is unfolded to: 16 MiB, which nearly fits a processor's cache.
 const BAND: usize = 1 << 22;
 
 /// A convolution with a square kernel.
@@ -18,12 +18,12 @@ pub(crate) struct Conv {
 }
 
 impl Conv {
-    /// 3x3, which keeps the size of the map.
+    /// Loads a 3x3 convolution that keeps the size of the map.
     pub fn load(names: &Names<'_>, inputs: usize, outputs: usize) -> std::result::Result<Self, StableError> {
         Self::load_with(names, [inputs, outputs], 3, 1, 1)
     }
 
-    /// 1x1.
+    /// Loads a 1x1 convolution.
     pub fn load_point(
         names: &Names<'_>,
         inputs: usize,
@@ -32,7 +32,7 @@ impl Conv {
         Self::load_with(names, [inputs, outputs], 1, 1, 0)
     }
 
-    /// With a kernel, stride and padding of its own.
+    /// Loads a convolution with the given kernel, stride and padding.
     pub fn load_with(
         names: &Names<'_>,
         [inputs, outputs]: [usize; 2],
@@ -48,7 +48,7 @@ impl Conv {
         })
     }
 
-    /// Of a map.
+    /// Applies the convolution to a map.
     pub fn forward(&self, x: &Tensor) -> Result<Tensor> {
         let y = match (x.device().is_cpu(), self.stride) {
             (true, 1) => by_products(x, &self.weight, self.padding, BAND)?,
@@ -60,8 +60,8 @@ impl Conv {
     }
 }
 
-/// A convolution of stride 1 as matrix products over bands of rows, which on the processor is 1.1 to 1.7 times as fast as candle's own.
-/// `most` numbers of a band are unfolded at once; the result depends on it by rounding alone.
+/// A convolution of stride 1 as matrix products over bands of rows, which on the processor is 1.1 to 1.7 times as fast
+/// as candle's own. `most` numbers of a band are unfolded at once; the result depends on it by rounding alone.
 pub(crate) fn by_products(x: &Tensor, weight: &Tensor, padding: usize, most: usize) -> Result<Tensor> {
     let (outputs, inputs, kernel, _) = weight.dims4()?;
     let padded = match padding {

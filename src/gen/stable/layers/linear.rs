@@ -13,7 +13,7 @@ pub(crate) struct Linear {
 }
 
 impl Linear {
-    /// `weight` of `[outputs, inputs]` and `bias` below a prefix.
+    /// Loads `weight` of `[outputs, inputs]` and `bias` below a prefix.
     pub fn load(names: &Names<'_>, inputs: usize, outputs: usize) -> std::result::Result<Self, StableError> {
         Ok(Self {
             bias: Some(names.tensor("bias", &[outputs])?),
@@ -21,7 +21,7 @@ impl Linear {
         })
     }
 
-    /// `weight` alone.
+    /// Loads `weight` alone.
     pub fn load_without_bias(
         names: &Names<'_>,
         inputs: usize,
@@ -33,7 +33,7 @@ impl Linear {
         })
     }
 
-    /// Of `[.., inputs]`, in two or three dimensions.
+    /// Applies the layer to `[.., inputs]`, in two or three dimensions.
     pub fn forward(&self, x: &Tensor) -> Result<Tensor> {
         let mut dims = x.dims().to_vec();
         let inputs = dims.pop().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! The layers that all networks of this room are made of. Maps are `[batch, channels, rows, columns]`, tokens
+//! The layers of all networks of this crate. Maps are `[batch, channels, rows, columns]`, tokens
 //! `[batch, tokens, width]`.
 
 mod attention;
@@ -21,7 +21,7 @@ pub(crate) fn quick_gelu(x: &Tensor) -> Result<Tensor> {
     x * x.affine(-1.702, 0.0)?.exp()?.affine(1.0, 1.0)?.recip()?
 }
 
-/// Softmax over the last dimension, in 32 bits: the largest is subtracted first, so any finite scores do.
+/// Softmax over the last dimension, in 32 bits. The largest score is subtracted first, so any finite scores work.
 pub(crate) fn softmax(scores: &Tensor) -> Result<Tensor> {
     let last = candle_core::D::Minus1;
     let scores = scores.to_dtype(DType::F32)?;

@@ -1,18 +1,18 @@
-//! Norms, in 32 bits whatever the network computes in.
+//! Norms, in 32 bits whatever type the network computes in.
 
 use candle_core::{D, DType, Result, Tensor};
 
 use crate::StableError;
 use crate::weights::Names;
 
-/// To mean 0 and variance 1 over the last dimension; two passes, so a large mean does no harm.
+/// Normalises to mean 0 and variance 1 over the last dimension. Takes two passes, so a large mean does no harm.
 fn unit(x: &Tensor, epsilon: f64) -> Result<Tensor> {
     let centered = x.broadcast_sub(&x.mean_keepdim(D::Minus1)?)?;
     let variance = centered.sqr()?.mean_keepdim(D::Minus1)?;
     centered.broadcast_div(&(variance + epsilon)?.sqrt()?)
 }
 
-/// Over groups of channels of a map.
+/// Norm over groups of channels of a map.
 #[derive(Clone, Debug)]
 pub(crate) struct GroupNorm {
     scale: Tensor, // [1, channels, 1]
@@ -22,7 +22,7 @@ pub(crate) struct GroupNorm {
 }
 
 impl GroupNorm {
-    /// `weight` and `bias` below a prefix. The channels are divisible by the groups.
+    /// Loads `weight` and `bias` below a prefix. The channels are divisible by the groups.
     pub fn load(
         names: &Names<'_>,
         channels: usize,
@@ -44,7 +44,7 @@ impl GroupNorm {
         })
     }
 
-    /// Of a map, or of `[batch, channels, places]`.
+    /// Normalises a map, or `[batch, channels, places]`.
     pub fn forward(&self, x: &Tensor) -> Result<Tensor> {
         let (dims, dtype) = (x.dims().to_vec(), x.dtype());
         let (batch, channels) = (dims[0], dims[1]);
@@ -57,7 +57,7 @@ impl GroupNorm {
     }
 }
 
-/// Over the channels of each token.
+/// Norm over the channels of each token.
 #[derive(Clone, Debug)]
 pub(crate) struct LayerNorm {
     scale: Tensor, // [width]
@@ -66,7 +66,7 @@ pub(crate) struct LayerNorm {
 }
 
 impl LayerNorm {
-    /// `weight` and `bias` below a prefix.
+    /// Loads `weight` and `bias` below a prefix.
     pub fn load(names: &Names<'_>, width: usize, epsilon: f64) -> std::result::Result<Self, StableError> {
         Ok(Self {
             scale: names.tensor("weight", &[width])?.to_dtype(DType::F32)?,
@@ -75,7 +75,7 @@ impl LayerNorm {
         })
     }
 
-    /// Of tokens.
+    /// Normalises tokens.
     pub fn forward(&self, x: &Tensor) -> Result<Tensor> {
         let y = unit(&x.to_dtype(DType::F32)?, self.epsilon)?;
         let y = y.broadcast_mul(&self.scale)?.broadcast_add(&self.shift)?;

@@ -6,7 +6,8 @@ use super::{Conv, GroupNorm, Linear};
 use crate::StableError;
 use crate::weights::Names;
 
-/// x + convolution(silu(norm(convolution(silu(norm(x))) + time))), with x through a 1x1 convolution where the channels change.
+/// x + convolution(silu(norm(convolution(silu(norm(x))) + time))); x passes through a 1x1 convolution if the channels
+/// change.
 #[derive(Clone, Debug)]
 pub(crate) struct Residual {
     norms: [GroupNorm; 2],
@@ -16,7 +17,7 @@ pub(crate) struct Residual {
 }
 
 impl Residual {
-    /// `time` is the width of the timestep's embedding, if the block hears of it.
+    /// Loads a block. `time` is the width of the timestep's embedding, if the block takes it.
     pub fn load(
         names: &Names<'_>,
         [inputs, outputs]: [usize; 2],
@@ -41,7 +42,7 @@ impl Residual {
         })
     }
 
-    /// Of a map, and of the timestep's embedding `[1, width]`.
+    /// Applies the block to a map, with the timestep's embedding `[1, width]`.
     pub fn forward(&self, x: &Tensor, time: Option<&Tensor>) -> Result<Tensor> {
         let mut y = self.convolutions[0].forward(&self.norms[0].forward(x)?.silu()?)?;
         if let (Some(layer), Some(time)) = (&self.time, time) {

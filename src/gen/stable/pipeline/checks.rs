@@ -1,4 +1,4 @@
-//! Whether the parts of a model fit each other, and a request the model.
+//! Checks that the parts of a model fit each other, and that a request fits the model.
 
 use super::{Pipeline, Request};
 use crate::config::{ControlConfig, MpiConfig, TextConfig, UnetConfig, VaeConfig};
@@ -33,7 +33,7 @@ pub(super) fn fit_text(words: &Words, text: &TextConfig, unet: &UnetConfig) -> R
 }
 
 pub(super) fn fit_latents(vae: &VaeConfig, unet: &UnetConfig) -> Result<(), StableError> {
-    // Nine channels would be a network that is trained to fill masks.
+    // Nine channels would be a network that is trained for inpainting.
     same(
         "in_channels of the UNet",
         unet.in_channels,

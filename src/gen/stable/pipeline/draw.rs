@@ -1,4 +1,4 @@
-//! From a request to pictures.
+//! Draws the pictures of a request.
 
 use std::ops::ControlFlow;
 
@@ -13,11 +13,11 @@ use crate::sampling::{Plan, Solver};
 use crate::unet::Extra;
 use crate::{StableError, check_length};
 
-/// What a caller sees after each network call.
+/// State of a run that the caller gets after each network call.
 pub struct Step<'a> {
-    /// Calls done, from 1.
+    /// Number of calls done, from 1.
     pub step: usize,
-    /// All calls; PNDM does one more than it has steps.
+    /// Number of all calls; PNDM does one more than it has steps.
     pub steps: usize,
     /// Size of the latents.
     pub size: LatentSize,
@@ -29,7 +29,7 @@ pub struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// The pictures as they look by now, a pixel a cell, without the decoder. `None` for a run that starts from no picture.
+    /// The pictures at this stage, one pixel a cell, without the decoder. `None` for a run that starts from no picture.
     pub fn preview(&self) -> Option<Pictures> {
         self.colours?.of(&self.clean_estimate(), self.size).ok()
     }
@@ -42,26 +42,26 @@ impl Step<'_> {
     }
 }
 
-/// What a run gives.
+/// Result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
     /// The pictures: all views of the first frame, then of the next.
     pub pictures: Pictures,
     /// Their latents, before they were decoded.
     pub latents: Vec<f32>,
-    /// The noise that the run started from, for the frame that comes next.
+    /// The noise that the run started from, for the next frame.
     pub noise: Vec<f32>,
-    /// Calls of the UNet, two for each step with guidance.
+    /// Number of calls of the UNet, two for each step with guidance.
     pub calls: usize,
 }
 
-/// A ControlNet with what it made of its picture.
+/// A ControlNet with the embedding of its picture.
 struct Shown<'a> {
     control: Control<'a>,
     embedded: Tensor,
 }
 
-/// All that is told and shown during a run, on the machine.
+/// Text and picture conditions of a run, on the machine.
 struct Conditions<'a> {
     told: Tensor,
     negative: Tensor,
@@ -70,8 +70,9 @@ struct Conditions<'a> {
 }
 
 impl Pipeline {
-    /// Draws the pictures of a request. `on_step` runs after each network call and may stop the run, which then ends with
-    /// [`StableError::Stopped`]. Errors also if sizes do not fit, a number is not finite, or there are no steps or too many.
+    /// Draws the pictures of a request. `on_step` runs after each network call and may stop the run, which then ends
+    /// with [`StableError::Stopped`]. Also errors if sizes do not fit, a number is not finite, or the number of steps
+    /// is 0 or too large.
     pub fn draw(
         &self,
         request: &Request<'_>,
@@ -113,7 +114,7 @@ impl Pipeline {
             let predicted = self.guided(request, &conditions, &x, call.at.t, [k, steps])?;
             let mut next = solver.advance(k, &x, &predicted)?;
             if let (Some(clean), Some(anew)) = (&clean, &anew) {
-                // What stays is at every level what it would be if its noise were removed without a mistake.
+                // Kept cells hold, at every level, the state that exact denoising would give them.
                 let kept = noise::noised(clean, &noise, &call.to);
                 let pairs = next.iter_mut().zip(kept).zip(anew);
                 pairs
@@ -149,21 +150,21 @@ impl Pipeline {
         })
     }
 
-    /// Latent numbers that are drawn anew: those of cells with a pixel of the mask.
+    /// Flags of the latent numbers that are drawn anew: those of cells with a pixel of the mask.
     fn cells(&self, mask: &[bool], [count, channels, rows, columns]: LatentSize) -> Vec<bool> {
         let cell = self.cell();
         let width = columns * cell;
         let mut anew = vec![false; count * rows * columns];
         for (i, _) in mask.iter().enumerate().filter(|(_, m)| **m) {
             let (row, column) = (i / width, i % width);
-            // Rows of all pictures lie below each other.
+            // Rows of all pictures follow each other.
             anew[row / cell * columns + column / cell] = true;
         }
         let of_picture = |cells: &[bool]| vec![cells; channels].concat();
         anew.chunks_exact(rows * columns).flat_map(of_picture).collect()
     }
 
-    /// What is told and shown, through the networks that need it only once.
+    /// Conditions of a request, after the networks that run only once.
     fn conditions<'a>(&self, request: &Request<'a>, size: LatentSize) -> Result<Conditions<'a>, StableError> {
         let [count, _, rows, columns] = size;
         let on = |numbers: &[f32], shape: [usize; 4]| -> Result<Tensor, StableError> {
@@ -207,13 +208,13 @@ impl Pipeline {
         })
     }
 
-    /// What the UNet listens to for a text, `[1, tokens, width]`.
+    /// The encoded text for the UNet, `[1, tokens, width]`.
     fn told(&self, text: &str) -> Result<Tensor, StableError> {
         let length = self.text.config().max_position_embeddings;
         self.text.encode(&self.words.ids(text, length)?)
     }
 
-    /// The prediction for a state, guided.
+    /// The prediction for a state, with guidance.
     fn guided(
         &self,
         request: &Request<'_>,
@@ -241,7 +242,7 @@ impl Pipeline {
             return Ok(told);
         }
         let negative = said(&conditions.negative)?;
-        // The spread that rescaling restores is that of each picture.
+        // Rescaling restores the spread of each picture by itself.
         let each = (x.len() / size[0]).max(1);
         let pairs = told.chunks(each).zip(negative.chunks(each));
         Ok(pairs
@@ -249,7 +250,7 @@ impl Pipeline {
             .collect())
     }
 
-    /// What conditions add to the UNet's maps in this step.
+    /// Values that conditions add to the UNet's maps in this step.
     fn extra(
         &self,
         conditions: &Conditions<'_>,

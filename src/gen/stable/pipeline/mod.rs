@@ -1,4 +1,4 @@
-//! The whole way: what is told and shown to pictures.
+//! The whole pipeline: from texts and conditions to pictures.
 
 mod checks;
 mod draw;
@@ -36,17 +36,17 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
-    /// What the folder says of its scheduler.
+    /// Configuration of the folder's scheduler.
     pub fn scheduler(&self) -> &SchedulerConfig {
         &self.scheduler
     }
 
-    /// Where it computes.
+    /// Machine that it computes on.
     pub fn machine(&self) -> &Machine {
         &self.machine
     }
 
-    /// The UNet: what it draws together (views), and its sizes.
+    /// The UNet, with its sizes and the views that it draws together.
     pub fn unet(&self) -> &Unet {
         &self.unet
     }
@@ -56,20 +56,20 @@ impl Pipeline {
         &self.controls
     }
 
-    /// Name of the folder of a ControlNet; empty if there is no such one.
+    /// Name of the folder of a ControlNet; empty if there is no ControlNet of that index.
     pub fn control_name(&self, net: usize) -> &str {
         self.control_names.get(net).map_or("", String::as_str)
     }
 
-    /// Channels of the planes that [`Request::planes`] takes; `None` if nothing here takes planes.
+    /// Channels of the planes that [`Request::planes`] takes; `None` if no network here takes planes.
     pub fn plane_channels(&self) -> Option<usize> {
         let shown = || self.controls.iter().find(|c| c.takes_planes());
         let encoder = self.mpi.as_ref().map(MpiEncoder::channels);
         encoder.or_else(|| shown().map(|c| c.config().conditioning_channels))
     }
 
-    /// Network calls of a run of so many steps, of which the last `strength` (0 to 1) are done, by `scheduler` or that of the
-    /// folder. Errors if there are no steps or more than the schedule has.
+    /// Network calls of a run of so many steps by `scheduler` or that of the folder, if the last `strength` (0 to 1) of
+    /// the steps are done. Errors if there are no steps or more than the schedule has.
     pub fn calls(
         &self,
         scheduler: Option<SchedulerKind>,
@@ -86,7 +86,7 @@ impl Pipeline {
         self.vae.config().cell()
     }
 
-    /// Size of the latents of `count` pictures of so many pixels, which are whole cells.
+    /// Size of the latents of `count` pictures of so many pixels. Sides must be whole cells.
     pub fn latent_size(&self, count: usize, [height, width]: [usize; 2]) -> LatentSize {
         let (cell, channels) = (self.cell(), self.vae.config().latent_channels);
         [count, channels, height / cell, width / cell]
@@ -95,7 +95,7 @@ impl Pipeline {
     /// Mean latents of pictures, `[picture][channel][row][column]`, as the UNet sees them. Errors if a side is no multiple of
     /// [`cell`](Self::cell).
     pub fn encode(&self, pictures: &Pictures) -> Result<Vec<f32>, StableError> {
-        // One by one: the finest maps of a picture are large.
+        // One picture at a time, since the finest maps of a picture are large.
         let x = pictures.tensor(&self.machine)?;
         let mut out = Vec::new();
         for i in 0..pictures.count() {
@@ -106,7 +106,7 @@ impl Pipeline {
         Ok(out)
     }
 
-    /// Pictures of latents of that size. Errors if sizes do not fit or a number is not finite.
+    /// Decodes latents of the given size. Errors if sizes do not fit or a number is not finite.
     pub fn decode(&self, latents: &[f32], size: LatentSize) -> Result<Pictures, StableError> {
         let [count, channels, rows, columns] = size;
         check_length("latents", latents.len(), crate::noise::count(size))?;

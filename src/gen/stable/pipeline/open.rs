@@ -16,25 +16,25 @@ use crate::vae::Vae;
 use crate::weights::Weights;
 use crate::{Machine, StableError};
 
-/// Most bytes of `model_index.json`.
+/// Largest size of `model_index.json`, bytes.
 const MOST_INDEX: u64 = 1 << 20;
 
-/// Where the parts of a model lie.
+/// Folders of the parts of a model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Folders {
-    /// With `model_index.json`, `text_encoder`, `tokenizer`, `vae` and `scheduler`.
+    /// Folder with `model_index.json`, `text_encoder`, `tokenizer`, `vae` and `scheduler`.
     pub base: PathBuf,
-    /// With `config.json` and the weights of the UNet.
+    /// Folder with `config.json` and the weights of the UNet.
     pub unet: PathBuf,
-    /// One for each ControlNet.
+    /// One folder for each ControlNet.
     pub controls: Vec<PathBuf>,
-    /// Of the encoder of multi-plane images that is added behind the first convolution, as in SyntheOcc's paper.
+    /// Folder of the encoder of multi-plane images that is added behind the first convolution, as in SyntheOcc's paper.
     pub mpi: Option<PathBuf>,
 }
 
 impl Folders {
-    /// All that a folder holds: `unet`, `controlnet` and whatever else begins with it, in the order of their names, and `mpi_encoder`.
-    /// Parts that lie elsewhere, as SyntheOcc's UNet and ControlNet do, can be put in their place.
+    /// The parts in one folder: `unet`, every folder that begins with `controlnet`, in the order of their names, and
+    /// `mpi_encoder`. Parts that lie elsewhere, as SyntheOcc's UNet and ControlNet do, can be put in their place.
     pub fn of(base: &Path) -> Self {
         let entries = std::fs::read_dir(base).into_iter().flatten().flatten();
         let is_control = |name: &str| name.starts_with("controlnet");
@@ -78,7 +78,7 @@ impl<C> Part<C> {
     }
 }
 
-/// All parts of a model, checked, before any weight is read.
+/// All parts of a model, checked before any weight is read.
 struct Parts {
     words: Words,
     scheduler: SchedulerConfig,
@@ -112,7 +112,7 @@ impl Parts {
         Ok(parts)
     }
 
-    /// Fails unless the parts fit each other, and weights their configurations.
+    /// Fails unless the parts fit each other, and weights fit their configurations.
     fn check(&self) -> Result<(), StableError> {
         let unet = &self.unet.config;
         checks::fit_text(&self.words, &self.text.config, unet)?;
@@ -132,14 +132,14 @@ impl Parts {
 }
 
 impl Pipeline {
-    /// Whether the folders hold a model that can be opened, by configurations, names, shapes and types: quick, whatever the size. Errors
-    /// in one line that names the file.
+    /// Checks that the folders hold a model that can be opened, by configurations, names, shapes and types: quick,
+    /// whatever the size. Errors in one line that names the file.
     pub fn check(folders: &Folders) -> Result<(), StableError> {
         Parts::read(folders).map(|_| ())
     }
 
-    /// Opens all parts of a model, after [`check`](Self::check). The autoencoder and the text encoder always compute in 32 bits. Errors
-    /// in one line that names the file.
+    /// Opens all parts of a model, after [`check`](Self::check). The autoencoder and the text encoder always compute in
+    /// 32 bits. Errors in one line that names the file.
     pub fn open(folders: &Folders, machine: &Machine) -> Result<Self, StableError> {
         let parts = Parts::read(folders)?;
         let exact = machine.exact();
@@ -167,7 +167,7 @@ fn name(folder: &Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// Fails unless the folder is that of a Stable Diffusion of the first two generations.
+/// Fails unless the folder holds a Stable Diffusion of the first two generations.
 fn check_index(path: &Path) -> Result<(), StableError> {
     let class = read_json::<ModelIndex>(path, MOST_INDEX)?.class;
     let later = ["XL", "3", "Cascade", "Upscale", "Depth2Img"];

@@ -1,5 +1,5 @@
-//! What latents look like, without the decoder: colours as a linear map of the latents of a cell, learned from the picture that a
-//! run starts from. A decoder of the real size takes seconds a picture, this nothing.
+//! Previews of latents without the decoder: colours as a linear map of the latents of a cell, fitted to the picture
+//! that a run starts from. A decoder of the real size takes seconds a picture, this almost no time.
 
 use numeric::linear::solve;
 
@@ -7,18 +7,18 @@ use crate::StableError;
 use crate::noise::LatentSize;
 use crate::pictures::Pictures;
 
-/// Keeps the fit of a picture of one colour finite, as a share of its cells.
+/// Ridge that keeps the fit of a picture of one colour finite, as a share of its cells.
 const RIDGE: f64 = 1e-3;
 const COLOURS: usize = 3;
 
-/// Colours of a cell, -1 to 1, as a map of its latents and of one.
+/// Colours of a cell, -1 to 1, as a linear map of its latents and the constant 1.
 pub(super) struct Colours {
-    /// `[colour][channel]`, last the constant.
+    /// `[colour][channel]`; the constant comes last.
     map: [Vec<f64>; COLOURS],
 }
 
 impl Colours {
-    /// The map of least squares from latents to the mean colours of their cells. `None` if there is none.
+    /// Fits the map from latents to the mean colours of their cells by least squares. `None` if there is no solution.
     pub fn fit(latents: &[f32], size: LatentSize, pictures: &Pictures) -> Option<Self> {
         let [count, channels, rows, columns] = size;
         let [height, width] = pictures.size();
@@ -62,7 +62,7 @@ impl Colours {
         })
     }
 
-    /// Pictures of latents, a pixel a cell. Errors if the latents are not of that size.
+    /// Pictures of latents, one pixel a cell. Errors if the latents are not of that size.
     pub fn of(&self, latents: &[f32], size: LatentSize) -> Result<Pictures, StableError> {
         crate::check_length("latents", latents.len(), crate::noise::count(size))?;
         let [count, _, rows, columns] = size;
@@ -77,7 +77,7 @@ impl Colours {
     }
 }
 
-/// The latents of a cell, and one.
+/// The latents of a cell, then 1.
 fn of_cell(latents: &[f32], [_, channels, rows, columns]: LatentSize, i: usize) -> impl Iterator<Item = f64> {
     let plane = rows * columns;
     let first = i / plane * channels * plane + i % plane;

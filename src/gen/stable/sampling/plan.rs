@@ -1,4 +1,4 @@
-//! Which training steps a run visits.
+//! Training steps that a run visits.
 
 use diffusion::schedule::{Betas, Level, Schedule, ScheduleError};
 use diffusion::solver::Prediction;
@@ -6,17 +6,17 @@ use diffusion::solver::Prediction;
 use crate::config::{BetaSchedule, Predicts, SchedulerConfig, SchedulerKind, Steps};
 use crate::{StableError, wrong};
 
-/// alpha^2 of the noisiest step where a method divides by its signal and the schedule leaves none.
+/// Least alpha^2 of the noisiest step. It is used if a method divides by its signal and the schedule leaves none.
 const LEAST_ALPHA_BAR: f64 = 1.0 / (1u64 << 24) as f64;
 
-/// A network call: from which level to which.
+/// A network call, with the levels of its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Call {
-    /// Level of the state that the network is shown; `t` is what it is told.
+    /// Level of the network's input; the network is given its `t`.
     pub at: Level,
-    /// Level that the step leaves from, which only PNDM has elsewhere.
+    /// Level that the step starts from; it differs from `at` only in PNDM.
     pub from: Level,
-    /// Level of the state behind the step.
+    /// Level of the state after the step.
     pub to: Level,
 }
 
@@ -25,19 +25,19 @@ pub struct Call {
 pub struct Plan {
     /// The method.
     pub kind: SchedulerKind,
-    /// What the network says.
+    /// Quantity that the network predicts.
     pub prediction: Prediction,
     /// The calls in order.
     pub calls: Vec<Call>,
-    /// `calls + 1` levels from noise to data, for methods that remember.
+    /// `calls + 1` levels from noise to data, for methods with a memory.
     pub(super) levels: Vec<Level>,
-    /// Spread of the noise that a run from nothing starts with.
+    /// Spread of the noise that a run without a start picture begins with.
     pub spread: f64,
 }
 
 impl Plan {
-    /// The last `strength` (0 to 1) of `steps` steps by `kind`; 1 is a run from nothing, 0 has no calls. Errors if there are no
-    /// steps or more than the schedule has, or two fall together.
+    /// Plan of the last `strength` (0 to 1) of `steps` steps by `kind`; 1 is a run from pure noise, 0 has no calls.
+    /// Errors if there are no steps or more than the schedule has, or if two steps coincide.
     pub fn new(
         config: &SchedulerConfig,
         kind: SchedulerKind,
@@ -122,7 +122,8 @@ impl Plan {
     }
 }
 
-/// Steps of equal stride. diffusers counts the stride in whole training steps, also where the next timestep is one further.
+/// Steps of equal stride. diffusers counts the stride in whole training steps, also if the next timestep is one
+/// further.
 fn strides(schedule: &Table, told: &[f64], stride: f64, behind: Level) -> Vec<Call> {
     let call = |t: &f64| {
         let at = schedule.at(*t);
@@ -136,7 +137,8 @@ fn strides(schedule: &Table, told: &[f64], stride: f64, behind: Level) -> Vec<Ca
     told.iter().map(call).collect()
 }
 
-/// PNDM does its first step twice: again from where it left, with the mean of what the network says at both of its ends.
+/// The calls of PNDM, whose first step is done twice: the second time from the same start, with the mean of the
+/// predictions at its two ends.
 fn repeated(mut calls: Vec<Call>, schedule: &Table, stride: f64) -> Vec<Call> {
     if let Some(second) = calls.get(1).copied() {
         let again = Call {
@@ -165,7 +167,7 @@ impl Table {
         }
     }
 
-    /// Between two steps noise per signal is a straight line.
+    /// Between two training steps, noise per signal is interpolated linearly.
     fn at(&self, t: f64) -> Level {
         let below = t.max(0.0).floor();
         let level = self.whole(below as usize);

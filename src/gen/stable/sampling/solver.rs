@@ -1,4 +1,4 @@
-//! From a prediction to the next state.
+//! Solver: the step from a prediction to the next state.
 
 use diffusion::solver::{DdimStep, SolverKind, Stepper};
 
@@ -6,14 +6,14 @@ use super::Plan;
 use crate::StableError;
 use crate::config::SchedulerKind;
 
-/// Walks through a plan; keeps what the method needs of the steps before. States are in 64 bits.
+/// Runs through a plan and keeps what the method needs of earlier steps. States are in 64 bits.
 pub(crate) struct Solver<'a> {
     plan: &'a Plan,
     memory: Memory<'a>,
 }
 
 enum Memory<'a> {
-    /// DDIM and Euler need none.
+    /// DDIM and Euler need no memory.
     None,
     /// PNDM: predictions of up to four steps, oldest first, and the state before the first step.
     Past { said: Vec<Vec<f64>>, start: Vec<f64> },
@@ -21,7 +21,8 @@ enum Memory<'a> {
     Stepper(Stepper<'a>),
 }
 
-/// Predictions that PNDM joins, newest first: Adams-Bashforth of first to fourth order (Liu et al. 2022, arXiv 2202.09778).
+/// Weights by which PNDM combines predictions, newest first: Adams-Bashforth of first to fourth order (Liu et al. 2022,
+/// arXiv 2202.09778).
 const WEIGHTS: [&[f64]; 4] = [
     &[1.0],
     &[1.5, -0.5],
@@ -30,7 +31,7 @@ const WEIGHTS: [&[f64]; 4] = [
 ];
 
 impl<'a> Solver<'a> {
-    /// At the first call of a plan.
+    /// A solver at the first call of a plan.
     pub fn new(plan: &'a Plan) -> Self {
         let stepper = |kind| Memory::Stepper(Stepper::new(kind, plan.prediction, &plan.levels));
         let memory = match plan.kind {
@@ -45,7 +46,8 @@ impl<'a> Solver<'a> {
         Self { plan, memory }
     }
 
-    /// The state behind call `k`. Calls come in order. Errors if a prediction of noise is to leave pure noise.
+    /// The state after call `k`. Calls must come in order. Errors if a prediction of noise would have to leave pure
+    /// noise.
     pub fn advance(&mut self, k: usize, x: &[f64], predicted: &[f64]) -> Result<Vec<f64>, StableError> {
         let call = &self.plan.calls[k];
         let step = || DdimStep::new(self.plan.prediction, &call.from, &call.to);

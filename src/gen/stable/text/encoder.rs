@@ -1,4 +1,4 @@
-//! CLIP's text encoder: a transformer in which each token looks at those before it.
+//! CLIP's text encoder: a transformer in which each token attends to itself and those before it.
 
 use candle_core::{Device, Tensor};
 
@@ -7,7 +7,7 @@ use crate::layers::{Attention, LayerNorm, Linear, causal_mask, quick_gelu};
 use crate::weights::{Names, Weights};
 use crate::{Machine, StableError, wrong};
 
-/// A table of positions stands in old files, and the projection of the whole network in some.
+/// Tensors that are ignored: old files hold a table of positions, and some files the projection of the whole network.
 const IGNORED: [&str; 2] = ["position_ids", "text_projection.weight"];
 
 struct Layer {
@@ -17,7 +17,7 @@ struct Layer {
     narrow: Linear,
 }
 
-/// Token ids to what the UNet listens to.
+/// Encoder of token ids to the text input of the UNet.
 pub struct TextEncoder {
     config: TextConfig,
     words: Tensor,     // [vocab, width]
@@ -29,12 +29,14 @@ pub struct TextEncoder {
 }
 
 impl TextEncoder {
-    /// Of weights, whose names may begin with `text_model.` or not. Errors if they do not fit the configuration.
+    /// Loads the network from weights; their names may begin with `text_model.` or not. Errors if they do not fit the
+    /// configuration.
     pub fn load(config: TextConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
         weights.build(machine, &IGNORED, |names| Self::of(&config, names, machine))
     }
 
-    /// Whether weights fit a configuration, by names, shapes and types alone. Errors list the first few that do not.
+    /// Checks that weights fit a configuration, by names, shapes and types alone. Errors list the first few that do
+    /// not.
     pub fn check(config: &TextConfig, weights: &Weights) -> Result<(), StableError> {
         weights.check(&IGNORED, |names| Self::of(config, names, &Machine::cpu()))
     }
@@ -85,8 +87,8 @@ impl TextEncoder {
         &self.config
     }
 
-    /// The last hidden states `[1, tokens, width]` of one text's ids, behind the final norm. Errors if an id is no word or the
-    /// number of ids is not that of the positions.
+    /// The last hidden states `[1, tokens, width]` of one text's ids, after the final norm. Errors if an id is out of
+    /// range or the number of ids is not that of the positions.
     pub fn encode(&self, ids: &[u32]) -> Result<Tensor, StableError> {
         crate::check_length("token ids", ids.len(), self.config.max_position_embeddings)?;
         if let Some(id) = ids.iter().find(|id| **id as usize >= self.config.vocab_size) {

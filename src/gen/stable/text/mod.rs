@@ -1,4 +1,4 @@
-//! From a text to what the UNet listens to: the tokenizer and text encoder of CLIP (Radford et al. 2021, arXiv 2103.00020).
+//! Text input of the UNet: the tokenizer and text encoder of CLIP (Radford et al. 2021, arXiv 2103.00020).
 
 mod encoder;
 mod tokenizer;

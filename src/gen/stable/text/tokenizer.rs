@@ -1,4 +1,4 @@
-//! CLIP's tokenizer: lower case, words by a pattern, bytes joined to pairs.
+//! CLIP's tokenizer: lower case, words by a pattern, byte pair encoding.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,16 +16,16 @@ use crate::config::{TokenizerConfig, read_bounded, read_json};
 
 /// Token before a text.
 const FIRST: &str = "<|startoftext|>";
-/// Token behind a text, which also stands for what is unknown.
+/// Token behind a text, which also stands for unknown words.
 const LAST: &str = "<|endoftext|>";
-/// Contractions, letters, single digits, and whatever else stands together.
+/// Pattern of words: contractions, letters, single digits, and runs of other characters.
 const WORDS: &str = r"'s|'t|'re|'ve|'m|'ll|'d|[\p{L}]+|[\p{N}]|[^\s\p{L}\p{N}]+";
-/// Most bytes of a file of words; that of CLIP has 2 MB as `tokenizer.json`.
+/// Largest file of words, bytes; CLIP's `tokenizer.json` has 2 MB.
 const MOST_BYTES: u64 = 64 << 20;
-/// Longest text that is looked at, in bytes: many times what 77 tokens can hold.
+/// Longest part of a text that is read, bytes: many times what 77 tokens can hold.
 const MOST_TEXT: usize = 1 << 16;
 
-/// Texts to token ids.
+/// Tokenizer from texts to token ids.
 pub struct Words {
     tokenizer: Tokenizer,
     first: u32,
@@ -39,8 +39,8 @@ fn refuse(error: impl std::fmt::Display) -> StableError {
 }
 
 impl Words {
-    /// Of a folder with `vocab.json` and `merges.txt`, or with `tokenizer.json`. Errors if they are missing, damaged, or lack CLIP's
-    /// tokens for the ends of a text.
+    /// Opens a folder with `vocab.json` and `merges.txt`, or with `tokenizer.json`. Errors if they are missing,
+    /// damaged, or lack CLIP's tokens for the ends of a text.
     pub fn open(folder: &Path) -> Result<Self, StableError> {
         let whole = folder.join("tokenizer.json");
         let mut tokenizer = if folder.join("vocab.json").exists() || !whole.exists() {
@@ -48,7 +48,7 @@ impl Words {
         } else {
             let bytes = read_bounded(&whole, MOST_BYTES)?;
             let mut tokenizer = Tokenizer::from_bytes(&bytes).map_err(refuse)?;
-            // Ends and length are the business of `ids`.
+            // `ids` adds the end tokens and sets the length.
             tokenizer.with_post_processor(None::<tokenizers::PostProcessorWrapper>);
             tokenizer.with_padding(None);
             tokenizer.with_truncation(None).map_err(refuse)?;
@@ -58,7 +58,7 @@ impl Words {
         if let Some(pad) = &pad
             && tokenizer.token_to_id(pad).is_some()
         {
-            // A mark that fills up texts is one word wherever it stands, as in transformers: "!" in 2.1.
+            // The padding token is one word wherever it stands, as in transformers: "!" in 2.1.
             tokenizer
                 .add_special_tokens([AddedToken::from(pad.clone(), true)])
                 .map_err(refuse)?;
@@ -77,12 +77,12 @@ impl Words {
         })
     }
 
-    /// The largest id there is.
+    /// The largest id.
     pub fn largest(&self) -> u32 {
         self.largest
     }
 
-    /// Exactly `length` ids: the text between its ends, cut behind or filled up. Errors if the tokenizer fails.
+    /// Exactly `length` ids: the text between its end tokens, cut off or padded. Errors if the tokenizer fails.
     pub fn ids(&self, text: &str, length: usize) -> Result<Vec<u32>, StableError> {
         let end = (0..=MOST_TEXT.min(text.len()))
             .rev()
@@ -97,7 +97,7 @@ impl Words {
     }
 }
 
-/// From `vocab.json` and `merges.txt`.
+/// The tokenizer of `vocab.json` and `merges.txt`.
 fn of_pairs(folder: &Path) -> Result<Tokenizer, StableError> {
     let (vocab, merges) = (folder.join("vocab.json"), folder.join("merges.txt"));
     let words: BTreeMap<String, u32> = read_json(&vocab, MOST_BYTES)?;

@@ -12,7 +12,7 @@ use crate::weights::Names;
 
 type Loaded<T> = std::result::Result<T, StableError>;
 
-/// Residual blocks, each with a transformer behind it where the level listens.
+/// Residual blocks, each followed by a transformer if the level attends to the text.
 struct Pairs {
     residuals: Vec<Residual>,
     transformers: Vec<Transformer>,
@@ -72,14 +72,14 @@ impl Down {
     }
 }
 
-/// The bottom.
+/// The level at the bottom.
 pub(crate) struct Middle {
     residuals: [Residual; 2],
     transformer: Transformer,
 }
 
 impl Middle {
-    /// Of the coarsest map.
+    /// Applies the blocks to the coarsest map.
     pub fn forward(&self, x: &Tensor, time: &Tensor, context: &Tensor, around: &Around) -> Result<Tensor> {
         let x = self.residuals[0].forward(x, Some(time))?;
         let x = self.transformer.forward(&x, context, around)?;
@@ -94,7 +94,8 @@ pub(crate) struct Up {
 }
 
 impl Up {
-    /// Takes its maps from the end of `kept`. Grows to the size of the next one there, which need not be twice its own.
+    /// Takes its skip maps from the end of `kept`. Grows to the size of the next one there, which need not be twice its
+    /// own.
     pub fn forward(
         &self,
         mut x: Tensor,
@@ -132,7 +133,7 @@ pub(crate) struct Levels<'a> {
 }
 
 impl<'a> Levels<'a> {
-    /// Of a configuration, which has been checked.
+    /// Sizes of a configuration that has been checked.
     pub fn of(config: &'a UnetConfig) -> Self {
         Self {
             config,

@@ -1,4 +1,5 @@
-//! The UNet: noisy latents, a timestep and what is told to noise or v. Ronneberger et al. 2015; Rombach et al. 2022.
+//! The UNet: from noisy latents, a timestep and the text input to noise or v. Ronneberger et al. 2015; Rombach et al.
+//! 2022.
 
 mod levels;
 mod neighbours;
@@ -17,17 +18,17 @@ use crate::{Machine, StableError, wrong};
 use levels::Up;
 pub(crate) use neighbours::Around;
 
-/// Smallest and largest input: what lies between is computed without surprises.
+/// Largest side of an input, cells.
 const MOST_SIDE: usize = 4096;
 
-/// What conditions add to the UNet.
+/// Values that conditions add to the UNet's maps.
 #[derive(Clone, Debug, Default)]
 pub struct Extra {
-    /// To the map behind the first convolution: the planes of SyntheOcc's paper.
+    /// Added to the map behind the first convolution: the planes of SyntheOcc's paper.
     pub first: Option<Tensor>,
-    /// To every map that is handed over to the way up, from the finest on; empty, or as many as there are.
+    /// Added to every map that is passed on to the way up, from the finest on; empty, or one for each map.
     pub down: Vec<Tensor>,
-    /// To the coarsest map.
+    /// Added to the coarsest map.
     pub middle: Option<Tensor>,
 }
 
@@ -46,12 +47,13 @@ pub struct Unet {
 }
 
 impl Unet {
-    /// Of weights. Errors if they do not fit the configuration.
+    /// Loads the network from weights. Errors if they do not fit the configuration.
     pub fn load(config: UnetConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
         weights.build(machine, &[], |names| Self::of(&config, names, machine))
     }
 
-    /// Whether weights fit a configuration, by names, shapes and types alone. Errors list the first few that do not.
+    /// Checks that weights fit a configuration, by names, shapes and types alone. Errors list the first few that do
+    /// not.
     pub fn check(config: &UnetConfig, weights: &Weights) -> Result<(), StableError> {
         weights.check(&[], |names| Self::of(config, names, &Machine::cpu()))
     }
@@ -78,18 +80,19 @@ impl Unet {
         &self.config
     }
 
-    /// Views that it draws together: 1 if it draws them one by one.
+    /// Number of views that it draws together: 1 if it draws them one by one.
     pub fn views(&self) -> usize {
         self.neighbours.len().max(1)
     }
 
-    /// Whether frames hear of each other.
+    /// Whether frames attend to each other.
     pub fn hears_frames(&self) -> bool {
         self.config.cross_frame_attn_type.is_some()
     }
 
-    /// What it says of latents `[frames * views, channels, rows, columns]` (all views of the first frame, then of the next) at
-    /// training step `t`. `context` `[n or 1, tokens, width]` is what is told, to each or to all. Errors if sizes do not fit.
+    /// The prediction for latents `[frames * views, channels, rows, columns]` (all views of the first frame, then of
+    /// the next) at training step `t`. `context` `[n or 1, tokens, width]` is the text input, for each or for all.
+    /// Errors if sizes do not fit.
     pub fn forward(
         &self,
         x: &Tensor,
@@ -137,7 +140,7 @@ impl Unet {
     }
 }
 
-/// `[batch, tokens, width]` of one that is told to all, or of as many as there are.
+/// The text input as `[batch, tokens, width]`: one for all items is repeated.
 pub(crate) fn told_to_each(context: &Tensor, batch: usize) -> Result<Tensor, StableError> {
     let (given, tokens, width) = context.dims3()?;
     if given == batch {

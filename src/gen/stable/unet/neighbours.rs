@@ -11,18 +11,18 @@ use crate::{StableError, wrong};
 /// Epsilon of the norm.
 const EPSILON: f64 = 1e-5;
 
-/// Who hears whom, by place in the batch.
+/// Neighbours of each item, by index in the batch.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Around {
     /// Neighbouring views of the same frame; empty if the network draws views one by one.
     pub views: Vec<Vec<usize>>,
-    /// The same view in the frames before and after; empty if there is one frame.
+    /// Items of the same view in the frames before and after; empty if there is one frame.
     pub frames: Vec<Vec<usize>>,
 }
 
 impl Around {
-    /// Of a batch of all views of the first frame, then of the next. `neighbours` are those of each view. Errors if the batch does not
-    /// hold whole frames.
+    /// Neighbours in a batch of all views of the first frame, then of the next. `neighbours` lists those of each view.
+    /// Errors if the batch does not hold whole frames.
     pub fn of(
         neighbours: &[Vec<usize>],
         frames: usize,
@@ -60,7 +60,7 @@ impl Around {
     }
 }
 
-/// What stands behind the attention.
+/// Layer behind the attention.
 #[derive(Clone, Debug)]
 enum Behind {
     Linear(Linear),
@@ -78,7 +78,7 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    /// `names` are those of a transformer block; `ours` its norm, attention and connector in it.
+    /// Loads the layers. `names` are those of a transformer block; `ours` its norm, attention and connector in it.
     pub fn load(
         names: &Names<'_>,
         ours: [&str; 3],
@@ -99,7 +99,7 @@ impl Neighbours {
         })
     }
 
-    /// Tokens `[batch, tokens, width]` after they heard those of `around`, one list for each item of the batch.
+    /// Tokens `[batch, tokens, width]` after attention to those of `around`, one list for each item of the batch.
     pub fn forward(&self, x: &Tensor, around: &[Vec<usize>]) -> Result<Tensor> {
         let normed = self.norm.forward(x)?;
         let heard = match self.heard {
@@ -114,7 +114,7 @@ impl Neighbours {
         x + heard
     }
 
-    /// The first neighbours of all, then the second: never more than the batch at once.
+    /// Attention to the first neighbours of all items, then to the second: never more than the batch at once.
     fn added(&self, x: &Tensor, around: &[Vec<usize>]) -> Result<Tensor> {
         let most = around.iter().map(Vec::len).max().unwrap_or(0);
         let mut heard = x.zeros_like()?;
@@ -133,7 +133,7 @@ impl Neighbours {
         Ok(heard)
     }
 
-    /// Each item once, with the tokens of all its neighbours.
+    /// Attention of each item to the tokens of all its neighbours at once.
     fn joined(&self, x: &Tensor, around: &[Vec<usize>]) -> Result<Tensor> {
         let each = around.iter().enumerate().map(|(item, others)| {
             if others.is_empty() {

@@ -1,4 +1,4 @@
-//! A timestep as a vector.
+//! Embedding of a timestep.
 
 use candle_core::Tensor;
 
@@ -20,7 +20,7 @@ pub(crate) struct TimeEmbedding {
 }
 
 impl TimeEmbedding {
-    /// Width of what comes out.
+    /// Width of the embedding.
     pub fn width(config: &UnetConfig) -> usize {
         4 * config.block_out_channels[0]
     }
@@ -38,7 +38,7 @@ impl TimeEmbedding {
         })
     }
 
-    /// `[1, width]` of a training step, which may lie between two.
+    /// The embedding `[1, width]` of a training step, which may lie between two.
     pub fn forward(&self, t: f64, machine: &Machine) -> Result<Tensor, StableError> {
         let half = self.width / 2;
         let angle = |i: usize| t * (-LONGEST.ln() * i as f64 / (half as f64 - self.shift)).exp();

@@ -1,4 +1,4 @@
-//! Transformers over the cells of a map, which listen to the text and to their neighbours.
+//! Transformers over the cells of a map, with attention to the text and to neighbours.
 
 use candle_core::{D, Result, Tensor};
 
@@ -37,7 +37,7 @@ impl Gated {
     }
 }
 
-/// A transformer block: to itself, to the text, to its neighbours, then the perceptron.
+/// A transformer block: attention to itself, to the text and to its neighbours, then the perceptron.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
     norms: [LayerNorm; 3],
@@ -71,7 +71,7 @@ impl Block {
         })
     }
 
-    /// Tokens `[batch, tokens, width]`.
+    /// Applies the block to tokens `[batch, tokens, width]`.
     pub fn forward(&self, x: &Tensor, context: &Tensor, around: &Around) -> Result<Tensor> {
         let y = self.norms[0].forward(x)?;
         let x = (x + self.itself.forward(&y, &y, None)?)?;
@@ -87,7 +87,7 @@ impl Block {
     }
 }
 
-/// Blocks between two projections, around which the map goes unchanged.
+/// Blocks between two projections; the map itself is added to their result.
 #[derive(Clone, Debug)]
 pub(crate) struct Transformer {
     norm: GroupNorm,
@@ -97,7 +97,7 @@ pub(crate) struct Transformer {
 }
 
 impl Transformer {
-    /// The projections may be stored as linear layers or as 1x1 convolutions, which are the same.
+    /// Loads the layers. The projections may be stored as linear layers or as 1x1 convolutions, which are equivalent.
     pub fn load(names: &Names<'_>, config: &UnetConfig, [width, heads, depth]: [usize; 3]) -> Loaded<Self> {
         let block = |i: usize| {
             let names = names.at("transformer_blocks").at(i);
@@ -111,7 +111,7 @@ impl Transformer {
         })
     }
 
-    /// Of a map.
+    /// Applies the transformer to a map.
     pub fn forward(&self, x: &Tensor, context: &Tensor, around: &Around) -> Result<Tensor> {
         let (batch, width, rows, columns) = x.dims4()?;
         let tokens = self.norm.forward(x)?.reshape((batch, width, rows * columns))?;

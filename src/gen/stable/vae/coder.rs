@@ -1,4 +1,4 @@
-//! Both halves of the autoencoder.
+//! The two halves of the autoencoder.
 
 use candle_core::{Result, Tensor};
 
@@ -19,7 +19,7 @@ pub(crate) struct Everywhere {
 }
 
 impl Everywhere {
-    /// Names of the layers are those of today's files or those of older ones.
+    /// Loads the layers, by the names of current files or of older ones.
     fn load(names: &Names<'_>, width: usize, groups: usize) -> Loaded<Self> {
         let layers: [&[&str]; 4] = [
             &["to_q", "query"],
@@ -110,7 +110,7 @@ impl Level {
     }
 }
 
-/// Pictures to mean and log variance.
+/// Encoder of pictures to mean and log variance.
 pub(crate) struct Encoder {
     first: Conv,
     levels: Vec<Level>,
@@ -149,7 +149,7 @@ impl Encoder {
         for level in &self.levels {
             x = level.residuals(x)?;
             if let Some(resize) = &level.resize {
-                // One row below and one column on the right, as the network was trained.
+                // One row below and one column on the right, as in training.
                 x = resize.forward(&x.pad_with_zeros(2, 0, 1)?.pad_with_zeros(3, 0, 1)?)?;
             }
         }
@@ -158,7 +158,7 @@ impl Encoder {
     }
 }
 
-/// Latents to pictures.
+/// Decoder of latents to pictures.
 pub(crate) struct Decoder {
     first: Conv,
     middle: Middle,

@@ -10,11 +10,11 @@ use crate::weights::{Names, Weights};
 use crate::{Machine, StableError, wrong};
 use coder::{Decoder, Encoder};
 
-/// Least and largest log variance of a latent.
+/// Smallest and largest log variance of a latent.
 const LOG_VARIANCE: [f64; 2] = [-30.0, 20.0];
 
-/// Pictures `[n, 3, height, width]`, sRGB from -1 to 1, to latents `[n, channels, rows, columns]` and back. Latents are as the
-/// UNet sees them: multiplied by the scaling factor.
+/// The autoencoder of pictures `[n, 3, height, width]`, sRGB from -1 to 1, and latents `[n, channels, rows, columns]`.
+/// Latents are as the UNet sees them: multiplied by the scaling factor.
 pub struct Vae {
     config: VaeConfig,
     pub(crate) encoder: Encoder,
@@ -24,12 +24,13 @@ pub struct Vae {
 }
 
 impl Vae {
-    /// Of weights. Errors if they do not fit the configuration.
+    /// Loads the network from weights. Errors if they do not fit the configuration.
     pub fn load(config: VaeConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
         weights.build(machine, &[], |names| Self::of(&config, names))
     }
 
-    /// Whether weights fit a configuration, by names, shapes and types alone. Errors list the first few that do not.
+    /// Checks that weights fit a configuration, by names, shapes and types alone. Errors list the first few that do
+    /// not.
     pub fn check(config: &VaeConfig, weights: &Weights) -> Result<(), StableError> {
         weights.check(&[], |names| Self::of(config, names))
     }
@@ -78,7 +79,7 @@ impl Vae {
         Ok(mean.affine(self.config.scaling_factor, 0.0)?)
     }
 
-    /// Pictures of latents, as the network gives them: not cut off at -1 and 1.
+    /// Pictures of latents, as the network gives them: not clamped to -1 and 1.
     pub fn decode(&self, latents: &Tensor) -> Result<Tensor, StableError> {
         let latents = latents.affine(1.0 / self.config.scaling_factor, 0.0)?;
         Ok(self.decoder.forward(&self.post_quant.forward(&latents)?)?)

@@ -10,19 +10,19 @@ use safetensors::tensor::Metadata;
 
 use crate::StableError;
 
-/// Most bytes of a header; the format allows no more.
+/// Largest size of a header, bytes; the format allows no more.
 const MOST_HEADER: u64 = 100_000_000;
 
-/// Where a tensor lies.
+/// Position of a tensor in a file.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     /// Type of its numbers.
     pub dtype: Dtype,
     /// Its shape.
     pub shape: Vec<usize>,
-    /// First byte in the file.
+    /// Index of its first byte in the file.
     start: u64,
-    /// Bytes.
+    /// Number of its bytes.
     length: usize,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct WeightFile {
 }
 
 impl WeightFile {
-    /// Opens a file; gives also the name and place of each tensor. Nothing but the header is read. Errors if it is no regular
+    /// Opens a file. Also gives the name and place of each tensor. Only the header is read. Errors if it is no regular
     /// file, damaged, or shorter or longer than its header says.
     pub fn open(path: &Path) -> Result<(Self, Vec<(String, Place)>), StableError> {
         let refused = |source| StableError::Read {
@@ -45,7 +45,7 @@ impl WeightFile {
             path: path.to_owned(),
             reason: reason.replace('\n', " "),
         };
-        // Before opening: that of a pipe waits until somebody writes.
+        // Checked before opening, because opening a pipe waits until somebody writes to it.
         let kind = std::fs::metadata(path).map_err(refused)?;
         if !kind.is_file() {
             return Err(StableError::Folder {
@@ -72,7 +72,7 @@ impl WeightFile {
             )));
         }
         (&mut file).take(length).read_to_end(&mut head).map_err(refused)?;
-        // Offsets without gaps, and as many bytes for each tensor as its shape takes, are checked there.
+        // This also checks that offsets have no gaps and each tensor has as many bytes as its shape takes.
         let header = serde_json::from_slice::<Metadata>(&head[8..]).map_err(|e| malformed(e.to_string()))?;
         let mut places = Vec::new();
         let mut end = 0;
@@ -112,7 +112,7 @@ impl WeightFile {
             source,
         };
         let mut bytes = vec![0; place.length];
-        // A reader that panicked leaves only the position behind, which is set anew.
+        // A reader that panicked leaves only the position changed, which is set again.
         let mut file = self.file.lock().unwrap_or_else(|e| e.into_inner());
         file.seek(SeekFrom::Start(place.start)).map_err(refused)?;
         file.read_exact(&mut bytes).map_err(refused)?;

@@ -12,16 +12,16 @@ use super::names::{Asked, Names};
 use crate::config::read_json;
 use crate::{Machine, StableError};
 
-/// Names that a folder of weights may have, in this order.
+/// Names that a file of weights may have in its folder, in the order in which they are tried.
 const NAMES: [&str; 4] = [
     "diffusion_pytorch_model.safetensors",
     "model.safetensors",
     "diffusion_pytorch_model.fp16.safetensors",
     "model.fp16.safetensors",
 ];
-/// Most bytes of an index of shards.
+/// Largest size of an index of shards, bytes.
 const MOST_INDEX: u64 = 16 << 20;
-/// How many names a message lists.
+/// Number of names that a message lists.
 const LISTED: usize = 3;
 
 /// Tensors by name, on disk.
@@ -38,8 +38,9 @@ struct Index {
 }
 
 impl Weights {
-    /// Of a folder with `diffusion_pytorch_model.safetensors`, `model.safetensors`, one of them in half precision (`.fp16.`),
-    /// or the index of shards of such a name. Reads headers only. Errors if there is none, or what is there is damaged.
+    /// Opens a folder with `diffusion_pytorch_model.safetensors`, `model.safetensors`, one of them in half precision
+    /// (`.fp16.`), or the index of shards of such a name. Reads headers only. Errors if there is none, or if the files
+    /// are damaged.
     pub fn of_folder(folder: &Path) -> Result<Self, StableError> {
         for name in NAMES {
             if folder.join(name).exists() {
@@ -75,7 +76,7 @@ impl Weights {
         })
     }
 
-    /// Of one safetensors file. Reads its header only. Errors if it is damaged.
+    /// Opens one safetensors file. Reads its header only. Errors if it is damaged.
     pub fn of_file(path: &Path) -> Result<Self, StableError> {
         let (file, places) = WeightFile::open(path)?;
         Ok(Self {
@@ -94,7 +95,7 @@ impl Weights {
         let names: BTreeSet<&String> = map.values().collect();
         let (mut files, mut places) = (Vec::new(), BTreeMap::new());
         for name in names {
-            // A shard lies beside its index.
+            // A shard must lie beside its index.
             if name.contains(['/', '\\']) || name.starts_with('.') {
                 return Err(refuse(format!(
                     "expected names of files beside it, found {name:?}"
@@ -131,14 +132,15 @@ impl Weights {
         self.places.contains_key(name)
     }
 
-    /// Its shape.
+    /// Shape of a tensor; `None` if there is none of this name.
     pub(super) fn shape(&self, name: &str) -> Option<&[usize]> {
         self.places.get(name).map(|(_, p)| &*p.shape)
     }
 
-    /// What `build` makes of the weights. It runs twice: first with placeholders, and all names, shapes and types that it asks for are
-    /// compared with the files; only when they fit is anything read. `ignored` are ends of names that may stay over. Errors
-    /// list the first few names that are missing, misshapen or belong to another network, and say how many more there are.
+    /// The network that `build` makes of the weights. `build` runs twice. The first time it gets placeholders, and all
+    /// names, shapes and types that it asks for are compared with the files; only if they fit are tensors read.
+    /// `ignored` are ends of names that may be left over. Errors list the first few names that are missing, misshapen
+    /// or belong to another network, and give the number of the others.
     pub(crate) fn build<M>(
         &self,
         machine: &Machine,
@@ -149,7 +151,7 @@ impl Weights {
         build(&Names::reading(self, machine))
     }
 
-    /// Whether `build` could be made of the weights, without reading any. Errors as [`build`](Self::build).
+    /// Checks that `build` could be made of the weights, without reading any. Errors as [`build`](Self::build).
     pub(crate) fn check<M>(
         &self,
         ignored: &[&str],
@@ -160,7 +162,7 @@ impl Weights {
         self.compare(&asked, ignored)
     }
 
-    /// Errors unless what was asked for is what is there.
+    /// Errors unless the tensors asked for are those in the files.
     fn compare(&self, asked: &Asked, ignored: &[&str]) -> Result<(), StableError> {
         let (mut missing, mut misshapen, mut mistyped) = (Vec::new(), Vec::new(), Vec::new());
         let mut taken = BTreeSet::new();
@@ -190,7 +192,7 @@ impl Weights {
         if wrong.is_empty() {
             return Ok(());
         }
-        // What is wrong comes before the names: where the line is too long, its middle is left out.
+        // The faults come before the names: if the line is too long, its middle is left out.
         let counts = wrong
             .iter()
             .map(|(names, what)| format!("{} {what}", names.len()));
@@ -202,7 +204,8 @@ impl Weights {
         })
     }
 
-    /// One tensor on a machine, in its type. Errors if the file cannot be read, or a number is not finite.
+    /// Reads one tensor onto a machine, in the machine's type. Errors if the file cannot be read, or a number is not
+    /// finite.
     pub(super) fn read(&self, name: &str, machine: &Machine) -> Result<Tensor, StableError> {
         let refuse = |reason: String| StableError::Tensors {
             path: self.path.clone(),
@@ -226,7 +229,7 @@ impl Weights {
     }
 }
 
-/// The types that are read.
+/// The types that can be read; `None` for others.
 fn type_of(dtype: Dtype) -> Option<DType> {
     match dtype {
         Dtype::F16 => Some(DType::F16),

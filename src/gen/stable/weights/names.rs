@@ -1,4 +1,4 @@
-//! A place in the tree of names from which a network takes its tensors.
+//! A position in the tree of names, from which a network takes its tensors.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -14,17 +14,17 @@ use crate::{Machine, StableError};
 pub(super) struct Asked(RefCell<BTreeMap<String, Vec<usize>>>);
 
 impl Asked {
-    /// All of them.
+    /// All names and shapes.
     pub fn all(&self) -> Vec<(String, Vec<usize>)> {
         let asked = self.0.borrow();
         asked.iter().map(|(n, s)| (n.clone(), s.clone())).collect()
     }
 }
 
-/// What becomes of a request.
+/// Treatment of a request.
 #[derive(Clone, Copy)]
 enum Mode<'a> {
-    /// It is noted; a placeholder that takes no memory is given.
+    /// The request is recorded, and a placeholder that takes no memory is given.
     Checking(&'a Asked),
     /// The tensor is read.
     Reading(&'a Machine),
@@ -67,7 +67,7 @@ impl<'a> Names<'a> {
         }
     }
 
-    /// The names below the first of `names` of which the weights have `leaf`; below the first if they have none.
+    /// The names below the first of `names` for which the weights have `leaf`; below the first one if they have none.
     pub fn at_any(&self, names: &[&str], leaf: &str) -> Self {
         let mut all = names.iter().map(|n| self.at(n));
         let found = all.clone().find(|n| n.has(leaf));
@@ -91,7 +91,8 @@ impl<'a> Names<'a> {
         }
     }
 
-    /// The matrix `leaf` of this shape, which may be stored with ones behind it, as the kernel of a 1x1 convolution is.
+    /// The matrix `leaf` of this shape. It may be stored with trailing dimensions of 1, as the kernel of a 1x1
+    /// convolution is.
     pub fn matrix(&self, leaf: &str, [rows, columns]: [usize; 2]) -> Result<Tensor, StableError> {
         let stored = self.weights.shape(&self.at(leaf).prefix);
         let as_kernel = [rows, columns, 1, 1];

@@ -1,8 +1,9 @@
-//! `eval downstream`: are generated scenes, to a network that learned from worlds, like worlds? The shipped network of the LiDAR
-//! looks at sweeps of held-out worlds and of what is generated from their layouts: as the window shows it, where boxes keep what
-//! they need, and as the networks give it. What it loses there is what generation gets wrong where a LiDAR looks. The network that
-//! tells voxels from LiDAR and cameras looks at the same, and at the worlds in other light and weather. What generated
-//! scenes are worth as training data is what `training/downstream.py` asks.
+//! `eval downstream`: are generated scenes like worlds to a network that learned from worlds? The shipped network of
+//! the LiDAR looks at sweeps of held-out worlds and of scenes generated from their layouts, both as the window shows
+//! them, where boxes keep the voxels that they need, and as the networks give them. A loss there shows what generation
+//! gets wrong where a LiDAR looks. The network that tells voxels from LiDAR and cameras looks at the same scenes, and
+//! at the worlds in other light and weather. `training/downstream.py` measures what generated scenes are worth as
+//! training data.
 
 mod voxels;
 
@@ -20,7 +21,7 @@ use scene::{Class, Scene};
 use sensors::perceived_sweep::report;
 use voxels::Voxels;
 
-/// What the network makes of scenes, a value per scene.
+/// Figures of the LiDAR network on scenes, a value per scene.
 #[derive(Default)]
 struct Seen {
     cars: Vec<f64>,
@@ -38,7 +39,7 @@ impl Seen {
             let asked = asked.filter(|b| (boxes.get(&b.id).map(|b| b.class) == Some(Class::Car)) == is_car);
             let found: Vec<bool> = asked.map(|b| !b.is_missed()).collect();
             let seen = found.iter().filter(|f| **f).count();
-            // Where there is none to see nothing is missed.
+            // A scene without boxes to find has missed none.
             if found.is_empty() {
                 1.0
             } else {
@@ -70,7 +71,7 @@ impl Seen {
             .collect()
     }
 
-    /// How much more than `other`, scene by scene.
+    /// Difference from `other`, scene by scene.
     fn more_than(&self, other: &Self) -> Value {
         let pairs = self.named().into_iter().zip(other.named());
         let more = pairs.map(|((name, a), (_, b))| {

@@ -1,5 +1,6 @@
-//! Which voxels the network of LiDAR and cameras tells in worlds and in what is generated from their layouts, from both and from either
-//! alone; from the cameras alone in other light and weather; and from the cameras alone where they see learned pictures.
+//! Voxels that the network of LiDAR and cameras tells, in worlds and in scenes generated from their layouts: from the
+//! two sensors together and from either alone; from the cameras alone in other light and weather; and from the cameras
+//! alone on learned pictures.
 
 use std::sync::Arc;
 
@@ -13,13 +14,13 @@ use sensors::appearance::CameraImage;
 use sensors::painter::{PaintInput, PaintOptions, Painter};
 use sensors::perceived_voxels::{Heard, Hears, VoxelReport, report, report_of};
 
-/// What is heard, by name.
+/// Sensors that the network gets, by name.
 const ARMS: [(&str, Hears); 3] = [
     ("both", Hears::Both),
     ("lidar", Hears::Lidar),
     ("cameras", Hears::Cameras),
 ];
-/// Light and weather that cameras are judged in, by name; the first is what the others are held against.
+/// Light and weather that cameras are judged in, by name; the others are compared with the first.
 const AIR: [(&str, TimeOfDay, Weather); 7] = [
     ("clear", TimeOfDay::Day, Weather::Clear),
     ("rain", TimeOfDay::Day, Weather::Rain),
@@ -30,7 +31,8 @@ const AIR: [(&str, TimeOfDay, Weather); 7] = [
     ("night", TimeOfDay::Night, Weather::Clear),
 ];
 
-/// Figures of some scenes, a value per scene: IoU where the LiDAR sees, share of voxels told rightly, share of the boxes found.
+/// Figures of some scenes, a value per scene: IoU where the LiDAR sees, share of voxels told rightly, share of boxes
+/// found.
 #[derive(Default)]
 struct Told([Vec<f64>; 3]);
 
@@ -40,7 +42,7 @@ impl Told {
     fn add(&mut self, report: &VoxelReport) {
         let boxes = report.boxes.len();
         let found = report.boxes.iter().filter(|b| !b.is_missed()).count();
-        // Where there is none to see nothing is missed.
+        // A scene without boxes to find has missed none.
         let found = if boxes == 0 {
             1.0
         } else {
@@ -57,7 +59,7 @@ impl Told {
             .collect()
     }
 
-    /// How much more than `other`, scene by scene.
+    /// Difference from `other`, scene by scene.
     fn more_than(&self, other: &Self) -> Value {
         let pairs = NAMES.iter().zip(self.0.iter().zip(&other.0));
         let more = pairs.map(|(name, (a, b))| {
@@ -68,19 +70,20 @@ impl Told {
     }
 }
 
-/// Worlds and generated scenes.
+/// Figures of worlds and of generated scenes.
 #[derive(Default)]
 pub(super) struct Voxels {
     worlds: [Told; 3],
     generated: [Told; 3],
     air: [Told; AIR.len()],
-    /// By the cameras alone, which see learned pictures of worlds and generated scenes.
+    /// Figures from the cameras alone, on learned pictures of worlds and of generated scenes.
     learned: [Told; 2],
-    /// Share of the pixels whose class the segmenter says rightly: of rendered pictures of both, of learned ones.
+    /// Share of the pixels that the segmenter classifies rightly: in rendered pictures of worlds and of generated
+    /// scenes, then in learned pictures of each.
     pixels_right: [[Vec<f64>; 2]; 2],
 }
 
-/// What the shipped picture network makes of a scene, in the order of its rig.
+/// Pictures of a scene by the shipped picture network, in the order of its rig.
 fn learned_pictures(scene: &Scene) -> anyhow::Result<Vec<Arc<CameraImage>>> {
     let placed = scene.with_rig_in_world();
     let input = PaintInput {
@@ -94,7 +97,7 @@ fn learned_pictures(scene: &Scene) -> anyhow::Result<Vec<Arc<CameraImage>>> {
 }
 
 impl Voxels {
-    /// Looks at a world, also under other light and weather, and at what was generated from its layout.
+    /// Judges a world, also under other light and weather, and the scene generated from its layout.
     pub fn add(&mut self, world: &Scene, generated: &Scene) -> anyhow::Result<()> {
         let scenes = [(world, &mut self.worlds), (generated, &mut self.generated)];
         for (which, (scene, told)) in scenes.into_iter().enumerate() {

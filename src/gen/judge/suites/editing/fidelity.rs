@@ -1,4 +1,4 @@
-//! Parts of `eval editing` that are asked for by name: many random edits, inversion schemes, many steps.
+//! Parts of `eval editing` that run only on request: many random edits, inversion schemes, many steps.
 
 use std::sync::Arc;
 
@@ -19,9 +19,9 @@ use nets::tokens_of;
 use scene::{Scene, VoxelGrid, Window};
 use world::draw::Draw;
 
-/// Edits of one world before the next is taken.
+/// Number of edits in one world before the next is taken.
 const EDITS_PER_WORLD: usize = 25;
-/// What random edits must not change does not depend on the steps, so few do.
+/// Steps of random edits. Few are enough: what an edit must not change does not depend on the steps.
 const RANDOM_EDIT_STEPS: u32 = 4;
 const SCHEME_STEPS: [u32; 4] = [5, 10, 20, 50];
 const REFERENCE_STEPS: u32 = 1000;
@@ -53,7 +53,7 @@ impl Options {
                 let kind = KINDS[draw.below(KINDS.len())];
                 let frame = document.scene().frame().clone();
                 let Some(trial) = Trial::propose(kind, &frame, draw.bits()) else {
-                    continue; // nothing of that kind can be done here
+                    continue; // no edit of that kind is possible here
                 };
                 document.apply("Edit", &trial.edit)?;
                 let job = Job {
@@ -61,7 +61,7 @@ impl Options {
                     params: params.clone(),
                 };
                 let result = pipeline.run(&job, &JobCtx::detached())?;
-                // Counted here again, from the grids alone, besides what the report says.
+                // Counted here again, from the grids alone, to check the report's own count.
                 let region = Region::of_edit(job.scene.frame(), params.halo_columns as usize);
                 untouched += result.report.untouched_voxels_changed;
                 untouched += outside(&frame.occupancy, &result.occupancy, &region);
@@ -113,7 +113,8 @@ impl Options {
         Ok(rows.into())
     }
 
-    /// Two edits in regions apart, in either order: share of the voxels of both regions that differ, per world.
+    /// Two edits in regions apart, applied in either order: share of the voxels of the two regions that differ, per
+    /// world.
     pub(crate) fn order(
         &self,
         pipeline: &mut OccPipeline,
@@ -142,7 +143,7 @@ impl Options {
         Ok(differ)
     }
 
-    /// Removals with the usual steps against the same with many.
+    /// Compares removals with the usual steps with those of many steps.
     pub(crate) fn reference(
         &self,
         pipeline: &mut OccPipeline,
@@ -175,7 +176,7 @@ impl Options {
     }
 }
 
-/// What a trial inpaints.
+/// The region that a trial inpaints.
 fn region(scene: &Scene, trial: &Trial, params: &GenParams) -> anyhow::Result<Region> {
     let mut document = Document::new(scene.clone());
     document.apply("Edit", &trial.edit)?;

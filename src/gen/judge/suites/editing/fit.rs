@@ -1,4 +1,5 @@
-//! How many voxels an object has, against what objects of its class have in the same material, and whose voxels they are.
+//! Counts the voxels of objects, compares them with objects of their class in the same material, and tells which of
+//! them the networks made.
 
 use std::collections::BTreeMap;
 
@@ -31,7 +32,7 @@ impl Bands {
         Some([quantile(all, 0.05), quantile(all, 0.95)])
     }
 
-    /// By class: median, band, number of objects.
+    /// Median, band and number of objects, by class.
     pub fn report(&self) -> Value {
         let each = self.0.iter().map(|(class, all)| {
             let band = self.band(*class);
@@ -52,8 +53,9 @@ impl Fit {
         self.0.entry(brought.class).or_default().push(*brought);
     }
 
-    /// By class: voxels in the draft, of the networks and as shown, the share of those shown that is the networks', the
-    /// share of objects within the band of their class, and for what moved how many times its voxels it has now.
+    /// Figures by class: voxels in the draft, of the networks and as shown; the share of the shown voxels that the
+    /// networks made; the share of objects within the band of their class; and for moved objects the ratio of the
+    /// number of voxels after to that before.
     pub fn report(&self, bands: &Bands) -> Value {
         let each = self.0.iter().map(|(class, all)| {
             let of = |f: &dyn Fn(&Brought) -> usize| all.iter().map(|b| f(b) as f64).collect::<Vec<_>>();

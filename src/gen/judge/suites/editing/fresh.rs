@@ -1,4 +1,4 @@
-//! What inversion is worth: the same edits from the noise that the source comes from, and from fresh noise.
+//! Value of inversion: the same edits from the noise that the source comes from, and from fresh noise.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx};
 use scene::Scene;
 
-/// Starts: name and share of the steps that fresh noise is put in at; 0 is inversion.
+/// Starts: name, and share of the steps at which fresh noise is put in; 0 is inversion.
 const STARTS: [(&str, f64); 3] = [
     ("inversion", 0.0),
     ("fresh_noise_half", 0.5),
@@ -56,7 +56,7 @@ impl Fresh {
         Ok(())
     }
 
-    /// By kind and start.
+    /// Figures by kind and start.
     pub fn report(&self) -> Value {
         let each = self.0.iter().map(|(kind, starts)| {
             let by_start = STARTS.iter().zip(starts);

@@ -1,4 +1,4 @@
-//! What edits invent, by preset of the quality slider and kind of edit, for every vehicle of a scene.
+//! Voxels that edits invent, by preset of the quality slider and kind of edit, for every vehicle of a scene.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -29,9 +29,9 @@ const ADDED: [Class; 6] = [
 ];
 /// The preset that the bars are about.
 const USUAL: &str = "balanced";
-/// Differences in the mean number of invented voxels that count.
+/// Smallest difference in the mean number of invented voxels that counts.
 const CLEARLY: f64 = 1.0;
-/// What was found on one material.
+/// Figures of one material.
 pub struct Invention {
     /// All figures.
     pub report: Value,
@@ -48,7 +48,7 @@ struct OfPreset {
     moved: Fit,
 }
 
-/// Every edit that suits a scene, with its kind; the same for every preset.
+/// Every edit that suits a scene, with its kind; the list is the same for every preset.
 pub(super) fn trials(scene: &Scene, most: usize, seed: u64) -> Vec<(&'static str, Trial)> {
     let frame = scene.frame();
     let mut out = Vec::new();
@@ -71,7 +71,7 @@ impl Options {
     pub(super) fn presets(&self) -> anyhow::Result<Vec<Preset>> {
         let all = Presets::bundled().all;
         if self.presets.is_empty() {
-            // The reference takes seconds an edit.
+            // The reference is left out: it takes seconds an edit.
             return Ok(all.into_iter().filter(|s| s.error.high > 0.0).collect());
         }
         let named = |name: &String| match all.iter().find(|s| s.name == *name) {
@@ -84,7 +84,7 @@ impl Options {
         self.presets.iter().map(named).collect()
     }
 
-    /// Every edit of every scene with every preset, and inversion beside fresh noise.
+    /// Tries every edit of every scene with every preset, and compares inversion with fresh noise.
     pub(super) fn invention(
         &self,
         material: &Material,
@@ -107,7 +107,7 @@ impl Options {
             let trials = trials(&scene, self.vehicles, i as u64);
             for (preset, found) in presets.iter().zip(&mut found) {
                 let params = preset.knobs.on(base.clone());
-                // Every edit starts from the inverted source, none from what another left in memory.
+                // Every edit starts from the inverted source, never from what another edit left in memory.
                 let mut ready = pipeline.clone();
                 let job = Job {
                     scene: Arc::new(scene.clone()),
@@ -161,7 +161,7 @@ impl OfPreset {
     }
 }
 
-/// One row per preset, from the fastest to the slowest: how far it is from the slider's reference, and what it invents.
+/// One row per preset, from the fastest to the slowest: its distance to the slider's reference, and what it invents.
 fn table(presets: &[Preset], found: &[OfPreset]) -> Value {
     let rows = presets.iter().zip(found).map(|(preset, found)| {
         let kinds = found.kinds.iter().map(|(kind, tally)| {
@@ -182,8 +182,8 @@ fn table(presets: &[Preset], found: &[OfPreset]) -> Value {
     rows.collect()
 }
 
-/// Kinds of edits in which a preset invents more than a faster one does, networks alone: nearer to the slider's reference,
-/// and not more accurate.
+/// Kinds of edits in which the networks alone invent more with a preset than with a faster one: such a preset is nearer
+/// to the slider's reference, but not more accurate.
 fn contradictions(presets: &[Preset], found: &[OfPreset]) -> Vec<String> {
     let kinds: BTreeSet<&str> = found.iter().flat_map(|f| f.kinds.keys().copied()).collect();
     let mut out = Vec::new();

@@ -1,4 +1,4 @@
-//! What edits are tried on: complete worlds, simulated labels of the same worlds, frames of a data set.
+//! Materials that edits are tried on: complete worlds, simulated labels of the same worlds, frames of a data set.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,9 +11,10 @@ use world::voxelize::{Drive, Vertical, labelled};
 
 /// Scenes of one kind.
 pub enum Material {
-    /// So many held-out worlds, every voxel of them.
+    /// Held-out worlds with all their voxels; holds their number.
     Complete(usize),
-    /// The same worlds as a simulated labelling drive sees them, with the worlds' own layout and boxes.
+    /// Held-out worlds as a simulated labelling drive sees them, with the worlds' own layout and boxes; holds their
+    /// number.
     Labels(usize),
     /// Frames from files; layout and boxes are inferred.
     Files(Vec<PathBuf>),
@@ -47,7 +48,7 @@ impl Material {
     }
 }
 
-/// Held-out world `index` as its labels, with what the labelling drive did not observe.
+/// Labels of held-out world `index` as a scene, with the places that the labelling drive did not observe.
 fn labelled_scene(index: u64) -> Scene {
     let (world, seed) = world_of(TEST_SEED, index, |_| None);
     let rig = SensorRig::default();

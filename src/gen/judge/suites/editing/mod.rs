@@ -1,5 +1,5 @@
-//! `eval editing`: do edits do what they say, and nothing else? On complete worlds, on simulated labels and on any folder of
-//! Occ3D frames.
+//! `eval editing`: do edits do what they say, and nothing else? Tried on complete worlds, on simulated labels and on
+//! any folder of Occ3D frames.
 
 mod fidelity;
 mod fit;
@@ -24,7 +24,7 @@ use materials::Material;
 use scene::{Scene, VoxelGrid};
 
 impl Options {
-    /// All of it for procedural worlds; what edits invent for a folder of frames.
+    /// Runs all parts on procedural worlds; on a folder of frames, only counts what edits invent.
     pub(crate) fn editing(
         &self,
         pipeline: &mut OccPipeline,
@@ -57,7 +57,7 @@ impl Options {
     }
 }
 
-/// Applies one edit and regenerates; occupancy after it, and the cost.
+/// Applies one edit and regenerates. Returns the occupancy after it, and the report.
 pub(super) fn edited(
     pipeline: &mut OccPipeline,
     scene: &Scene,

@@ -16,7 +16,7 @@ use metrics::stats::mean_ci95;
 use numeric::quantile::median;
 use scene::Window;
 
-/// What was measured of one kind of edit.
+/// Figures of one kind of edit.
 #[derive(Default)]
 struct Kind {
     success: Vec<f64>,
@@ -68,7 +68,7 @@ impl Kind {
 }
 
 impl Options {
-    /// One edit of every kind per world; the inversion of its source is shared, as in the window.
+    /// Tries one edit of every kind per world; they share the inversion of their source, as in the window.
     pub(crate) fn success(
         &self,
         pipeline: &mut OccPipeline,
@@ -102,7 +102,7 @@ impl Options {
                 untouched += report.untouched_voxels_changed;
                 let entry = kinds.entry(kind).or_default();
                 entry.add(reached, &report);
-                // As the editor and `sceneloom edit` show it: what the networks left out is put in.
+                // As the editor and `sceneloom edit` show it: objects that the networks left out are put in.
                 let kept = GenParams {
                     keep_objects: true,
                     ..params.clone()
@@ -114,7 +114,8 @@ impl Options {
                     .success_in_editor
                     .push(f64::from(u8::from(reached.success())));
                 if params.local && report.region_columns > 0 {
-                    // What the other tokens' stored keys and values cost in accuracy, and save in time.
+                    // Measures the accuracy that the stored keys and values of other tokens cost, and the time they
+                    // save.
                     let dense = GenParams {
                         local: false,
                         ..params.clone()

@@ -1,4 +1,4 @@
-//! What edits of one kind reached and invented, over all scenes.
+//! Success and invented voxels of edits of one kind, over all scenes.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::suite::with_interval;
 use metrics::stats::mean_ci95;
 use scene::Class;
 
-/// More invented voxels than this are a thing that somebody would see.
+/// More invented voxels than this would be noticed as a thing.
 pub const MUCH: usize = 20;
 
 /// Figures of one state.
@@ -50,7 +50,7 @@ impl Tally {
         (mean_ci95(&s.invented).0, mean_ci95(&s.much).0)
     }
 
-    /// By state.
+    /// Figures by state.
     pub fn report(&self) -> Value {
         let each = STATES.iter().zip(&self.0).map(|(name, s)| {
             let by_class: BTreeMap<&str, usize> = Class::ALL

@@ -1,4 +1,4 @@
-//! One edit, tried: the networks' own result, and what the composite makes of it.
+//! Tries one edit: the networks' own result, and what the composite makes of it.
 
 use std::sync::Arc;
 
@@ -14,34 +14,34 @@ use job::request::{Request, voxels_of};
 use job::{GenParams, Job, JobCtx, Pipeline};
 use scene::{BevLayout, Class, Extent, Scene, SceneBox, VoxelGrid, draft};
 
-/// States of a result, in the order in which the composite makes them: the networks alone; with placed boxes and painted
-/// ground kept; as the editor shows it, with the road kept clear and unobserved places kept as well.
+/// States of a result, in the order in which the composite makes them: the networks alone; with placed boxes and
+/// painted ground kept; as the editor shows it, with the road kept clear and unobserved places kept as well.
 pub const STATES: [&str; 3] = ["networks", "objects_kept", "shown"];
 
-/// What became of an edit.
+/// Outcome of an edit.
 pub struct Tried {
-    /// What it reached, by state.
+    /// Success shares, by state.
     pub reached: [Reached; 3],
-    /// What it invented, by state.
+    /// Invented voxels, by state.
     pub invented: [Invented; 3],
-    /// About the object that it brought, if it brought one.
+    /// The object that it added or moved, if there is one.
     pub brought: Option<Brought>,
 }
 
-/// Voxels of an object that came, moved or changed its class.
+/// Number of voxels of an object that was added, moved or changed its class.
 #[derive(Clone, Copy, Debug)]
 pub struct Brought {
-    /// Its class now.
+    /// Class of the object after the edit.
     pub class: Class,
-    /// In the source, where an object of the same class moved; else none.
+    /// Voxels in the source, if an object of the same class moved; else `None`.
     pub before: Option<usize>,
-    /// In the draft.
+    /// Voxels in the draft.
     pub draft: usize,
-    /// Of the networks alone.
+    /// Voxels in the networks' own result.
     pub networks: usize,
-    /// As shown.
+    /// Voxels in the result as shown.
     pub shown: usize,
-    /// Of those shown, what the networks alone had put at the same places.
+    /// Voxels in the result as shown, where the networks' own result holds the same class.
     pub shared: usize,
 }
 
@@ -57,7 +57,7 @@ impl Brought {
             layers - draft::ground_bin(layout, x, y).min(layers.saturating_sub(1))
         };
         let [networks, _, shown] = states;
-        // Voxels of the class in both.
+        // Voxels of the class that the networks and the shown result share.
         let mut both = VoxelGrid::new();
         let same = networks
             .iter_set()
@@ -81,8 +81,8 @@ impl Brought {
     }
 }
 
-/// Tries an edit; `pipeline` keeps what it knew before. With `params.keep_objects` off the networks' own result comes back,
-/// and the steps of the composite are applied here, each as the pipeline applies it.
+/// Tries an edit; `pipeline` itself is left as it was. With `params.keep_objects` off, the pipeline returns the
+/// networks' own result, and the steps of the composite are applied here in the pipeline's order.
 pub fn try_edit(
     pipeline: &OccPipeline,
     scene: &Scene,

@@ -1,4 +1,5 @@
-//! Figures of a forecast beside how near it comes: how still what stands is, how an object keeps its shape.
+//! Figures of a forecast besides its nearness to the truth: how still standing things are, and how well an object keeps
+//! its shape.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ use scene::{Class, Extent, Pose, SceneBox, VoxelGrid, Window};
 pub struct Rows(pub BTreeMap<String, Vec<f64>>);
 
 impl Rows {
-    /// Adds one; what there is none of is left out.
+    /// Adds a value; `None` is left out.
     pub fn add(&mut self, name: &str, value: Option<f64>) {
         self.0.entry(name.to_owned()).or_default().extend(value);
     }
@@ -24,7 +25,7 @@ pub fn pose(frame: &DriveFrame) -> Pose {
     Pose::planar(x, y, yaw_rad)
 }
 
-/// Where a point of one frame lies in another, and in which column.
+/// Column of one frame in which a point of another frame lies.
 pub fn column_in(p: DVec3, from: &Pose, to: &Pose) -> Option<[usize; 2]> {
     let q = to.inverse().apply(from.apply(p.with_z(0.0)));
     Extent::WINDOW.column_at(q.x, q.y)
@@ -39,7 +40,8 @@ pub fn moving_columns<'a>(boxes: impl Iterator<Item = &'a SceneBox>) -> Vec<bool
     out
 }
 
-/// Of the voxels that hold anything in two frames one after the other, where nothing moves and both see: the share that differs.
+/// Share of voxels that change from one frame to the next, among those occupied in either of the two, where nothing
+/// moves and both frames see the place.
 pub fn flicker(truth: &[DriveFrame], found: &[VoxelGrid]) -> Option<f64> {
     let (mut held, mut differ) = (0u64, 0u64);
     for (pair, grids) in truth.windows(2).zip(found.windows(2)) {
@@ -64,8 +66,8 @@ pub fn flicker(truth: &[DriveFrame], found: &[VoxelGrid]) -> Option<f64> {
     (held > 0).then(|| differ as f64 / held as f64)
 }
 
-/// Of each object that moves and stays in sight: how much the number of its voxels varies over the frames (standard deviation
-/// over mean); the mean of all objects.
+/// Variation of the number of voxels of each object that moves and stays in sight over the frames (standard deviation
+/// over mean); mean over all objects.
 pub fn shape_spread(truth: &[DriveFrame], found: &[VoxelGrid]) -> Option<f64> {
     let inside = |b: &SceneBox| b.center_m.truncate().abs().max_element() < 36.0;
     let first = truth.first()?;
@@ -104,7 +106,7 @@ fn voxels_of(grid: &VoxelGrid, b: &SceneBox) -> f64 {
     n as f64
 }
 
-/// A box that goes on as it moves.
+/// A box after it has moved on at its velocity.
 pub fn moved_on(b: &SceneBox, seconds: f64, from: &Pose, to: &Pose) -> SceneBox {
     let way: DVec2 = b.velocity_mps * seconds;
     let on = SceneBox {

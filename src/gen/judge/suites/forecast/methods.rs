@@ -13,24 +13,24 @@ use scene::{
     BevLayout, BoxId, Class, Density, Extent, Pose, SceneBox, VoxelGrid, VoxelPaint, Window, draft, raster,
 };
 
-/// Frames that are known.
+/// Number of known frames.
 pub const KNOWN: usize = 2;
 /// Steps of the sampler.
 const STEPS: usize = 12;
 
-/// Where the layouts of the frames to come are from.
+/// Source of the layouts of the frames to come.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Wish {
-    /// Those that came.
+    /// The layouts that came.
     Came,
-    /// The last known one as it goes on beyond its edge, and its boxes at their speed.
+    /// The last known layout, continued beyond its edge, and its boxes at their speed.
     Expected,
 }
 
 /// A way to forecast.
 #[derive(Clone, Copy)]
 pub struct Method {
-    /// As reports call it.
+    /// Name in reports.
     pub name: &'static str,
     how: How,
 }
@@ -47,7 +47,7 @@ enum How {
     Canvas,
 }
 
-/// All of them.
+/// All methods.
 pub const METHODS: [Method; 8] = [
     Method {
         name: "last frame, warped",
@@ -83,7 +83,7 @@ pub const METHODS: [Method; 8] = [
     },
 ];
 
-/// A frame to come, as far as it is told.
+/// Layout, boxes and pose of a frame to come, as far as the method knows them.
 struct Told {
     layout: BevLayout,
     boxes: BTreeMap<BoxId, SceneBox>,
@@ -103,8 +103,8 @@ pub struct Drives<'a> {
 const SAME_CELL: &str = "occ_dit_time_same_cell.safetensors";
 
 impl<'a> Drives<'a> {
-    /// Of a folder of weights, or those that ship. Errors if the folder lacks one of the networks but the ablation, or one is
-    /// damaged.
+    /// Reads the networks from a folder of weights, or takes those that ship. Errors if the folder lacks one of the
+    /// networks other than the ablation, or if one is damaged.
     pub fn new(models: &'a OccModels, folder: Option<&Path>) -> anyhow::Result<Self> {
         let read = |name| -> Result<Option<Vec<u8>>, WeightsError> {
             let path = folder.map(|f| f.join(name));
@@ -128,7 +128,7 @@ impl<'a> Drives<'a> {
         })
     }
 
-    /// The frames after the known ones; none if the method's weights are not there.
+    /// The frames after the known ones; `None` if the method's weights are missing.
     pub fn forecast(
         &self,
         method: Method,
@@ -163,8 +163,8 @@ impl<'a> Drives<'a> {
         }))
     }
 
-    /// By the networks, the known frames as context. More frames than the networks draw at once are drawn one part after
-    /// another, the last frames of a part known to the next.
+    /// Frames drawn by the networks, with the known frames as context. If there are more frames than the networks draw
+    /// at once, they are drawn in parts, and the last frames of a part are known to the next.
     fn drawn(
         &self,
         (time, decoder): (Option<&OccDitTime>, Option<&TimeDecoder>),
@@ -224,7 +224,8 @@ impl<'a> Drives<'a> {
         })
     }
 
-    /// On the canvas: what was seen or drawn stays, moving objects go on, the networks draw what comes into view.
+    /// Frames drawn on the canvas: seen or drawn places stay, moving objects go on, and the networks draw what comes
+    /// into view.
     fn on_canvas(&self, last: &DriveFrame, told: &[Told], seed: u64) -> anyhow::Result<Vec<VoxelGrid>> {
         let density = Density::of(&last.dense, last.layout.cells());
         let vae = &self.models.vae;
@@ -263,7 +264,7 @@ impl<'a> Drives<'a> {
         Ok(out)
     }
 
-    /// A frame to be drawn from layout and boxes alone.
+    /// Condition of a frame to be drawn from layout and boxes alone.
     fn condition(
         &self,
         layout: &BevLayout,
@@ -291,7 +292,7 @@ impl<'a> Drives<'a> {
     }
 }
 
-/// What is told of frame `i`. The vehicle's own way is always known.
+/// Layout, boxes and pose that a method knows of frame `i`. The vehicle's own path is always known.
 fn told(truth: &[DriveFrame], i: usize, wish: Wish) -> Told {
     let (last, came) = (&truth[KNOWN - 1], &truth[i]);
     let to = pose(came);
@@ -309,7 +310,7 @@ fn told(truth: &[DriveFrame], i: usize, wish: Wish) -> Told {
         .iter()
         .map(|(id, b)| (*id, moved_on(b, seconds, &from, &to)))
         .collect();
-    // Beyond its edge the map goes on as it is there.
+    // Beyond its edge the map is continued by the cells of the edge.
     let most = Window::NX as f64 * Window::VOXEL_M / 2.0 - 0.1;
     let at = |x: usize, y: usize| {
         let p = from
@@ -337,7 +338,7 @@ fn told(truth: &[DriveFrame], i: usize, wish: Wish) -> Told {
     }
 }
 
-/// A frame's voxels seen from elsewhere; free where it saw nothing.
+/// A frame's voxels seen from another pose; free where the frame saw nothing.
 fn warped(grid: &VoxelGrid, from: &Pose, to: &Told) -> VoxelGrid {
     let mut out = VoxelGrid::new();
     for [x, y] in Extent::WINDOW.all_columns() {
@@ -348,7 +349,7 @@ fn warped(grid: &VoxelGrid, from: &Pose, to: &Told) -> VoxelGrid {
     out
 }
 
-/// What was seen of the world from one place.
+/// Voxels seen from one place.
 struct Seen {
     grid: VoxelGrid,
     pose: Pose,
@@ -366,8 +367,8 @@ impl Seen {
     }
 }
 
-/// The world `i + 1` steps after the last known frame: what stands as it was seen first, what moves at its speed, the draft
-/// beyond; and which columns were seen.
+/// The world `i + 1` steps after the last known frame: standing things as they were first seen, moving ones at their
+/// speed, the draft beyond; and which columns were seen.
 fn moved_world(seen_from: &[Seen], last: &DriveFrame, to: &Told, i: usize) -> (VoxelGrid, Vec<bool>) {
     let from = pose(last);
     let drafted = draft::draft(&to.layout, to.boxes.values());

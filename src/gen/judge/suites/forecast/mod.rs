@@ -1,5 +1,6 @@
-//! `eval forecast`: how a drive goes on. Of drives through held-out worlds the first two frames are known; the other six are
-//! forecast by the temporal networks and by what they must beat, and compared with what came.
+//! `eval forecast`: forecasts of drives. Of each drive through a held-out world the first two frames are known. The
+//! other six are forecast by the temporal networks and by the methods that they must beat, and compared with the frames
+//! that came.
 
 mod figures;
 mod methods;
@@ -25,13 +26,13 @@ use stacks::Stack;
 /// One comparison of all methods.
 struct Comparison {
     name: &'static str,
-    /// Which layouts the frames to come are drawn from: those that came, or those that the last frame lets expect.
+    /// Source of the layouts of the frames to come: the layouts that came, or those expected from the last known frame.
     wish: Wish,
     /// Frames of a drive.
     frames: usize,
     /// Frames that are compared with what came, by their time after the last known one.
     compared: &'static [(&'static str, usize)],
-    /// Of this many drives one is taken.
+    /// Stride: one of so many drives is taken.
     every: usize,
 }
 
@@ -59,7 +60,7 @@ const COMPARISONS: [Comparison; 3] = [
     },
 ];
 
-/// What came of a method.
+/// Results of a method.
 #[derive(Default)]
 struct Made {
     rows: Rows,
@@ -67,7 +68,7 @@ struct Made {
 }
 
 impl Options {
-    /// Forecasts, side by side.
+    /// Runs all comparisons.
     pub(crate) fn forecast(&self, pipeline: &OccPipeline, progress: &dyn Progress) -> anyhow::Result<Found> {
         let drives = Drives::new(pipeline.models(), self.weights.as_deref())?;
         let extractor = Extractor::bundled()?;
@@ -166,7 +167,7 @@ pub(crate) fn table(report: &Value) -> String {
     out
 }
 
-/// A row for a report.
+/// Rows of a report.
 impl Rows {
     fn report(&self) -> Value {
         self.0

@@ -1,5 +1,5 @@
-//! How alike stacks of frames are to true ones as a distribution: places of a drive, what is there on average over its frames
-//! and how much it changes from frame to frame.
+//! Distance between the distributions of forecast and true stacks of frames. A stack is cut into places; each gives the
+//! mean of its features over the frames, and their mean change from frame to frame.
 
 use metrics::MetricError;
 use metrics::extractor::Extractor;
@@ -7,24 +7,25 @@ use metrics::local::Windows;
 use metrics::scenewise::{self, Distance};
 use scene::VoxelGrid;
 
-/// Cells along a frame, and along a place (8 m).
+/// Cells along a side of a frame, and along a side of a place (8 m).
 const SIDE: usize = 50;
 const PLACE: usize = 5;
-/// Channels of the extractor that are taken together, so that a few drives have more places than numbers.
+/// Number of neighbouring channels of the extractor that are averaged, so that a few drives have more places than
+/// numbers.
 const TOGETHER: usize = 8;
 
 /// Features of every frame of a drive, cell by cell.
 pub struct Stack(Vec<Windows>);
 
 impl Stack {
-    /// Of the frames. Errors if the extractor cannot compute.
+    /// Features of frames. Errors if the extractor cannot compute.
     pub fn of(extractor: &Extractor, frames: &[VoxelGrid]) -> anyhow::Result<Self> {
         let cells: Result<Vec<Windows>, _> = frames.iter().map(|grid| extractor.cells(grid)).collect();
         Ok(Self(cells?))
     }
 
-    /// How steady they are: mean over the frames after the first of the cosines with the frame before and with the first, of
-    /// features pooled over the frame (the code of UniScene, 2412.05435).
+    /// Steadiness of the frames: mean, over the frames after the first, of the cosines with the frame before and with
+    /// the first, of features pooled over the frame (as in the code of UniScene, 2412.05435).
     pub fn steadiness(&self) -> f64 {
         let pooled: Vec<Vec<f64>> = self.0.iter().map(|cells| mean(cells.iter())).collect();
         let cos = |a: &[f64], b: &[f64]| {

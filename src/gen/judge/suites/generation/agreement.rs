@@ -6,7 +6,7 @@ use crate::suite::{Bar, with_interval};
 use metrics::agreement::AgreementCount;
 use scene::{Scene, VoxelGrid};
 
-/// Columns of all frames together and frame by frame.
+/// Counts of columns, of all frames together and frame by frame.
 #[derive(Default)]
 pub struct Agreement {
     all: AgreementCount,

@@ -7,7 +7,7 @@ use metrics::kernel::{Kernel, mmd2_with_interval};
 use metrics::local::Windows;
 use metrics::scenewise::{self, standardised};
 
-/// Parts that the sets are split into for the intervals of MMD and KID.
+/// Number of parts that the sets are split into for the intervals of MMD and KID.
 const SUBSETS: usize = 8;
 
 /// F3D, KID and MMD of the pooled features of worlds and a set, then Fréchet and kernel distances of the extractor's 192

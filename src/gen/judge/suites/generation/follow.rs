@@ -1,5 +1,5 @@
-//! Does what stands beside the road follow the road, or only the seed? Manmade of one seed on two roads, and of one road
-//! from two seeds, compared voxel by voxel.
+//! Does the scenery follow the road, or only the seed? Manmade voxels of one seed on two roads, and of one road from
+//! two seeds, are compared voxel by voxel.
 
 use serde_json::{Value, json};
 
@@ -7,7 +7,7 @@ use crate::suite::with_interval;
 use metrics::iou::Confusion;
 use scene::{BevLayer, BevLayout, Class, VoxelGrid, Window};
 
-/// Scenes of some roads, each from a seed of its own and from one seed for all.
+/// Scenes of some roads: each from a seed of its own, and from one seed common to all.
 #[derive(Default)]
 pub struct Follow {
     unpaved: Vec<Vec<bool>>,
@@ -27,7 +27,7 @@ fn unpaved(layout: &BevLayout) -> Vec<bool> {
     layout.cells().iter().map(|cell| cell & bits == 0).collect()
 }
 
-/// IoU of the manmade voxels in the columns that both roads leave to buildings: that none stands on a road is no merit.
+/// IoU of the manmade voxels in the columns that are unpaved on both roads: leaving roads free earns nothing.
 fn manmade_iou(a: &VoxelGrid, b: &VoxelGrid, free: [&[bool]; 2]) -> Option<f64> {
     let (mut both, mut either) = (0u64, 0u64);
     for c in (0..Window::COLUMNS).filter(|c| free[0][*c] && free[1][*c]) {
@@ -42,7 +42,7 @@ fn manmade_iou(a: &VoxelGrid, b: &VoxelGrid, free: [&[bool]; 2]) -> Option<f64> 
 }
 
 impl Follow {
-    /// One road from both seeds.
+    /// Adds a road, generated from its own seed and from the common one.
     pub fn add(&mut self, layout: &BevLayout, own: VoxelGrid, common: VoxelGrid) {
         self.unpaved.push(unpaved(layout));
         self.own.push(own);
@@ -54,7 +54,7 @@ impl Follow {
         self.own.len()
     }
 
-    /// 1 - IoU of what is occupied from two seeds, road by road.
+    /// 1 - IoU of the occupied voxels from two seeds, road by road.
     pub fn diversity(&self) -> Vec<f64> {
         let pairs = self.own.iter().zip(&self.common);
         let each = pairs.filter_map(|(a, b)| {
@@ -65,13 +65,13 @@ impl Follow {
         each.collect()
     }
 
-    /// Both figures; null where there are not two roads.
+    /// The two figures; null if there are fewer than two roads.
     pub fn report(&self) -> Value {
         let free = |i: usize, j: usize| [self.unpaved[i].as_slice(), self.unpaved[j].as_slice()];
         let road: Vec<f64> = (0..self.len())
             .filter_map(|i| manmade_iou(&self.own[i], &self.common[i], free(i, i)))
             .collect();
-        // Every pair of neighbours in the order of the roads, each road in two of them.
+        // Every pair of neighbours in the order of the roads, so a road is in up to two pairs.
         let seed: Vec<f64> = (1..self.len())
             .filter_map(|i| manmade_iou(&self.common[i - 1], &self.common[i], free(i - 1, i)))
             .collect();

@@ -1,4 +1,4 @@
-//! Is a background that was given followed? What was generated against the world that it was given from.
+//! Does generation follow a given background? Compares generated scenes with the world that the background came from.
 
 use serde_json::{Value, json};
 
@@ -8,7 +8,7 @@ use scene::{Class, VoxelGrid, Window};
 /// Classes of the background and their names in the report.
 const CLASSES: [(Class, &str); 2] = [(Class::Manmade, "manmade"), (Class::Vegetation, "vegetation")];
 
-/// Scene by scene, for each of the classes.
+/// Figures scene by scene, for each of the classes.
 #[derive(Default)]
 pub struct Given {
     footprint_iou: [Vec<f64>; 2],
@@ -21,7 +21,8 @@ fn top(grid: &VoxelGrid, column: usize, class: Class) -> Option<usize> {
     labels.iter().rposition(|l| *l == class.id())
 }
 
-/// Columns in both over columns in either, and the share of the former whose tops differ by at most a voxel.
+/// Two shares: columns with the class in both grids over columns with it in either, and those of the former whose tops
+/// differ by at most a voxel.
 fn followed(found: &VoxelGrid, truth: &VoxelGrid, class: Class) -> [Option<f64>; 2] {
     let [mut both, mut either, mut level] = [0u64; 3];
     for column in 0..Window::COLUMNS {

@@ -1,4 +1,4 @@
-//! What context is worth: a square of a world inpainted, with and without what stands around it.
+//! Value of context: a square of a world inpainted, with and without its surroundings.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use job::region::Region;
 use job::{GenParams, Job, JobCtx, Named, Pipeline, RegionMode};
 use scene::{Class, Density, VoxelGrid, Window};
 
-/// Side of the square, columns, how often it is inpainted, and the step of its places.
+/// Side of the square, columns; how often it is inpainted; and the step of its places.
 const SIDE: usize = 28;
 const DRAWS: u64 = 3;
 const PLACE_STEP: usize = 12;
 
-/// IoU of inpainted squares frame by frame: with context and without; of the square, of its seam.
+/// IoU of inpainted squares frame by frame: with context and without; in the square, along its seam.
 #[derive(Default)]
 pub struct Inpainted([[Vec<f64>; 2]; 2]);
 
@@ -42,12 +42,12 @@ impl Inpainted {
     }
 }
 
-/// True if a voxel above the ground is occupied: the road is the layout's business.
+/// Whether each voxel above the ground is occupied; the road is left out, since the layout gives it.
 fn standing(grid: &VoxelGrid, x: usize, y: usize) -> impl Iterator<Item = bool> {
     grid.column(x, y)[1..].iter().map(|l| *l != Class::FREE)
 }
 
-/// The columns of the square in which most stands.
+/// The columns of the square with the most occupied voxels above the ground.
 fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
     let square = |x0: usize, y0: usize| {
         let ys = move |x| (y0..y0 + SIDE).map(move |y| [x, y]);
@@ -64,10 +64,13 @@ fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
     squares.max_by_key(count).unwrap_or_default()
 }
 
-/// Draws a whole scene of a world's layout, character and steps that sees nothing of the world, puts what it drew into the
-/// world's fullest square, and inpaints that square from fresh noise: so nothing, not even the latents around, knows what
-/// stood there. Of the inpainted square and of the whole scene's, IoU of what stands in it with the world there, and of what
-/// stands along its border with the world's columns right outside: walls and hedges should go on. Means of some draws.
+/// Mean IoU with the world over some draws, inside the square and along its seam: first of an inpainted square, then of
+/// a whole scene drawn without context.
+///
+/// A whole scene is drawn from the world's layout, character and steps, and sees nothing of the world. It is put into
+/// the world's fullest square, and that square is inpainted from fresh noise: neither labels nor latents around carry
+/// what stood there. Each IoU is taken inside the square, and along its border against the world's columns right
+/// outside: walls and hedges should go on.
 fn inpainted_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64; 2]; 2]> {
     let frame = job.scene.frame();
     let truth = &frame.occupancy;
@@ -89,7 +92,7 @@ fn inpainted_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64;
     };
     let ctx = JobCtx::detached();
     let region = Region::of_columns(columns.clone());
-    // What stands in the square, and right beside it against what was drawn along its border.
+    // Compares the square, and the columns drawn along its border with the world's columns right beside it.
     let shares = |drawn: &VoxelGrid| {
         let [mut inside, mut seam] = [[0u64; 2]; 2];
         let count = |sums: &mut [u64; 2], a: [usize; 2], b: [usize; 2]| {
@@ -134,7 +137,7 @@ fn inpainted_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64;
     Ok(mean)
 }
 
-/// What context adds, frame by frame: of the square (0) or of its seam (1).
+/// Gain by context, frame by frame: in the square (0) or along its seam (1).
 fn gain(inpainted: &[[Vec<f64>; 2]; 2], of: usize) -> Value {
     let pairs = inpainted[0][of].iter().zip(&inpainted[1][of]);
     with_interval(&pairs.map(|(seen, blind)| seen - blind).collect::<Vec<_>>())

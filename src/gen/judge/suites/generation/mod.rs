@@ -1,5 +1,6 @@
-//! `eval generation`: scenes from their layout alone, against the layout and against worlds. Every figure is given for
-//! several sets of scenes side by side, so that it is seen what the worlds themselves, the VAE and the draft give.
+//! `eval generation`: scenes from their layout alone, compared with the layout and with worlds. Every figure is given
+//! for several sets of scenes side by side, so that the figures of the worlds themselves, the VAE and the draft are
+//! seen too.
 
 mod agreement;
 mod distribution;
@@ -38,12 +39,12 @@ use world::voxelize::{Vertical, complete};
 
 /// Frames that are generated a second time, from another seed.
 const DIVERSITY_FRAMES: usize = 8;
-/// Added to a seed for a draw that has nothing in common with the first.
+/// Offset of the seed for a second draw that shares nothing with the first.
 const OTHER_SEED: u64 = 1_000_000;
-/// Place of the generated scenes among the rows.
+/// Index of the generated scenes among the rows.
 const GENERATED: usize = 5;
 
-/// All that is measured, frame by frame.
+/// Figures of all frames.
 #[derive(Default)]
 struct Measured {
     rows: [Row; ROWS.len()],
@@ -52,14 +53,14 @@ struct Measured {
     likeness: Confusion,
     wall_s: Vec<f64>,
     inpainted: Inpainted,
-    /// Of generated scenes and of worlds.
+    /// One for generated scenes, one for worlds.
     follow: [Follow; 2],
-    /// With the fine stage and without.
+    /// One with the fine stage, one without.
     given: [Given; 2],
 }
 
 impl Options {
-    /// Occupancy from the layout alone.
+    /// Judges occupancy generated from the layout alone.
     pub(crate) fn generation(
         &self,
         pipeline: &mut OccPipeline,
@@ -105,7 +106,7 @@ impl Options {
         Ok((report, found.agreement.bars()))
     }
 
-    /// World `i` and all that is made from its layout.
+    /// Judges world `i` and everything that is made from its layout.
     fn frame(
         &self,
         i: usize,
@@ -219,7 +220,7 @@ fn of<'a>(row: usize, other: &'a Scene, world: &'a Scene) -> &'a Scene {
     if row == 0 { other } else { world }
 }
 
-/// A scene with its background regenerated; the window does it by rules before it generates.
+/// A scene with its scenery regenerated. The window does this by rules before it generates.
 fn with_drawn_scenery(scene: &Arc<Scene>, by: Drawer, seed: u64) -> anyhow::Result<Arc<Scene>> {
     let mut document = Document::new((**scene).clone());
     let wish = SceneryWish {

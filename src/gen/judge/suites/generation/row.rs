@@ -1,4 +1,4 @@
-//! One row of the judge's table: a set of scenes, what is gathered of each, and its figures beside other worlds.
+//! One row of the judge's table: a set of scenes, the features kept of each, and the set's figures beside other worlds.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use scene::{Scene, SensorRig, VoxelGrid};
 use sensors::march::{MarchOptions, MarchScene};
 use world::draw::Draw;
 
-/// Cells of the extractor's map, and windows of occupancy, that are taken of a scene for distances.
+/// Number of cells of the extractor's map, and of windows of occupancy, that are taken of a scene for distances.
 const TAKEN: usize = 48;
 
 /// The sets of scenes, in the order of the table. All but the first are made for the layouts of the second.
@@ -50,7 +50,7 @@ pub const ROWS: [(&str, &str); 12] = [
     ("draft_alone", "the drafts of the layouts"),
 ];
 
-/// What is kept of one scene.
+/// Features and figures kept of one scene.
 pub struct Seen {
     shape: ShapeFigures,
     pooled: Vec<f64>,
@@ -58,12 +58,12 @@ pub struct Seen {
     windows: Windows,
     patches: Windows,
     depths: Windows,
-    /// Findings by check, errors, all.
+    /// Findings by check, errors, and all.
     findings: BTreeMap<&'static str, f64>,
 }
 
 impl Seen {
-    /// Looks at occupancy made for the layout and boxes of a scene; `index` chooses the windows that are taken.
+    /// Takes features of occupancy made for the layout and boxes of a scene; `index` seeds the choice of windows.
     pub fn of(scene: &Scene, grid: &VoxelGrid, index: u64, extractor: &Extractor) -> anyhow::Result<Self> {
         let cells = extractor.cells(grid)?;
         let windows = occupancy::windows(grid);
@@ -165,7 +165,7 @@ impl Row {
         Value::Object(out)
     }
 
-    /// All figures, distances of two scenes or more; `others` are the worlds that it is compared with.
+    /// All figures; distances only from two scenes on. `others` are the worlds that the set is compared with.
     pub fn report(&self, others: &Row, seed: u64) -> anyhow::Result<Value> {
         let pair = |of: fn(&Seen) -> &Windows| [others.each(of), self.each(of)];
         let mut out = json!({

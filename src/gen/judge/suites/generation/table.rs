@@ -7,11 +7,11 @@ use serde_json::Value;
 use super::row::ROWS;
 use metrics::shape::FIGURES;
 
-/// Width of a column and of the names before them, characters.
+/// Width of a column, and of the names before them, characters.
 const COLUMN: usize = 17;
 const NAME: usize = 30;
 
-/// Figures of all rows: name, and where each row holds it.
+/// Figures of all rows: name, and JSON pointer into a row.
 fn lines() -> Vec<(String, String)> {
     let mut out: Vec<(String, String)> = [
         ("drivable agreement", "/layout_agreement/drivable_per_frame"),
@@ -38,7 +38,7 @@ fn lines() -> Vec<(String, String)> {
     out
 }
 
-/// Three significant digits, plainly.
+/// Three significant digits, without an exponent.
 fn number(value: f64) -> String {
     let digits = 2 - value.abs().max(1e-4).log10().floor() as i32;
     format!("{value:.*}", digits.clamp(0, 4) as usize)

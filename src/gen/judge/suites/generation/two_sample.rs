@@ -1,4 +1,4 @@
-//! The two-sample test of a set of scenes against other worlds, and by what it can be told.
+//! The two-sample test of a set of scenes against other worlds, with the features that tell them apart.
 
 use serde_json::{Value, json};
 
@@ -7,11 +7,11 @@ use metrics::two_sample::{tells, two_sample};
 
 /// Fewest scenes of a set.
 const FEWEST: usize = 4;
-/// Features that are named.
+/// Number of features that are named.
 const NAMED: usize = 5;
 
-/// Accuracy by window and by scene, .5 where the sets cannot be told apart, and the features that differ most. Null below
-/// four scenes.
+/// Accuracy by window and by scene, .5 where the sets cannot be told apart, and the features that differ most. Null
+/// below four scenes.
 pub fn report([others, set]: &[Vec<Windows>; 2], names: &[String], seed: u64) -> anyhow::Result<Value> {
     if others.len().min(set.len()) < FEWEST {
         return Ok(Value::Null);

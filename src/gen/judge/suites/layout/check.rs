@@ -1,17 +1,17 @@
-//! An independent judge of placements: what a reader of the prompt would measure on the map. Shares no code with the
+//! An independent judge of placements: measures on the map what a reader of the prompt would. Shares no code with the
 //! placer; its lanes are the layout's polylines as they are.
 
 use glam::DVec2;
 
 use scene::{BevLayer, BevLayout, Class, Paint, PolylineKind, SceneBox, Window};
 
-/// A layout with what stands on it.
+/// A layout and the boxes on it.
 pub struct Judge<'a> {
     pub layout: &'a BevLayout,
     pub boxes: &'a [SceneBox],
 }
 
-/// Who a relation is to.
+/// Target of a relation.
 enum To {
     Point(DVec2, DVec2, f64), // centre, direction, half length
     Place(String),
@@ -66,7 +66,7 @@ impl Judge<'_> {
             .min_by(|a, b| near(a).total_cmp(&near(b)))
     }
 
-    /// Metres left of the ego's lane.
+    /// Offset to the left of the ego's lane, m.
     fn beside_ego(&self, p: DVec2) -> f64 {
         let Some(lane) = self.ego_lane() else {
             return p.y;
@@ -106,7 +106,8 @@ impl Judge<'_> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Metres from where lanes of different directions meet. At a roundabout ours ends a few metres before the ring.
+    /// Distance to the nearest place where lanes of different directions meet, m. At a roundabout the ego's lane ends a
+    /// few metres before the ring.
     fn to_junction(&self, p: DVec2) -> f64 {
         [4.0, 8.0]
             .into_iter()
@@ -146,7 +147,8 @@ impl Judge<'_> {
         }
     }
 
-    /// "red car", "taxi", "white garbage truck": by the label.
+    /// True if a box fits a name: a label such as "taxi", or paint with a class or label such as "red car" or "white
+    /// garbage truck".
     fn is_called(name: &str, b: &SceneBox) -> bool {
         let paint = Paint::ALL.into_iter().find_map(|p| {
             let rest = name.strip_prefix(p.name())?.strip_prefix(' ')?;
@@ -165,7 +167,8 @@ impl Judge<'_> {
         self.boxes.iter().filter(|b| Self::is(class, b)).count()
     }
 
-    /// True if at least `n` boxes of class `a` (all, if `None`) stand so to `b` (and `c`); with `metres`, that far away to 15 % or 2 m.
+    /// True if at least `n` boxes of class `a` (all, if `None`) are in `relation` to `b` (and `c`). With `metres`, they
+    /// must be at that distance, to 15 % or 2 m.
     pub fn holds(
         &self,
         a: &str,
@@ -367,7 +370,7 @@ impl Judge<'_> {
         }
     }
 
-    /// Pairs of boxes whose footprints share ground, and all pairs.
+    /// Number of pairs of boxes whose footprints overlap, and of all pairs.
     pub fn overlaps(&self) -> (usize, usize) {
         let mut hits = 0;
         let n = self.boxes.len();
@@ -379,7 +382,7 @@ impl Judge<'_> {
         (hits, n * n.saturating_sub(1) / 2)
     }
 
-    /// Vehicles whose whole footprint is on road or car park, and all vehicles.
+    /// Number of vehicles whose whole footprint is on road or car park, and of all vehicles.
     pub fn on_drivable(&self) -> (usize, usize) {
         let mut on = 0;
         let mut n = 0;
@@ -403,7 +406,8 @@ impl Judge<'_> {
         (on, n)
     }
 
-    /// Moving vehicles and two-wheelers on lanes that head within 15 degrees of one, and all of them.
+    /// Counts moving vehicles and two-wheelers off walkways: those on a lane and within 15 degrees of its heading, then
+    /// all of them.
     pub fn headings(&self) -> (usize, usize) {
         let (mut good, mut n) = (0, 0);
         let limit = 15f64.to_radians().cos();
@@ -417,7 +421,7 @@ impl Judge<'_> {
             }
             n += 1;
             let p = b.center_m.truncate();
-            // In a junction lanes lie over one another: any within 1.5 m counts.
+            // In a junction lanes lie over one another: any lane within 2.5 m counts.
             let ok = self
                 .layout
                 .polylines

@@ -35,10 +35,10 @@ use words::remark::Remark;
 use words::stage::OpenScene;
 use words::tokens::tokens;
 
-/// Where the sets that are judged lie, in the source tree.
+/// Folder of the judged sets in the source tree.
 const SETS: &str = "tests/words/dev";
 
-/// Files of `path` with what stands in them: itself, or all `.jsonl` of a folder, in the order of their names.
+/// Files with their contents: `path` itself, or all `.jsonl` of a folder, in the order of their names.
 fn sets(path: &Path) -> anyhow::Result<Vec<(String, String)>> {
     let mut files = vec![path.to_owned()];
     if path.is_dir() {
@@ -71,15 +71,15 @@ fn cases_of(name: &str, text: &str) -> anyhow::Result<Vec<Case>> {
         .collect()
 }
 
-/// One line of the file.
+/// One line of a file of sentences.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Case {
     pub text: String,
-    /// A prompt that makes the scene to edit; none: `text` makes a scene.
+    /// A prompt that makes the scene to edit; `None` if `text` itself makes a scene.
     #[serde(default)]
     pub base: Option<String>,
-    /// Class (or `vehicle`) to number, or least and most.
+    /// Number of boxes by class (or `vehicle`), exact or as least and most.
     #[serde(default)]
     counts: BTreeMap<String, Number>,
     #[serde(default)]
@@ -90,13 +90,13 @@ pub(super) struct Case {
     weather: Option<String>,
     #[serde(default)]
     road: Option<String>,
-    /// The edit must ask back with so many candidates.
+    /// Number of candidates that the edit must ask about.
     #[serde(default)]
     asks: Option<usize>,
-    /// What the text says, in notation.
+    /// Reading of the text, in notation.
     #[serde(default)]
     reading: Option<String>,
-    /// Line in its file, from 0: seeds hang on it.
+    /// Line in its file, from 0: seeds depend on it.
     #[serde(skip)]
     pub line: u64,
 }
@@ -108,7 +108,7 @@ enum Number {
     Between([usize; 2]),
 }
 
-/// `[a, relation, b]`, with how many of `a`, the distance and a second `b`.
+/// `[a, relation, b]`, with the number of `a`, the distance and a second target beside `b`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Relation {
@@ -137,29 +137,29 @@ pub(super) struct Tally {
     wall_s: Vec<f64>,
     slowest: Vec<(f64, String)>,
     failed: Vec<Value>,
-    /// Right cases of which something was said all the same, and what of the first of them.
+    /// Right cases with a needless remark, and the remarks of the first of them.
     spoke: usize,
     needless: Vec<Value>,
-    /// Failed cases of which nothing was said: no note, no question, no word named as not understood.
+    /// Failed cases without any remark: no note, no question, no word named as not understood.
     silent: usize,
     /// Failed edits of a scene whose own prompt was read with doubts.
     doubtful_base: usize,
 }
 
-/// What the program said of a case beside doing it.
+/// Remarks of the program on a case.
 #[derive(Default)]
 pub(super) struct Told {
-    /// Anything at all.
+    /// True if there was any remark.
     pub spoke: bool,
-    /// For the report of a failed case.
+    /// Details for the report of a failed case.
     pub details: Value,
-    /// The scene that is edited was made of a prompt that was read with doubts.
+    /// True if the edited scene comes from a prompt that was read with doubts.
     pub doubtful_base: bool,
 }
 
-/// How many right cases with a remark the report names.
+/// Number of right cases with a remark that the report names.
 const NEEDLESS: usize = 400;
-/// How many of the slowest cases the report names.
+/// Number of the slowest cases that the report names.
 const SLOWEST: usize = 8;
 
 /// Share and the half width of its 95 % interval (Wilson), as text for the report.
@@ -219,14 +219,14 @@ fn place_description(
     (scene, laid)
 }
 
-/// The edits without what moves in the course of time: the cases speak of one moment.
+/// The edits without those over time: the cases are about one moment.
 fn at_the_start(edits: &[scene::Edit]) -> Vec<scene::Edit> {
     let of_time =
         |edit: &&scene::Edit| !matches!(edit, scene::Edit::LetMove { .. } | scene::Edit::SetLength { .. });
     edits.iter().filter(of_time).cloned().collect()
 }
 
-/// Each box in a few words: class, where its centre is (m), which way it looks (deg), how fast it is (m/s).
+/// Each box in a few words: class, centre (m), heading (deg), speed (m/s).
 fn in_short(scene: &Scene) -> Vec<String> {
     let boxes = scene.frame().boxes.values();
     boxes
@@ -239,7 +239,8 @@ fn in_short(scene: &Scene) -> Vec<String> {
 }
 
 impl Tally {
-    /// Judges the scene that came of a case, of which something may be `wrong` already; `told` is asked of a failed one.
+    /// Judges the scene of a case; `wrong` holds faults that are known already. `told` is called for a failed case
+    /// only.
     pub(super) fn add(
         &mut self,
         case: &Case,
@@ -339,7 +340,7 @@ impl Tally {
     }
 }
 
-/// A reading with whether anything is said about how it was read.
+/// A reading, and whether there is a remark on how it was read.
 struct Read {
     reading: Reading,
     doubts: Value,
@@ -367,7 +368,7 @@ impl Who {
                 let line = case.reading.as_ref();
                 let line = line.with_context(|| format!("no reading stands beside {:?}", case.text))?;
                 let reading = notation::parse(line).with_context(|| format!("{:?}", case.text))?;
-                // (what is named of a right reading is named without need)
+                // (words of a right reading that are named as not understood count as needless remarks)
                 let reader = LearnedReader::bundled()?;
                 let tokens = tokens(&case.text, Some(reader.speller()));
                 let missing = missing(&case.text, &tokens, &reading, reader.speller());
@@ -459,7 +460,7 @@ fn changed(
         .apply_all("Edit by text", &at_the_start(&outcome.edits))
         .with_context(|| format!("{:?}", case.text))?;
     let told = || Told {
-        // (which of several was taken, or that it is so already, is no doubt)
+        // (which candidate was taken, or that the scene is so already, is no doubt)
         spoke: read.spoke
             || !outcome.questions.is_empty()
             || outcome
@@ -474,7 +475,7 @@ fn changed(
 }
 
 impl Options {
-    /// Prompts and text edits, judged by [`Judge`].
+    /// Judges prompts and text edits by [`Judge`].
     pub(crate) fn layout(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
         let mut cases: Vec<Case> = Vec::new();
         for (name, text) in sets(self.prompts.as_deref().unwrap_or(Path::new(SETS)))? {

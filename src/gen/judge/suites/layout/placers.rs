@@ -1,4 +1,4 @@
-//! The placers side by side: by rules and by diffusion, with memory and without, on the same prompts and seeds.
+//! Compares the placers: by rules and by diffusion, with memory and without, on the same prompts and seeds.
 
 use std::collections::BTreeMap;
 
@@ -14,11 +14,11 @@ use numeric::quantile::median;
 use scene::SceneBox;
 use scene::road_map::RoadMap;
 
-/// Prompts whose diversity across four seeds is measured.
+/// Number of prompts whose diversity across four seeds is measured.
 const DIVERSE: usize = 8;
 
 impl Options {
-    /// Figures of each way to place; the statistics beside those of real drives (`reference/real_statistics`).
+    /// Figures of each way to place, and the statistics beside those of real drives (`reference/real_statistics`).
     pub(super) fn placers(&self, cases: &[Case], progress: &dyn Progress) -> Value {
         // Spread over the sets.
         let prompts: Vec<&Case> = cases.iter().filter(|c| c.base.is_none()).collect();
@@ -76,7 +76,8 @@ impl Options {
             let mut report = tally.report();
             report["objects"] = objects.into();
             report["rows"] = json!(figures.rows());
-            // How far the medians lie from those of real drives, in the width between their 5th and 95th percentiles.
+            // Distance of the medians from those of real drives, in units of the width between their 5th and 95th
+            // percentiles.
             let off: Vec<f64> = figures
                 .rows()
                 .iter()

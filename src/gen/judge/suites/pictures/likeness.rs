@@ -1,6 +1,6 @@
-//! How like rendered pictures the learned ones are as a whole: Fréchet distance (FID) and kernel distance (KID) of what the
-//! program's own segmenter sees in windows of both. Its weights ship, so the figures can be made again anywhere; they are not
-//! comparable with those of other networks' features.
+//! Likeness of learned and rendered pictures as a whole: Fréchet distance (FID) and kernel distance (KID) of features
+//! that the program's own segmenter finds in windows of both. Its weights ship, so the figures can be made again
+//! anywhere. They are not comparable with those of other networks' features.
 
 use anyhow::Context;
 use serde_json::{Value, json};
@@ -17,10 +17,10 @@ use world::draw::Draw;
 
 use crate::held_out::TEST_SEED;
 
-/// Features of windows of all pictures of a world.
+/// Features of the windows of all pictures of a world.
 type Windows = Vec<Vec<f64>>;
 
-/// What is seen in pictures of each world, and in rendered ones of other worlds.
+/// Features of rendered and learned pictures of each world, and of rendered ones of other worlds.
 #[derive(Default)]
 pub(super) struct Likeness {
     rendered: Vec<Windows>,
@@ -41,7 +41,7 @@ impl Likeness {
         Ok(())
     }
 
-    /// Adds rendered pictures of another held-out world, in the light and weather of that number.
+    /// Adds rendered pictures of another held-out world, in light and weather number `light`.
     pub(super) fn add_other(&mut self, net: &PictureSegmenter, index: u64, light: u64) -> anyhow::Result<()> {
         let (world, seed) = world_of(TEST_SEED, index, |_| None);
         let frame = super::frame_of(&world);
@@ -58,8 +58,8 @@ impl Likeness {
         Ok(())
     }
 
-    /// Distances to rendered pictures of other worlds, of the learned and of the rendered ones: these are the floor.
-    /// Null of fewer than two worlds.
+    /// Distances of the learned and of the rendered pictures to rendered pictures of other worlds; the latter are the
+    /// floor. Null below two worlds.
     pub(super) fn report(&self) -> anyhow::Result<Value> {
         if self.others.len() < 2 {
             return Ok(Value::Null);
@@ -77,7 +77,7 @@ impl Likeness {
     }
 }
 
-/// Time of day and weather of the world of a number.
+/// Time of day and weather that belong to a world's index.
 pub(super) fn light_of(index: u64) -> (TimeOfDay, Weather) {
     (
         TimeOfDay::ALL[index as usize % TimeOfDay::ALL.len()],

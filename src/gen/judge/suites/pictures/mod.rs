@@ -1,6 +1,6 @@
-//! `eval pictures`: learned pictures of held-out worlds. Does a segmenter see in them what they should show, do they stay the
-//! same from moment to moment and from camera to camera, how like rendered ones are they, what does an edit change, and how
-//! long does it take.
+//! `eval pictures`: learned pictures of held-out worlds. Does a segmenter see in them what they should show? Do they
+//! stay the same from moment to moment and from camera to camera? How like rendered ones are they, what does an edit
+//! change, and how long does it take?
 
 mod likeness;
 
@@ -30,14 +30,14 @@ use world::World;
 use world::draw::Draw;
 use world::voxelize::{Vertical, complete};
 
-/// A car so near is taken away, m.
+/// Distances at which a car is near enough to be removed, m.
 const NEAR_M: std::ops::Range<f64> = 5.0..30.0;
-/// Share of the renderer's own agreement that is wanted.
+/// Bar: share of the segmenter's agreement on the renderer's own pictures.
 const AGREEMENT: f64 = 0.85;
-/// Longest time for six pictures that is wanted, s.
+/// Bar: longest time for six pictures, s.
 const LONGEST_S: f64 = 3.0;
 
-/// Whether a frame is told the one before, and where its noise comes from.
+/// Whether a frame gets the picture before it, and where its noise comes from.
 const PRIORS: [(bool, NoisePrior); 6] = [
     (false, NoisePrior::Frames),
     (false, NoisePrior::Places),
@@ -56,10 +56,12 @@ struct Figures {
     alone: Vec<f64>,
     rendered_after: Vec<f64>,
     gain: Vec<f64>,
-    /// Each frame alone, and told the frame before: with noise of the frame, of the places and of the surfaces.
+    /// Each frame alone, then each with the frame before as input: with noise of the frame, of the places and of the
+    /// surfaces.
     priors: [Vec<f64>; 6],
     sides: Vec<f64>,
-    /// Between cameras, and told rightly, each camera with noise of its own.
+    /// Differences between cameras, and share of pixels told rightly (`learned_own`), if each camera has noise of its
+    /// own.
     sides_own: Vec<f64>,
     learned_own: Vec<f64>,
     rendered_sides: Vec<f64>,
@@ -70,7 +72,7 @@ struct Figures {
     likeness: Likeness,
 }
 
-/// What the renderer makes of the cameras of a rig: pictures and truths, and the cameras at that size.
+/// Renderings of the cameras of a rig: pictures and truths, and the cameras at that size.
 struct Rendered {
     cameras: Vec<Camera>,
     images: Vec<CameraImage>,
@@ -112,7 +114,7 @@ impl Rendered {
         }
     }
 
-    /// How far pictures are from those of another moment.
+    /// Difference of pictures from those of another moment.
     fn since(&self, then: &Self, [now, before]: [&[&CameraImage]; 2]) -> f64 {
         let mut apart = Difference::default();
         for (i, (now, before)) in now.iter().zip(before).enumerate() {
@@ -121,7 +123,7 @@ impl Rendered {
         apart.mean()
     }
 
-    /// How far pictures of different cameras are apart.
+    /// Difference between pictures of different cameras.
     fn between(&self, images: &[&CameraImage]) -> f64 {
         let mut apart = Difference::default();
         for i in 0..images.len() {
@@ -133,7 +135,7 @@ impl Rendered {
     }
 }
 
-/// Share of the pixels that the segmenter says rightly.
+/// Share of the pixels that the segmenter classifies rightly.
 fn agreement(net: &PictureSegmenter, rendered: &Rendered, images: &[&CameraImage]) -> anyhow::Result<f64> {
     let (mut right, mut all) = (0usize, 0usize);
     for (image, truth) in images.iter().zip(&rendered.pixels) {
@@ -157,7 +159,8 @@ fn frame_of(world: &World) -> Frame {
     Frame::new(world.layout.clone(), world.boxes.clone(), grid)
 }
 
-/// Pixels of pictures that differ: those that show what an edit changed, or lie around it, and others; and how many there are.
+/// Numbers of pixels that differ: those that show what an edit changed or lie around it, and others; and the number of
+/// all pixels.
 fn changes(before: &Rendered, after: &Rendered, [old, new]: [&[Arc<CameraImage>]; 2]) -> [usize; 3] {
     let [mut touched, mut elsewhere, mut all] = [0; 3];
     for (i, (old, new)) in old.iter().zip(new).enumerate() {
@@ -297,14 +300,14 @@ impl Figures {
     }
 }
 
-/// How much less the second is, world by world.
+/// Difference `a` - `b`, world by world.
 fn less(a: &[f64], b: &[f64]) -> Value {
     let each: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
     with_interval(&each)
 }
 
 impl Figures {
-    /// Differences over time by where the noise comes from, and how much less they are than with noise of the frame's own.
+    /// Differences over time by source of the noise, and how much smaller they are than with noise of the frame's own.
     fn by_noise(&self) -> Value {
         let [frames, places, surfaces, told_frames, told_places, told_surfaces] = &self.priors;
         let of = |[frames, places, surfaces]: [&[f64]; 3]| {
@@ -325,7 +328,7 @@ impl Figures {
 }
 
 impl Options {
-    /// Agreement, likeness over time and between cameras, edits and times.
+    /// Judges agreement, likeness over time and between cameras, edits and times.
     pub(crate) fn pictures(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
         let nets = PictureNets::bundled().context("the shipped picture networks")?;
         let segmenter = PictureSegmenter::bundled().context("the shipped segmenter")?;

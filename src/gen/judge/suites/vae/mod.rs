@@ -1,5 +1,5 @@
-//! `eval vae`: what encoding and decoding keep, of procedural worlds or of a folder of labels; with the
-//! latents that the networks use, and with the fine ones.
+//! `eval vae`: what encoding and decoding keep of procedural worlds or of a folder of labels, with the latents that the
+//! networks use and with the fine ones.
 
 mod slopes;
 
@@ -22,13 +22,13 @@ use nets::{CELLS, DecoderInput, OccVae, fine_vae};
 use scene::{Class, Unobserved, VoxelGrid, draft, infer};
 use slopes::Slopes;
 
-/// Which latent is decoded: the mean, one drawn from the encoder's distribution, the fine network's mean; the mean again by a
-/// decoder that is told the draft and, of labels, what was observed.
+/// Latents that are decoded: the mean; one drawn from the encoder's distribution; the fine network's mean; and the mean
+/// again by a decoder that gets the draft and, for labels, what was observed.
 const MODES: [&str; 4] = ["mean", "sampled", "fine", "told"];
-/// Place of the last among them.
+/// Index of the last mode.
 const TOLD: usize = 3;
 
-/// What one mode kept of one kind of frames.
+/// Agreement of one mode on one kind of frames.
 #[derive(Default)]
 struct Kept {
     total: Confusion,
@@ -97,7 +97,7 @@ fn try_all(
 }
 
 impl Options {
-    /// Encode and decode: complete worlds and simulated labels.
+    /// Judges encoding and decoding of complete worlds and simulated labels.
     pub(crate) fn vae(&self, pipeline: &OccPipeline, progress: &dyn Progress) -> anyhow::Result<Found> {
         let (vae, fine) = (&pipeline.models().vae, fine_vae()?);
         let [mut complete, mut labels] = <[[Kept; MODES.len()]; 2]>::default();
@@ -131,7 +131,7 @@ impl Options {
         Ok((report, bars))
     }
 
-    /// The same for labels from files; no bars, since what can be reached depends on the data.
+    /// Judges encoding and decoding of labels from files; no bars, since what can be reached depends on the data.
     pub(crate) fn vae_on_files(
         &self,
         dir: &Path,

@@ -1,4 +1,5 @@
-//! What the VAE keeps on slopes: the same worlds on planes of several grades, and files whose columns are put on them.
+//! Loss of the VAE on slopes: the same worlds on planes of several grades, and files whose columns are put on such
+//! planes.
 
 use glam::DVec2;
 use serde_json::{Value, json};
@@ -15,11 +16,11 @@ use world::{World, traffic};
 /// Grades that are tried, rise over run.
 pub(super) const GRADES: [f64; 5] = [0.0, 0.01, 0.02, 0.04, 0.08];
 
-/// What was kept on each of [`GRADES`].
+/// Agreement on each of [`GRADES`].
 #[derive(Default)]
 pub(super) struct Slopes([Confusion; GRADES.len()]);
 
-/// A direction of the seed to climb in, as a unit vector.
+/// Uphill direction drawn from the seed, a unit vector.
 fn uphill(seed: u64) -> DVec2 {
     DVec2::from_angle(Draw::new(seed, "uphill").range(0.0, std::f64::consts::TAU))
 }
@@ -36,7 +37,7 @@ fn labels_on(grade: f64, seed: u64, index: u64) -> VoxelGrid {
     labels(&world, &rig.lidars[0], &Drive::default(), Vertical::Occ3d, seed)
 }
 
-/// A grid with its columns moved up and down to a plane, by whole bins; what leaves the grid is lost.
+/// A grid with its columns moved up and down to a plane, by whole bins; voxels that leave the grid are lost.
 fn tilted(grid: &VoxelGrid, grade: f64, up: DVec2) -> VoxelGrid {
     let mut out = VoxelGrid::new();
     for (x, y) in (0..Window::NX).flat_map(|x| (0..Window::NY).map(move |y| (x, y))) {
@@ -61,7 +62,7 @@ impl Slopes {
         Ok(())
     }
 
-    /// Adds labels of a file, tilted by us.
+    /// Adds labels of a file, tilted here.
     pub(super) fn add_tilted(&mut self, vae: &OccVae, labels: &VoxelGrid, seed: u64) -> anyhow::Result<()> {
         for (grade, kept) in GRADES.into_iter().zip(&mut self.0) {
             let truth = tilted(labels, grade, uphill(seed));
@@ -70,7 +71,7 @@ impl Slopes {
         Ok(())
     }
 
-    /// The most mIoU that a slope costs against level ground.
+    /// The largest loss of mIoU on a slope against level ground.
     pub(super) fn worst_loss(&self) -> f64 {
         let miou = |c: &Confusion| c.mean_iou().0.unwrap_or(f64::NAN);
         let level = miou(&self.0[0]);

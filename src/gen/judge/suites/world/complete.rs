@@ -15,7 +15,7 @@ use metrics::shape::{FIGURES, shape};
 const MOST_WITH_ERRORS: f64 = 0.01;
 
 impl Options {
-    /// Shape figures and findings of as many complete worlds, and whether few enough have an error.
+    /// Shape figures and findings of complete worlds, one per frame asked for; and whether few enough have an error.
     pub(super) fn world_complete(&self, progress: &dyn Progress) -> (Value, bool) {
         let indices: Vec<usize> = (0..self.frames).collect();
         let mut shapes: BTreeMap<&str, Vec<f64>> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! The LiDAR part of `eval world`: sweeps through procedural worlds beside what is known of real ones.
+//! The LiDAR part of `eval world`: sweeps through procedural worlds, compared with known figures of real ones.
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -15,7 +15,7 @@ use sensors::truth;
 /// Figures of real sweeps.
 const TARGETS: &str = assets::statistics::LIDAR;
 
-/// The figures of sweeps beside the real ones, and how many of how many are inside their accepted range. Figures that
+/// The figures of sweeps beside the real ones; and how many are inside their accepted range, of how many. Figures that
 /// these sweeps do not have are left out.
 pub fn lidar_rows(sums: &SweepFigures) -> anyhow::Result<(Vec<Value>, [usize; 2])> {
     let targets: Targets = serde_json::from_str(TARGETS)?;
@@ -27,8 +27,8 @@ pub fn lidar_rows(sums: &SweepFigures) -> anyhow::Result<(Vec<Value>, [usize; 2]
 }
 
 impl Options {
-    /// Figures of simulated sweeps: rows, what lies outside the real range, how well a trivial predictor tells which echoes
-    /// are lost; and how many figures are inside.
+    /// Figures of simulated sweeps: rows, those outside the real range, and how well a trivial predictor tells which
+    /// echoes are lost; and how many figures are inside.
     pub fn world_lidar(&self, progress: &dyn Progress) -> anyhow::Result<(Value, [usize; 2])> {
         let pattern = &SensorRig::default().lidars[0];
         let mut sums = SweepFigures::default();

@@ -1,4 +1,4 @@
-//! `eval world`: simulated labels beside what is known of real ones.
+//! `eval world`: simulated labels compared with known figures of real ones.
 
 mod complete;
 pub mod lidar;
@@ -23,7 +23,7 @@ pub(super) struct Targets {
     targets: Vec<Target>,
 }
 
-/// One figure: what was measured, and between which values the mean of a data set is plausible.
+/// One figure: its measured value, and the range in which the mean of a data set is plausible.
 #[derive(Deserialize)]
 struct Target {
     metric: String,
@@ -32,7 +32,7 @@ struct Target {
 }
 
 impl Targets {
-    /// One row per figure, and how many are inside their accepted range.
+    /// One row per figure, and the number of figures inside their accepted range.
     pub(super) fn compare(&self, found: impl Fn(&str) -> Option<f64>) -> (Vec<Value>, usize) {
         let mut inside = 0;
         let row = |target: &Target| {
