@@ -77,7 +77,7 @@ fn placed(edit: &Edit, new: BoxId) -> Option<(DVec2, f64)> {
     }
 }
 
-/// What ties boxes to time and to each other: their motions and groups.
+/// Motions and groups of boxes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ties {
     /// How a box moves, when it is there, and where it is at the moment that is shown.
@@ -87,7 +87,7 @@ pub struct Ties {
 }
 
 impl Ties {
-    /// Of those boxes.
+    /// Reads the motions and groups of these boxes.
     pub fn of(scene: &Scene, ids: &[BoxId]) -> Self {
         let motion = |id: &BoxId| {
             let track = scene.clip().tracks.get(id).filter(|t| !t.stands())?;
@@ -108,7 +108,7 @@ impl Ties {
 /// Boxes taken along, to be put down elsewhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clipboard {
-    /// As they were.
+    /// The boxes when they were copied.
     pub boxes: Vec<SceneBox>,
     /// Voxels of those that have their own, as [`Edit::SetShape`] takes them.
     pub shapes: Shapes,
@@ -177,7 +177,7 @@ pub fn turn(frame: &Frame, ids: &[BoxId], degrees: f64, pivot: Pivot) -> Vec<Edi
     turned(&boxes, degrees, pivot)
 }
 
-/// The same for boxes as they were.
+/// Like [`turn`], for boxes that are given by value.
 pub fn turned(boxes: &[SceneBox], degrees: f64, pivot: Pivot) -> Vec<Edit> {
     let Some(middle_m) = middle_m(boxes) else {
         return Vec::new();

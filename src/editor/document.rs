@@ -25,7 +25,7 @@ struct Step {
     bytes: usize, // not shared with the step before; 0 for the first
 }
 
-/// What an undo step is called.
+/// Name of an undo step.
 pub type Label = std::borrow::Cow<'static, str>;
 
 /// A result came too late: the document shows another state by now. A result that covers another part of the ground
@@ -89,7 +89,7 @@ impl Document {
         self.preview_all(std::slice::from_ref(edit))
     }
 
-    /// The same with several edits.
+    /// Like [`Self::preview`], with several edits.
     pub fn preview_all(&mut self, edits: &[Edit]) -> Result<(), EditError> {
         self.drag = Some(Arc::new(self.edited(edits)?));
         Ok(())
@@ -170,7 +170,7 @@ impl Document {
         self.steps.iter().map(|s| s.bytes).sum()
     }
 
-    /// What the history may take; see [`Self::set_history_limit`].
+    /// Memory limit of the history, bytes; see [`Self::set_history_limit`].
     pub fn history_limit(&self) -> usize {
         self.limit_bytes
     }

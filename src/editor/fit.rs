@@ -115,7 +115,7 @@ impl Rectangle {
         self.size_m.x * self.size_m.y
     }
 
-    /// The same with the heading that is nearest to another: quarter turns change length and width.
+    /// The same rectangle under the heading nearest to `yaw_rad`: quarter turns swap length and width.
     fn like(self, yaw_rad: f64) -> Self {
         let quarters = ((yaw_rad - self.yaw_rad) / FRAC_PI_2).round();
         let size_m = if quarters.rem_euclid(2.0) == 1.0 {

@@ -138,7 +138,7 @@ struct Around {
 }
 
 impl Around {
-    /// Of columns of a map, as far as ground is searched for.
+    /// Reads the ground around columns of a map, as far out as ground is searched for.
     fn of(grid: &VoxelGrid, layout: &BevLayout, columns: &[[usize; 2]]) -> Self {
         let extent = layout.extent();
         let map = [extent.nx(), extent.ny()];

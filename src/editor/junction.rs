@@ -45,7 +45,7 @@ impl Area {
         })
     }
 
-    /// What of a line lies outside, in its order.
+    /// The pieces of a line outside the area, in their order.
     pub(super) fn outside(&self, points_m: &[DVec2]) -> Vec<Vec<DVec2>> {
         let mut pieces: Vec<Vec<DVec2>> = Vec::new();
         let mut piece: Vec<DVec2> = Vec::new();

@@ -9,7 +9,7 @@ use super::lanes::nearest_lane;
 /// A point on the kerb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KerbPoint {
-    /// Where, ego frame, m.
+    /// Position, ego frame, m.
     pub at_m: DVec2,
     /// Unit vector along it.
     pub along: DVec2,

@@ -7,7 +7,7 @@ use scene::{BevLayout, Polyline, PolylineKind};
 /// A point on the middle of a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LanePoint {
-    /// Where, ego frame, m.
+    /// Position, ego frame, m.
     pub at_m: DVec2,
     /// Driving direction there, rad.
     pub yaw_rad: f64,

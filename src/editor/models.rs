@@ -19,7 +19,7 @@ const EGO_M: [f64; 2] = [5.0, 2.2];
 
 /// A model on its way into a scene.
 pub struct Placed {
-    /// What puts it there.
+    /// Edits that put it there.
     pub edits: Vec<Edit>,
     /// The number of its box.
     pub id: BoxId,

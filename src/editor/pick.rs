@@ -1,4 +1,4 @@
-//! What lies under the pointer: rays against boxes, voxels and the ground, points against footprints.
+//! Picking with the pointer: rays against boxes, voxels and the ground, points against footprints.
 
 use glam::{DVec2, DVec3};
 
@@ -7,9 +7,9 @@ use scene::{BoxId, Class, Extent, Frame, SceneBox, VoxelGrid};
 /// A half line in the ego frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts, m.
+    /// Start of the ray, m.
     pub origin_in_ego: DVec3,
-    /// Where it goes, unit length.
+    /// Direction of the ray, unit length.
     pub direction_in_ego: DVec3,
 }
 
@@ -191,7 +191,7 @@ pub enum Hit {
     Voxel(VoxelHit),
     /// The plane z = 0.
     Ground {
-        /// Where, ego frame, m.
+        /// Point that is hit, ego frame, m.
         point_in_ego: DVec3,
     },
 }

@@ -127,7 +127,7 @@ fn on_map(frame: &Frame, p_m: DVec2) -> bool {
 enum Way {
     /// Straight, in this direction.
     Straight(DVec2),
-    /// As a lane does.
+    /// Along a lane, from this point.
     Lane(super::lanes::LanePoint),
 }
 

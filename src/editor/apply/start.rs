@@ -1,5 +1,5 @@
-//! Lets traffic drive: everything that says how fast it is but stands goes on along its lane, but for what would come into
-//! something; that stays where it is, and is told.
+//! Lets traffic drive: every object that stands but has a velocity goes on along its lane. Objects that would collide
+//! stay where they are and are reported.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,12 +12,12 @@ use language::tf;
 
 /// Length of a clip that traffic begins, s.
 const USUAL_LENGTH_S: f64 = 8.0;
-/// After so many looks whoever meets anybody stays, both of two.
+/// After so many rounds, both objects of a pair that collide stay.
 const PATIENCE: usize = 12;
-/// Reasons that are told.
+/// Reasons that are listed in a message.
 const MOST_REASONS: usize = 4;
 
-/// Who drives off, and who does not.
+/// Result of letting traffic drive: the objects that drive off, and those that stay.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Start {
     /// The edits, to be applied as one step.
@@ -29,7 +29,7 @@ pub struct Start {
 }
 
 impl Start {
-    /// What a person is told of those that stay, in one line; none if nobody does.
+    /// The objects that stay and the reasons, in one line for the user; `None` if none stays.
     pub fn said(&self) -> Option<String> {
         if self.stays.is_empty() {
             return None;
@@ -91,8 +91,8 @@ pub fn traffic_drives(scene: &Scene) -> Result<Start, String> {
     Ok(start)
 }
 
-/// Those of whoever is about to drive off that had better stay, with the reasons; nobody if all is well. `both`: of two that meet
-/// neither goes.
+/// The objects among `waiting` that should stay, each with the reason; empty if none collides. With `both`, both
+/// objects of a colliding pair stay, otherwise one of them.
 fn who_stays(waiting: &[Goer], met: &[Met], both: bool) -> BTreeMap<BoxId, String> {
     let goes: BTreeSet<BoxId> = waiting.iter().filter_map(|g| g.id).collect();
     let mut out: BTreeMap<BoxId, String> = BTreeMap::new();
@@ -135,8 +135,9 @@ fn who_stays(waiting: &[Goer], met: &[Met], both: bool) -> BTreeMap<BoxId, Strin
     out
 }
 
-/// What a person should know of edits that are about to be applied, a line each: who stays where traffic is let drive, what comes
-/// into something where a scene is let go on, who drives where no lane is, and what a removed guess leaves standing.
+/// Remarks for the user on edits that are about to be applied, a line each: the objects that stay where traffic is let
+/// drive, the collisions of a forecast, the vehicles that drive where no lane is, and the voxels that stay behind when
+/// an inferred box is removed.
 pub fn remarks(scene: &Scene, edits: &[Edit]) -> Vec<String> {
     let mut out = super::left_standing::left_standing(scene, edits);
     for (i, edit) in edits.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! What the checks found, with a bound for each of them: a scene of noise has more findings than anybody reads. All of
-//! them are counted.
+//! Collected findings, with a bound on the list of each check: a scene of noise has more findings than anybody reads.
+//! All of them are counted.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +13,7 @@ use scene::{BoxId, Recorded, Scene, VoxelPaint};
 /// Findings of one check that are listed; the others are counted in one more.
 pub const MOST: usize = 200;
 
-/// What kind of finding it is: how bad, of which check, about which box.
+/// Kind of a finding: severity, name of the check, box.
 pub(crate) type Kind = (Severity, &'static str, Option<BoxId>);
 
 /// How many findings there are of each kind, whether they are listed or not.
@@ -75,7 +75,8 @@ impl Findings {
         }
     }
 
-    /// The same of a scene: what its recording shows is worth knowing, and no more.
+    /// Like [`Self::listing`], with the recorded parts of the scene: findings about them are listed as
+    /// [`Severity::Info`].
     pub fn of(scene: &Scene, most: usize) -> Self {
         Self {
             recorded: Recorded::boxes_in(scene),
@@ -163,7 +164,7 @@ impl Findings {
         self.from = self.list.len();
     }
 
-    /// Those that are listed, errors first, and how many there are of all.
+    /// The listed findings, errors first, and the number of all findings of each kind.
     pub fn done(mut self) -> (Vec<Finding>, Tally) {
         self.list.sort_by_key(|f| std::cmp::Reverse(f.severity));
         (self.list, self.tally)

@@ -57,7 +57,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     }
 }
 
-/// What is wrong with a vehicle's place, if anything is.
+/// The problem with a vehicle's place; `None` if there is none.
 fn vehicle(layout: &BevLayout, b: &SceneBox) -> Option<String> {
     let (mut cells, mut on) = (0usize, 0usize);
     box_cells(layout.extent(), b, 0.0, |x, y| {

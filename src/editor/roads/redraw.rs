@@ -10,9 +10,9 @@ use scene::{BevLayout, Extent, Frame, Polyline, RoadId, RoadNetwork};
 use crate::immediate;
 use crate::junction::Area;
 
-/// What was painted a little beside a road goes with it: so many columns.
+/// Columns beside a road within which painted cells change together with it.
 const RIM: usize = 3;
-/// A line of which more than this lies on a road that changed is that road's.
+/// A line with a larger share than this on a changed road belongs to that road.
 const OWN: f64 = 0.75;
 /// Places on a line are looked at in steps of this length, m.
 const STEP_M: f64 = 0.5;

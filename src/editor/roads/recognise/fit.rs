@@ -93,7 +93,7 @@ pub(super) fn network(graph: &Graph, rings: &[Ring], mask: &Mask, layout: &BevLa
 }
 
 impl Draft {
-    /// Where it begins at a knot and the way outward there, once for each end.
+    /// Starting point and outward direction of the draft at a knot, once for each of its ends that lies there.
     fn arms(&self, knot: usize) -> Vec<(DVec2, DVec2)> {
         const HEADING_M: f64 = 10.0;
         let mut out = Vec::new();

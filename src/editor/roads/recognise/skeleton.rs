@@ -19,10 +19,10 @@ const MOST: usize = 5000;
 /// Junctions nearer than so many times the road is deep there are one.
 const ONE: f64 = 1.25;
 
-/// Where lines end or meet.
+/// Point where lines end or meet.
 #[derive(Clone, Debug)]
 pub(super) struct Knot {
-    /// Where, m.
+    /// Position, m.
     pub at_m: DVec2,
     /// Distance to the kerb, m.
     pub depth_m: f64,
