@@ -95,7 +95,7 @@ struct Rectangle {
 }
 
 impl Rectangle {
-    /// The smallest of a heading around voxels with these centres: half of a voxel's edge beyond them.
+    /// The smallest rectangle of a heading around voxels with these centres, with half of a voxel's edge beyond them.
     fn around(points_m: &[DVec2], yaw_rad: f64) -> Self {
         let turn = DVec2::from_angle(-yaw_rad);
         let (low, high) = points_m
@@ -115,7 +115,7 @@ impl Rectangle {
         self.size_m.x * self.size_m.y
     }
 
-    /// The same rectangle under the heading nearest to `yaw_rad`: quarter turns swap length and width.
+    /// This rectangle under its heading nearest to `yaw_rad`: quarter turns swap length and width.
     fn like(self, yaw_rad: f64) -> Self {
         let quarters = ((yaw_rad - self.yaw_rad) / FRAC_PI_2).round();
         let size_m = if quarters.rem_euclid(2.0) == 1.0 {

@@ -247,13 +247,13 @@ fn only_in(a: &Background, b: &Background) -> Vec<Thing> {
 /// Things with their voxels.
 type Drawn<'a> = Vec<(&'a Thing, Columns)>;
 
-/// What a change of the background does to the voxels of a map.
+/// Change of the background, as the things whose voxels go, come or stay.
 struct Change<'a> {
-    /// Their voxels go.
+    /// Things whose voxels are taken away.
     gone: Drawn<'a>,
-    /// Their voxels come.
+    /// Things whose voxels are added.
     come: Drawn<'a>,
-    /// They stay, near to what goes.
+    /// Things that stay, near to those that go.
     kept: Drawn<'a>,
 }
 

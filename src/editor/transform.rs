@@ -8,7 +8,7 @@ use super::Edit;
 use super::arrange::{LANE_REACH_M, Pivot, middle_m, standing, turned, wrapped_deg};
 use super::lanes::nearest_lane;
 
-/// What a drag changes.
+/// Part of the boxes that a drag changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TransformKind {
     /// The place.
@@ -41,17 +41,17 @@ impl Axis {
     }
 }
 
-/// Whose axes are meant.
+/// Frame whose axes are used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Orientation {
-    /// Those of the ego frame.
+    /// Axes of the ego frame.
     #[default]
     World,
-    /// Those of the box that was chosen last.
+    /// Axes of the box that was chosen last.
     Local,
 }
 
-/// What a move snaps to.
+/// Snaps of a move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Snap {
     /// Multiples of this, m; degrees are multiples of 15 then, factors of 0.1. `None` means free.
@@ -68,17 +68,17 @@ const CATCH_M: f64 = 2.0;
 /// A drag in progress. Every frame starts over from the boxes as they were.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transform {
-    /// What it changes.
+    /// Part of the boxes that it changes.
     pub kind: TransformKind,
     /// The boxes as they were; the one that was taken hold of first.
     pub start: Vec<SceneBox>,
-    /// Axis it keeps to.
+    /// Axis that it keeps to.
     pub axis: Option<Axis>,
-    /// Whose axes.
+    /// Frame of that axis.
     pub orientation: Orientation,
-    /// About what several turn.
+    /// Point about which several boxes turn.
     pub pivot: Pivot,
-    /// What was typed: metres, degrees or a factor.
+    /// Typed text: metres, degrees or a factor.
     pub typed: String,
 }
 
@@ -244,7 +244,7 @@ impl Transform {
         self.start.iter().map(edit).collect()
     }
 
-    /// What is being done, for a person: `x  1.25 m`.
+    /// Text about the drag for the user: `x  1.25 m`.
     pub fn text(&self, pull: &Pull, snap: &Snap) -> String {
         let axis = match self.axis {
             Some(Axis::X) => "x  ",

@@ -1,4 +1,4 @@
-//! What differs between two states of a scene, in numbers.
+//! Differences between two states of a scene, in numbers.
 
 use std::collections::BTreeMap;
 
@@ -64,7 +64,7 @@ pub struct Gained {
 }
 
 impl Change {
-    /// What differs between two states, at the moment that the later one shows.
+    /// The differences between two states, at the moment that the later one shows.
     pub fn between(before: &Scene, after: &Scene) -> Self {
         if before.content() == after.content() {
             return Self::default();

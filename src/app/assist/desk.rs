@@ -1,5 +1,5 @@
-//! What the calls of a session work on: the document (its own or that of a window), the folder, versions, numbers of
-//! revisions, the networks.
+//! Desk of a session: the document (its own or that of a window), the folder, versions, numbers of revisions, the
+//! networks.
 
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ use scene::{KeptVersion, Scene, SceneRev};
 /// True once the call in progress is not wanted any more.
 pub type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
 
-/// Who owns the document.
+/// Owner of the document.
 pub enum Holder {
     /// This session.
     Own(Box<Document>),
@@ -34,7 +34,7 @@ pub enum Holder {
 }
 
 impl Holder {
-    /// Does something with the document. Errors if whoever owns it is gone.
+    /// Runs work on the document. Errors if its owner is gone.
     fn with<R: Send + 'static>(
         &mut self,
         work: impl FnOnce(&mut Document) -> R + Send + 'static,
@@ -216,7 +216,7 @@ impl Desk {
         self.revisions.retain(|state, _| there.contains(state));
     }
 
-    /// What the checks that need no sensors find, the open findings alone.
+    /// The open findings of the checks that need no sensors.
     fn findings(&mut self, scene: &Scene) -> Arc<Vec<Finding>> {
         if let Some((of, found)) = &self.checked
             && *of == scene.rev
@@ -310,7 +310,7 @@ impl Desk {
     }
 }
 
-/// What tells findings apart; numbers in their words may change.
+/// Key that tells findings apart; numbers in their texts may change.
 fn same(f: &Finding) -> (&'static str, Option<scene::BoxId>, [i64; 3]) {
     let place = match f.box_id {
         Some(_) => [0; 3],

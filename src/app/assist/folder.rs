@@ -191,7 +191,7 @@ impl Folder {
     }
 }
 
-/// What is at a path, links not followed; `None` if nothing is.
+/// The metadata of a path, links not followed; `None` if nothing is there.
 fn look(path: &Path, name: &str) -> anyhow::Result<Option<Metadata>> {
     match fs::symlink_metadata(path) {
         Ok(is) => Ok(Some(is)),

@@ -82,7 +82,7 @@ struct IdFinder {
     escaped: bool,
     /// A string of the outermost object, which may be a key.
     string: Vec<u8>,
-    /// What was read last in the outermost object was a string.
+    /// True if the last token of the outermost object was a string.
     key: bool,
     /// Bytes of the value, once the key has come by.
     value: Option<Vec<u8>>,

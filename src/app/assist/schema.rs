@@ -11,12 +11,12 @@ use crate::call::{CallDef, table};
 /// Where definitions are, as references begin.
 const DEFS: &str = "#/$defs/";
 
-/// Of what is read: what may be left out is not required.
+/// Generator for the schemas of arguments: fields that may be left out are not required.
 fn of_arguments() -> SchemaGenerator {
     SchemaSettings::draft2020_12().into_generator()
 }
 
-/// Of what is written: all keys are there.
+/// Generator for the schemas of receipts: all fields are required.
 fn of_receipts() -> SchemaGenerator {
     SchemaSettings::draft2020_12().for_serialize().into_generator()
 }
@@ -78,7 +78,7 @@ pub fn document() -> Value {
     document
 }
 
-/// What the name of the second definition of a type ends in.
+/// Ending of the name of a type's second definition.
 const WRITTEN: &str = "Written";
 
 /// Names of types whose two definitions differ, in themselves or in what they refer to.

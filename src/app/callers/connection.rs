@@ -1,4 +1,4 @@
-//! Connections as a server reads and writes them, each until its caller is told that it ends.
+//! Connections as a server reads and writes them, each until its caller is told to end.
 
 use std::io;
 use std::net::SocketAddr;
@@ -39,7 +39,7 @@ impl Callers {
                 Ok((stream, _)) => {
                     // (slower without, and no error)
                     let _ = stream.set_nodelay(true);
-                    // What those that were taken before have said is heard before the next one is taken.
+                    // Requests on the connections taken before are read before the next connection is taken.
                     tokio::task::yield_now().await;
                     return Connection::new(stream, self.connected());
                 }
@@ -69,7 +69,7 @@ impl Connection {
         }
     }
 
-    /// Whose it is.
+    /// The caller of this connection.
     pub fn caller(&self) -> &Arc<Caller> {
         &self.caller
     }

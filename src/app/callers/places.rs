@@ -1,4 +1,4 @@
-//! Places of those who are waited for: so many, each for so long; the oldest gives way.
+//! Places of callers that the server waits for: so many, each for so long; the oldest makes room for a new one.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
 
-/// Tells somebody that no more is waited for them. Once told, it stays told.
+/// Signal to a caller that the server waits for it no longer. Once sent, it stays sent.
 #[derive(Debug)]
 pub struct Ending(watch::Sender<bool>);
 
@@ -45,7 +45,7 @@ struct Shared {
     waiting: Mutex<Waiting>,
 }
 
-/// Who waits since when; numbers grow, so the first came first.
+/// Waiting callers with the time of their arrival; numbers grow, so the first number came first.
 #[derive(Debug, Default)]
 struct Waiting {
     next: u64,

@@ -17,7 +17,7 @@ const PIECE: usize = 64 << 10;
 #[derive(Debug)]
 pub struct Sending<B> {
     body: B,
-    /// Of the piece that the body gave last.
+    /// Unsent rest of the piece that the body gave last.
     rest: Bytes,
     /// (the place first: it must be free before the connection idles)
     _place: Option<Place>,
@@ -35,7 +35,7 @@ impl<B> Sending<B> {
         }
     }
 
-    /// A few words that hold no place.
+    /// A short answer that holds no place.
     pub fn short(body: B) -> Self {
         Self {
             body,

@@ -1,4 +1,4 @@
-//! What the commands have in common: options, knobs of a generation, and how a command ends.
+//! Common parts of the commands: options, knobs of a generation, and how a command ends.
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -153,7 +153,7 @@ impl Dataset {
         self.report(&report, None, start)
     }
 
-    /// Of camera pictures.
+    /// Size of camera pictures, px: as given, or the usual size of the source.
     fn size_px(&self) -> [u32; 2] {
         let usual = match self.from {
             Some(_) => [256, 144],
@@ -162,7 +162,7 @@ impl Dataset {
         self.size.unwrap_or(usual)
     }
 
-    /// All arguments that its data depend on; more frames of the same are no others.
+    /// All arguments that the data depend on; a larger number of frames is the same recipe.
     fn recipe(&self) -> anyhow::Result<Recipe> {
         let size = (self.kind == "pictures").then(|| self.size_px());
         let drives = self.drives.as_ref().map(|d| [d.start, d.end]);

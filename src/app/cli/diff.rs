@@ -187,7 +187,7 @@ fn boxes(before: &Frame, after: &Frame) -> Value {
     json!({ "added": only(after, before), "removed": only(before, after), "changed": changed })
 }
 
-/// What differs between two boxes of one id.
+/// The differences between two boxes of one id.
 fn change(a: &SceneBox, b: &SceneBox) -> Value {
     let mut out = Map::new();
     out.insert("id".into(), json!(a.id));

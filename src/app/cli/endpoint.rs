@@ -34,7 +34,7 @@ pub fn schema() -> Value {
     schemars::schema_for!(Reading).to_value()
 }
 
-/// What the model is told beside the schema.
+/// Rules for the model beside the schema.
 const RULES: &str = "You turn a user's English sentence for a driving-scene editor into a reading: a JSON object of the given \
 schema and nothing else. \"add\" brings new things; \"remove\", \"move\", \"set\", \"replace\", \"turn\" and \"count\" change things that \
 are there. Write what is said and no more: no relation, state or number that is not in the sentence. The ego vehicle (me, us, \

@@ -16,7 +16,7 @@ use judge::origin::Origin;
 use judge::suite::Suite;
 use judge::table::{SUITES, named};
 
-/// What runs every suite.
+/// Name that stands for every suite.
 const ALL: &str = "all";
 
 /// Names of the suites, and of all of them.
@@ -87,7 +87,7 @@ pub struct Eval {
 }
 
 impl Eval {
-    /// What a suite is asked to do: the usual, or little of it, and what the command line says.
+    /// The options of a suite: the usual ones, or the quick ones, with the command line's on top.
     fn options(&self, suite: &Suite, params: [GenParams; 2]) -> Options {
         let mut options = Options::default();
         if self.quick {

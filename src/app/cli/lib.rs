@@ -124,7 +124,7 @@ pub fn accepts(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Resul
     parsed.map(|_| ()).map_err(|e| argument_errors::message(&e))
 }
 
-/// What reads our output may end early (`| head`): then the program ends too, as others do, and says nothing.
+/// Ends the program silently when the reader of its output ends early (`| head`), as other programs do.
 fn quiet_when_nobody_reads() {
     let loud = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {

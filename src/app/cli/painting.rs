@@ -94,7 +94,7 @@ impl Painting {
         given.into_iter().find_map(|(name, given)| given.then_some(name))
     }
 
-    /// What the arguments ask for.
+    /// The options that the arguments ask for.
     fn wish(&self) -> PaintWish {
         PaintWish {
             weights: self.weights.clone(),

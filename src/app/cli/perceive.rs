@@ -215,7 +215,7 @@ impl Perceive {
     }
 }
 
-/// What the LiDAR's network sees.
+/// The predictions of the LiDAR's network, as JSON.
 fn of_sweep(scene: &Scene, swept: &perceived_sweep::SweepReport) -> serde_json::Value {
     let class = |id| scene.frame().boxes.get(&id).map(|b| b.class.name());
     let boxes = swept.boxes.iter().map(|b| {
@@ -243,7 +243,7 @@ fn of_sweep(scene: &Scene, swept: &perceived_sweep::SweepReport) -> serde_json::
     })
 }
 
-/// What the network of both sensors tells, and how well it does with one of them.
+/// The predictions of the network of both sensors, and its scores with one of them, as JSON.
 fn of_voxels(scene: &Scene, both: &VoxelReport, [lidar, cameras]: &[VoxelReport; 2]) -> serde_json::Value {
     let class = |id| scene.frame().boxes.get(&id).map(|b| b.class.name());
     let boxes = both.boxes.iter().map(|b| {
@@ -272,7 +272,7 @@ fn of_voxels(scene: &Scene, both: &VoxelReport, [lidar, cameras]: &[VoxelReport;
     })
 }
 
-/// What the report calls that of which there must be enough.
+/// The name in the report of the count that must be large enough for a sensor.
 fn visible(by: Sensor) -> &'static str {
     match by {
         Sensor::Cameras => "visible_px",

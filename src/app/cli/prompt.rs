@@ -97,7 +97,7 @@ impl Prompt {
         }
     }
 
-    /// What the language model reads in the text, if one is named; what the program reads stands beside it.
+    /// The language model's reading of the text, if one is named, with the program's own reading beside it.
     fn by_endpoint(
         &self,
         heard: Option<&Heard>,

@@ -52,7 +52,7 @@ pub struct Scenery {
 }
 
 impl Scenery {
-    /// What is asked for; errors if a number is out of range.
+    /// The wish that the arguments ask for; errors if a number is out of range.
     fn wish(&self) -> anyhow::Result<SceneryWish> {
         for (name, value) in [("--green", self.green), ("--built", self.built)] {
             if !(0.0..=4.0).contains(&value) {

@@ -1,5 +1,5 @@
-//! `sceneloom shot`: a picture for people of any size: the 3D view, the map, all cameras on a sheet, LiDAR. The dialog of
-//! pictures makes the same.
+//! `sceneloom shot`: a picture of any size for people: the 3D view, the map, all cameras on a sheet, LiDAR. The dialog
+//! of pictures makes the same.
 
 use std::path::PathBuf;
 use std::time::Instant;

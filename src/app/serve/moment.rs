@@ -25,8 +25,8 @@ pub struct Span {
 }
 
 impl Span {
-    /// Of the times of a request. Errors in one line if they are not in order, too far apart, or beyond the end of the clip; a
-    /// scene that stands still has no end.
+    /// Reads the times of a request. Errors in one line if they are not in order, too far apart, or beyond the end of
+    /// the clip; a scene that stands still has no end.
     pub fn read(start_us: u64, end_us: u64, scene: &Scene) -> Result<Self, Status> {
         let Some(length_us) = end_us.checked_sub(start_us).filter(|l| *l <= LONGEST_FRAME_US) else {
             return Err(Status::invalid_argument(format!(
@@ -63,7 +63,7 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// Where it is at a share of the frame, m, and its heading, rad.
+    /// Position on the ground at a share of the frame, m, and heading, rad.
     fn on_ground(&self, share: f64) -> (DVec2, f64) {
         let pose = self.at.at(share);
         (pose.translation_m.truncate(), poses::yaw_rad(&pose))

@@ -26,12 +26,12 @@ const PONG_WITHIN: Duration = Duration::from_secs(20);
 /// How long requests that are inside may take once the server ends.
 const END_WITHIN: Duration = Duration::from_secs(10);
 
-/// What is served, and how much of it at a time.
+/// Options of a server: the scenes, its address, and bounds.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Scenes, and folders of scenes.
     pub scenes: Vec<PathBuf>,
-    /// Where it listens; port 0 stands for any free one.
+    /// Address to listen on; port 0 stands for any free one.
     pub listen: SocketAddr,
     /// Requests that are rendered at a time, at least one.
     pub jobs: usize,
@@ -81,7 +81,7 @@ impl Server {
         })
     }
 
-    /// Where it listens. Errors if the system cannot tell.
+    /// The address on which it listens. Errors if the system cannot tell.
     pub fn address(&self) -> anyhow::Result<SocketAddr> {
         self.listener.local_addr().context("listen")
     }

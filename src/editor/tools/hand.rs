@@ -1,4 +1,4 @@
-//! What the user holds: the tool in hand, what is chosen, and the options that tools share. Nothing here is saved.
+//! State of the user's hand: the current tool, the selection, and the options that tools share. Nothing here is saved.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -47,11 +47,11 @@ pub enum Choose {
     Add,
     /// Each changes sides.
     Toggle,
-    /// They are chosen no more.
+    /// Takes them out of the selection.
     Remove,
 }
 
-/// What the user holds.
+/// The current tool, the selection, and the options that tools share.
 #[derive(Clone, Debug)]
 pub struct Hand {
     /// Tool in hand.
@@ -68,7 +68,7 @@ pub struct Hand {
     pub erase: bool,
     /// Class of the next box.
     pub box_class: Class,
-    /// What the voxel brush does.
+    /// Verb of the voxel brush.
     pub verb: VoxelVerb,
     /// Class that the voxel brush paints.
     pub voxel_class: Class,
@@ -76,15 +76,15 @@ pub struct Hand {
     pub voxel_size: usize,
     /// Bit per map layer that is drawn.
     pub layers_shown: u32,
-    /// What was copied.
+    /// Copied boxes.
     pub clipboard: Clipboard,
     /// How several things are chosen at once.
     pub choose_by: ChooseBy,
-    /// What dragging a chosen box changes.
+    /// Transform that dragging a chosen box makes.
     pub gizmo: TransformKind,
-    /// Whose axes gizmo and number fields use.
+    /// Axes that gizmo and number fields use.
     pub orientation: Orientation,
-    /// About what several boxes turn.
+    /// Point about which several boxes turn.
     pub pivot: Pivot,
     /// Moves snap to the grid without Ctrl, too.
     pub snap_grid: bool,
@@ -96,17 +96,17 @@ pub struct Hand {
     pub snap_ground: bool,
     /// A mirrored box that changes sides is turned.
     pub mirror_keeps_direction: bool,
-    /// What the brush draws.
+    /// Shape that the brush draws.
     pub shape: PaintShape,
-    /// What a street has.
+    /// Lanes and widths of the next street.
     pub street: Street,
-    /// What the road tool holds.
+    /// Selection of the road tool.
     pub road: RoadHand,
-    /// What bounds a fill.
+    /// Border of a fill.
     pub fill: FillBounds,
-    /// What the voxel tool does.
+    /// Mode of the voxel tool.
     pub voxel_mode: VoxelMode,
-    /// What the voxel brush covers.
+    /// Shape of the voxel brush.
     pub voxel_tip: VoxelTip,
     /// Height of the voxel brush and of a new block, voxels.
     pub voxel_height: usize,
@@ -122,23 +122,23 @@ pub struct Hand {
     pub voxels_through: bool,
     /// How a region is marked.
     pub region_shape: RegionShape,
-    /// How far what is inpainted leaves what is there, 0 to 1.
+    /// How strongly inpainting replaces the old content, 0 to 1.
     pub region_strength: f64,
-    /// What is marked to be inpainted, m²; the window counts it.
+    /// Area marked for inpainting, m²; the window counts it.
     pub region_m2: f64,
     /// Kind of the next box of each class, by index among its kinds; none means the typical size.
     pub variants: BTreeMap<Class, usize>,
     /// Bit per map layer that is not painted.
     pub layers_locked: u32,
-    /// What was chosen in states of the scene, by their revision: undo brings it back.
+    /// Selections by the revision of the scene, so that undo restores them.
     pub selections: BTreeMap<SceneRev, (Vec<BoxId>, Vec<ThingId>)>,
     /// The dialog of rows, if it is open.
     pub row_open: bool,
-    /// Its numbers.
+    /// Numbers of that dialog.
     pub row: Row,
-    /// What the tools for things hold.
+    /// Options, selection and clipboard of the scenery tools.
     pub things: ThingState,
-    /// What was painted with before.
+    /// Layer and class that were painted with before.
     pub painted_before: PaintsBefore,
 }
 
@@ -252,7 +252,7 @@ impl Hand {
         self.layers_locked & layer.bit() != 0
     }
 
-    /// What a move snaps to now; `ctrl` held means the grid.
+    /// The snaps of a move now; `ctrl` held means the grid.
     pub fn snap(&self, ctrl: bool) -> Snap {
         Snap {
             grid_m: (self.snap_grid || ctrl).then_some(self.grid_m),

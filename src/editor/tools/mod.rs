@@ -64,7 +64,7 @@ pub fn all() -> &'static [&'static ToolDef] {
 }
 
 impl ToolId {
-    /// What the table says of it; the first tool for a name that is not there.
+    /// The table's row of this tool; the first tool for an unknown name.
     pub fn def(self) -> &'static ToolDef {
         let tools = all();
         tools.iter().find(|t| t.id == self).unwrap_or(&tools[0])

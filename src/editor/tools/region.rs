@@ -50,7 +50,7 @@ const WAYS: [(RegionShape, &str, &str); 4] = [
     ),
 ];
 
-/// What is being marked, ego frame, m.
+/// Mark that is being drawn, ego frame, m.
 #[derive(Clone, Debug, PartialEq)]
 enum Drag {
     Rectangle { from_m: DVec2, to_m: DVec2 },
@@ -61,7 +61,7 @@ enum Drag {
 /// The region tool.
 #[derive(Clone, Debug, Default)]
 pub struct Marker {
-    /// What is being marked, and whether it marks or takes the mark away.
+    /// Mark that is being drawn; true if it marks, false if it takes the mark away.
     drag: Option<(Drag, bool)>,
     /// Corners of an outline.
     corners: Corners,

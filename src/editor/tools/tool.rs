@@ -1,4 +1,4 @@
-//! What a tool is: its name, its row of the table, and the state machine that each of them is.
+//! Tools: their names, their rows of the table, and the state machine that each of them is.
 
 use std::borrow::Cow;
 use std::fmt::Debug;
@@ -9,7 +9,7 @@ use scene::Frame;
 
 use super::{Act, Context, Event, Hand, Mark, Response, Setting, Sight, Value, ViewKind};
 
-/// The name of a tool: that of the action that takes it, too.
+/// Name of a tool; the action that takes the tool has the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ToolId(pub &'static str);
 
@@ -65,7 +65,7 @@ pub struct Shortcut {
     pub keys: &'static str,
     /// When its chords count.
     pub when: When,
-    /// What it changes: mostly it takes the tool.
+    /// Change of the hand: mostly it takes the tool.
     pub set: fn(&mut Hand),
 }
 
@@ -80,7 +80,7 @@ pub enum When {
     Chosen,
 }
 
-/// What the pointer looks like.
+/// Shape of the pointer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cursor {
     /// An arrow.
@@ -88,19 +88,19 @@ pub enum Cursor {
     Default,
     /// A cross.
     Crosshair,
-    /// Not at all: what is drawn shows where it is.
+    /// Hidden: the drawn marks show where it is.
     Hidden,
-    /// Nothing can be done here.
+    /// No action is possible here.
     Forbidden,
-    /// Something is chosen here.
+    /// A click chooses an object here.
     Pointing,
-    /// Something is moved here.
+    /// A drag moves an object here.
     Move,
-    /// Something is turned here.
+    /// A drag turns an object here.
     Turn,
 }
 
-/// What the mouse buttons do, in a few parts.
+/// Hint for the mouse buttons, in a few parts.
 pub type Hint = Vec<Cow<'static, str>>;
 
 /// Parts of a hint that do not change.
@@ -108,15 +108,15 @@ pub fn hint_of(parts: &[&'static str]) -> Hint {
     parts.iter().map(|p| Cow::Borrowed(*p)).collect()
 }
 
-/// A state machine: what the pointer does with a tool in hand.
+/// State machine of a tool, driven by pointer and keys.
 pub trait Tool: Debug + Send {
     /// Handles an event.
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response;
 
-    /// What buttons and held keys do, as they count in the view under the pointer.
+    /// The hint for buttons and held keys, as they count in the view under the pointer.
     fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint;
 
-    /// What the pointer looks like over a view.
+    /// The cursor over a view.
     fn cursor(&self, sight: &Sight<'_>) -> Cursor;
 
     /// Marks to draw over a view.
@@ -142,7 +142,7 @@ pub trait Tool: Debug + Send {
         &[]
     }
 
-    /// The view in which it is used point by point, if that is one alone: keys for points are told there.
+    /// The view in which the tool draws point by point, if it is only one: keys for points are sent there.
     fn draws_in(&self) -> Option<ViewKind> {
         None
     }
@@ -165,7 +165,7 @@ pub trait Tool: Debug + Send {
 /// Which keys a tool wants beside the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wants {
-    /// Nothing.
+    /// No key.
     Nothing,
     /// Escape alone.
     Escape,

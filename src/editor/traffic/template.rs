@@ -24,23 +24,23 @@ const LANE_M: f64 = 3.5;
 const TURN_WITHIN_M: f64 = 150.0;
 /// Whoever is ahead is looked for so far, m.
 const LEADER_WITHIN_M: f64 = 300.0;
-/// Farthest that somebody walks across a road, m.
+/// Farthest way of a pedestrian across a road, m.
 const WIDEST_M: f64 = 60.0;
 
-/// What is asked of a template.
+/// Parameters of a template.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wish {
-    /// Which one.
+    /// The template.
     pub template: Template,
     /// Speed, m/s.
     pub mps: f64,
-    /// When what the template is about begins, s.
+    /// Time at which the template's manoeuvre begins, s.
     pub at_s: f64,
     /// How long a change of lanes takes, s.
     pub over_s: f64,
-    /// Who follows keeps so much to the one ahead, bumper to bumper, m; as much as their speed needs if none.
+    /// Gap that a follower keeps to the vehicle ahead, bumper to bumper, m; `None` for as much as its speed needs.
     pub gap_m: Option<f64>,
-    /// Who follows goes faster than `mps` where the one ahead does.
+    /// True if a follower goes faster than `mps` where the vehicle ahead does.
     pub keeps_up: bool,
 }
 
@@ -106,7 +106,7 @@ pub fn motion_of(scene: &Scene, id: Option<BoxId>, wish: &Wish) -> Result<Vec<Ed
     Ok(edits)
 }
 
-/// Where it is now, and its body.
+/// The current place and the body of a box, or of the ego vehicle.
 fn place(scene: &Scene, id: Option<BoxId>) -> Option<(Moving, Body)> {
     match id {
         Some(id) => {
@@ -315,14 +315,14 @@ fn easing(list: &[(f64, f64)]) -> Vec<Speed> {
     out
 }
 
-/// Who else is on the road at a time.
+/// The other road users at a time.
 pub(crate) fn others(scene: &Scene, own: Option<BoxId>, time_s: f64) -> Vec<Other> {
     let mut all = everybody_at(scene, time_s);
     all.retain(|o| o.id != own);
     all
 }
 
-/// Everybody on the road at a time, the ego vehicle too.
+/// All road users at a time, the ego vehicle too.
 pub(crate) fn everybody_at(scene: &Scene, time_s: f64) -> Vec<Other> {
     let of = |b: &SceneBox| Other {
         id: Some(b.id),

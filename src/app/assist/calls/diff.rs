@@ -1,4 +1,4 @@
-//! `diff`: what differs between the scene and another state.
+//! `diff`: differences between the scene and another state.
 
 use anyhow::{Context, bail};
 use schemars::JsonSchema;

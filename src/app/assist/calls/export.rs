@@ -52,7 +52,7 @@ pub struct Exported {
     revision: u64,
 }
 
-/// What a name of one file must end in: `.npz`.
+/// The ending that the name of a file must have: `.npz`.
 fn ending(file_name: &str) -> &str {
     file_name.find('.').map_or("", |dot| &file_name[dot..])
 }

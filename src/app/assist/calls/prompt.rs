@@ -111,7 +111,7 @@ pub struct Fits {
     place: String,
 }
 
-/// What every receipt says of how a text was heard.
+/// The receipt of a text as it was read: phrases, words that were not understood, shortfalls.
 fn heard(done: Done, text: &str, heard: &Heard, answer: String) -> Prompted {
     let phrases = heard.reading.acts.iter().map(|act| Phrase {
         words: act.span.map(|span| span.of(text).to_owned()),
@@ -170,7 +170,7 @@ fn questions(edited: &Edited) -> Vec<Question> {
     of_boxes.chain(of_things).collect()
 }
 
-/// What the history calls the step: the words.
+/// Name of the undo step: the words.
 fn step_name(text: &str) -> String {
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
     format!("\u{201c}{}\u{201d}", scene::message::quoted(&words, 60))

@@ -52,14 +52,14 @@ const CALLERS: Limits = Limits {
 
 /// A running server. It ends when it is dropped.
 pub struct Http {
-    /// Where it listens.
+    /// Address on which the server listens.
     pub address: SocketAddr,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Http {
-    /// What a client is told: `http://127.0.0.1:7333/mcp`.
+    /// The URL for clients: `http://127.0.0.1:7333/mcp`.
     pub fn url(&self) -> String {
         format!("http://{}{PATH}", self.address)
     }
@@ -131,11 +131,11 @@ pub fn http(service: Service, listen: SocketAddr, token: String) -> anyhow::Resu
 type Mcp = StreamableHttpService<Server, LocalSessionManager>;
 type Answer = Response<Sending<BoxBody<Bytes, Infallible>>>;
 
-/// What connections share.
+/// State that connections share.
 #[derive(Clone)]
 struct Door {
     mcp: Mcp,
-    /// What the header says that shows the token.
+    /// Expected value of the `Authorization` header, with the token.
     expected: Arc<str>,
 }
 

@@ -20,7 +20,7 @@ use scene::message::one_line;
 
 /// Messages that are read ahead.
 const AHEAD: usize = 4;
-/// What a message may have around the arguments of its call, bytes.
+/// Size of a message without the arguments of its call, at most, bytes.
 const ENVELOPE: usize = 4096;
 /// How often it is asked whether all calls are answered, once the input has ended.
 const POLL: Duration = Duration::from_millis(10);

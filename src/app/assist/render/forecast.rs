@@ -9,12 +9,12 @@ use scene::Scene;
 use sensors::appearance::Quality;
 use sensors::cameras::{Ready, RenderOptions};
 
-/// What a rendering tells while it works.
+/// Progress report of a rendering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Told {
     /// Before anything is written, where there are many: pixels of all pictures, and about how long they take, s.
     Takes {
-        /// Of all cameras and kinds together.
+        /// Pixels of all cameras and kinds together.
         pixels: u64,
         /// On this machine as it is now.
         seconds: f64,
@@ -23,17 +23,17 @@ pub enum Told {
     Made {
         /// How many so far.
         pictures: usize,
-        /// Of how many.
+        /// Number of pictures in all.
         of: usize,
     },
 }
 
-/// Hears what a rendering tells; an error ends it.
+/// Receives the reports of a rendering; an error ends the rendering.
 pub type Listen<'a> = dyn FnMut(Told) -> anyhow::Result<()> + 'a;
 
-/// So many pixels are rendered without a word.
+/// Up to so many pixels, no time is forecast.
 const FEW_PIXELS: u64 = 10_000_000;
-/// Each side of the two pictures that are tried is this part of a side that was asked for.
+/// Sizes of the two pictures that are tried, as divisors of each side that was asked for.
 const PARTS: [u32; 2] = [16, 8];
 
 impl Plan {

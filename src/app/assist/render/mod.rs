@@ -24,31 +24,31 @@ pub use forecast::{Listen, Told};
 use plan::{Cameras, Plan};
 use write::Writer;
 
-/// What can be rendered besides the views of cameras.
+/// Kinds of output besides the views of cameras.
 const OTHERS: [&str; 4] = ["truth", "lidar", "bev", "view"];
 
-/// What is rendered, and how.
+/// Options of a rendering.
 #[derive(Clone, Debug)]
 pub struct Rendering {
     /// Names from [`kinds`].
     pub what: Vec<String>,
     /// Size of camera pictures in pixels.
     pub size: [u32; 2],
-    /// What classes and depths are rendered from.
+    /// Source that classes and depths are rendered from.
     pub source: SourceId,
-    /// Weather of pictures; else the scene's.
+    /// Weather of pictures; `None` for the scene's.
     pub weather: Option<Weather>,
-    /// Time of day of pictures; else the scene's.
+    /// Time of day of pictures; `None` for the scene's.
     pub time: Option<TimeOfDay>,
     /// One sample per pixel for pictures.
     pub preview: bool,
     /// How the LiDAR sweep comes about.
     pub lidar: camera_views::LidarModel,
-    /// What paints learned pictures; the weights that ship if none.
+    /// Network that paints learned pictures; `None` for the bundled weights.
     pub paint: Option<PaintWith>,
 }
 
-/// What was rendered.
+/// Result of a rendering.
 #[derive(Debug, Default)]
 pub struct Rendered {
     /// The files, in the order in which they were written.

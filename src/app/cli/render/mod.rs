@@ -59,7 +59,7 @@ pub struct Render {
     common: Common,
 }
 
-/// What takes longer is told beforehand, s.
+/// Renderings that take longer than this are announced beforehand, s.
 const LONG_S: f64 = 20.0;
 
 /// The six cameras' maps and the LiDAR sweep of a scene.

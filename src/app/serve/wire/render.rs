@@ -1,4 +1,4 @@
-//! What is rendered, and what comes of it.
+//! Requests to render, and their answers.
 
 use super::camera::CameraSpec;
 use super::common::{PosePair, Trajectory};
@@ -185,7 +185,7 @@ pub struct AggregatedRenderRequest {
     pub lidar_requests: Vec<LidarRenderRequest>,
 }
 
-/// What several sensors see, in the order of the request.
+/// Pictures and sweeps of several sensors, in the order of the request.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct AggregatedRenderReturn {
     /// Pictures.
@@ -194,7 +194,7 @@ pub struct AggregatedRenderReturn {
     /// Sweeps.
     #[prost(message, repeated, tag = "2")]
     pub lidar_returns: Vec<LidarRenderReturn>,
-    /// What the driver is told besides; always empty.
+    /// Extra data for the driver; always empty.
     #[prost(bytes = "vec", tag = "3")]
     pub driver_data: Vec<u8>,
 }
@@ -218,10 +218,10 @@ pub struct BatchRgbRenderRequest {
     pub items: Vec<BatchRgbRenderRequestItem>,
 }
 
-/// What came of a picture of a batch.
+/// Result of one picture of a batch.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct BatchRgbRenderReturnItem {
-    /// As in the request.
+    /// Name from the request.
     #[prost(string, tag = "1")]
     pub camera_name: String,
     /// The picture, if there is one.
@@ -235,7 +235,7 @@ pub struct BatchRgbRenderReturnItem {
     pub error_message: String,
 }
 
-/// What came of a batch, in its order.
+/// Results of a batch, in its order.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct BatchRgbRenderReturn {
     /// One for each picture.
@@ -243,7 +243,7 @@ pub struct BatchRgbRenderReturn {
     pub items: Vec<BatchRgbRenderReturnItem>,
 }
 
-/// Whose ways are asked for.
+/// Request for the trajectories of a scene's own vehicle.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct AvailableTrajectoriesRequest {
     /// The scene.
@@ -251,7 +251,7 @@ pub struct AvailableTrajectoriesRequest {
     pub scene_id: String,
 }
 
-/// A way of the own vehicle.
+/// A trajectory of the own vehicle.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct AvailableTrajectory {
     /// Its poses in the world.

@@ -16,7 +16,7 @@ use scene::{Form, Frame, Scene};
 
 use super::{Outcome, Phase, Pointer, Site, ThingState};
 
-/// What one tool draws.
+/// State machine of one scenery tool while it draws.
 pub(super) trait Draft: Clone + Debug + Default + Send + 'static {
     /// Takes the pointer.
     fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome;
@@ -35,15 +35,15 @@ pub(super) trait Draft: Clone + Debug + Default + Send + 'static {
     /// Takes the last point back.
     fn drop_point(&mut self) {}
 
-    /// What the buttons do; `drawn`: points are set.
+    /// Hint for the mouse buttons; `drawn`: points are set.
     fn hint(drawn: bool) -> Vec<&'static str>;
 
-    /// What Alt does in the view from above.
+    /// Hint for Alt in the view from above.
     fn alt() -> Option<&'static str> {
         None
     }
 
-    /// What would come where the pointer is; `drawing`: something is begun.
+    /// The preview where the pointer is; `drawing`: a form has been begun.
     fn coming(&self, drawing: bool, p: Option<Pointer>, site: &Site<'_>, options: &ThingState) -> Coming;
 
     /// The options of the tool.
@@ -53,18 +53,18 @@ pub(super) trait Draft: Clone + Debug + Default + Send + 'static {
     fn set(hand: &mut Hand, id: &str, value: Value);
 }
 
-/// What would come of a tool where the pointer is, ego frame, m.
+/// Preview of a tool where the pointer is, ego frame, m.
 #[derive(Default)]
 pub(super) struct Coming {
-    /// Forms.
+    /// Forms that would be added.
     pub forms: Vec<Form>,
-    /// The way that is drawn.
+    /// Line that is being drawn.
     pub way_m: Vec<DVec2>,
-    /// What is said about it.
+    /// Text beside the pointer.
     pub text: Option<String>,
 }
 
-/// Length of the last piece, and of all of them.
+/// Lengths of the last piece and of all pieces together, as text; `None` without a piece.
 pub(super) fn length(points_m: &[DVec2]) -> Option<String> {
     let pieces: Vec<f64> = points_m.windows(2).map(|p| p[0].distance(p[1])).collect();
     let last = pieces.last()?;

@@ -1,4 +1,4 @@
-//! What the road tool draws over the map.
+//! Marks that the road tool draws over the map.
 
 use std::f64::consts::TAU;
 
@@ -67,7 +67,7 @@ fn at(points: &[DVec2]) -> Vec<At> {
     points.iter().map(|p| (*p).into()).collect()
 }
 
-/// Both edges of a road.
+/// The two edges of a road.
 fn outline(road: &Road, line: &[DVec2]) -> [Vec<DVec2>; 2] {
     [
         curve::beside(line, road.reach_m(false)),

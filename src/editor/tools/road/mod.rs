@@ -48,13 +48,13 @@ pub static DEF: ToolDef = ToolDef {
 /// A node that is let go of so near to another one meets it, m.
 const MEET_M: f64 = 3.0;
 
-/// What is being dragged.
+/// Part of the roads that is being dragged.
 #[derive(Clone, Debug)]
 enum Grip {
     Node(NodeId),
     /// A point of the road.
     Via(Road, usize),
-    /// The line itself: it gets a point there.
+    /// The line itself: it gets a new point there.
     Line(Road, usize),
 }
 
@@ -64,11 +64,11 @@ struct Drag {
     grip: Grip,
     from_m: DVec2,
     moved: bool,
-    /// The scene was asked to have a network.
+    /// True once the scene was asked to recognise its roads as a network.
     asked: bool,
 }
 
-/// What a network depends on, by the memory that it lies in.
+/// Inputs of a network; equality is decided by their shared memory.
 #[derive(Clone, Debug)]
 struct Known {
     roads: Arc<RoadNetwork>,

@@ -101,7 +101,7 @@ impl<'a> Gizmo<'a> {
         self.axes().iter().find(near).map(|a| Part::Axis(*a))
     }
 
-    /// What is drawn of it; `hot` is under the pointer or held.
+    /// The marks of the gizmo; `hot` is under the pointer or held.
     pub fn marks(&self, hot: Option<Part>) -> Vec<Mark> {
         let screen = |p: DVec2| At::Screen(p);
         if self.transform.kind == TransformKind::Turn {

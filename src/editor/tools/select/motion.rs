@@ -1,4 +1,4 @@
-//! The way of what moves, dragged on the map: keyframes to another place, a path bent.
+//! Motions dragged on the map: a keyframe is moved, or a path is bent.
 
 use glam::DVec2;
 
@@ -9,25 +9,25 @@ use language::tf;
 use scene::clip::Path;
 use scene::{BoxId, Clip, Frame, Motion, Scene};
 
-/// A path can be taken every so far, m.
+/// Spacing of the knots along a path, m.
 const KNOTS_EVERY_M: f64 = 10.0;
-/// What lies nearer than this to where it is taken, along the path, comes along, m.
+/// Least distance along the path, to either side of the dragged place, within which the path bends with it, m.
 const BEND_M: f64 = 15.0;
-/// Points of a path where it is bent lie at most so far apart, m.
+/// Largest spacing of the points of a bent part of a path, m.
 const STEP_M: f64 = 1.0;
-/// A knot is caught by lanes so near, m.
+/// Distance within which a lane catches a knot, m.
 const CATCH_M: f64 = 2.0;
 
-/// Where a motion can be taken.
+/// Handle of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Knot {
-    /// A keyframe: its number.
+    /// A keyframe, by its index.
     Key(usize),
-    /// So far along the path, m.
+    /// A place of a path, by its distance along the path, m.
     Along(f64),
 }
 
-/// A motion that is held.
+/// A drag of a motion in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MotionDrag {
     id: Option<BoxId>,
@@ -37,8 +37,8 @@ pub(super) struct MotionDrag {
 }
 
 impl MotionDrag {
-    /// What a press at a place takes hold of: a knot of what is chosen, or with nothing chosen of the ego vehicle, that
-    /// is not under the thing itself.
+    /// The drag of the nearest knot within `reach_m` of a place, of the only chosen object or, with an empty selection,
+    /// of the ego vehicle; `None` if there is none. The caller looks whether the object itself is there.
     pub(super) fn held(scene: &Scene, hand: &Hand, at_m: DVec2, reach_m: f64) -> Option<Self> {
         let (id, motion) = editable(scene.clip(), hand)?;
         let knots = knots(motion).into_iter();
@@ -53,7 +53,7 @@ impl MotionDrag {
         })
     }
 
-    /// The motion with what is held at another place.
+    /// Edits that move the knot to another place.
     pub(super) fn edits(&self, scene: &Scene, hand: &Hand, to_m: DVec2, held: Modifiers) -> Vec<Edit> {
         let (to_m, yaw_rad) = snapped(scene.frame(), hand, to_m, held);
         let motion = match (&self.start, self.knot) {
@@ -91,7 +91,7 @@ impl MotionDrag {
         }
     }
 
-    /// What is said beside the pointer.
+    /// The text beside the pointer.
     pub(super) fn text(&self) -> String {
         match (&self.start, self.knot) {
             (Motion::Keys(keys), Knot::Key(i)) => {

@@ -12,17 +12,17 @@ use scene::{Form, Frame, Scene, SceneBox, ThingId};
 use crate::tools::beside::{KERB_M, words};
 use crate::tools::{Choose, Hand, Modifiers};
 
-/// What was taken hold of.
+/// Drag of chosen things in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThingDrag {
     /// The chosen things, world frame.
     start: Vec<(ThingId, Form)>,
     boxes: Vec<SceneBox>,
-    /// What the pointer changes of them.
+    /// Part of them that the pointer changes.
     pull: Pull,
 }
 
-/// What a drag changes.
+/// Part of the things that a drag changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pull {
     /// The place of all of them.
@@ -34,7 +34,7 @@ pub enum Pull {
 }
 
 impl ThingDrag {
-    /// Takes hold of what is chosen; `None` without a thing.
+    /// Begins a drag of the chosen things; `None` without a thing.
     pub fn new(scene: &Scene, hand: &Hand, pull: Pull) -> Option<Self> {
         let things = hand.things.chosen_in(&scene.background);
         let start: Vec<_> = things.map(|t| (t.id, t.form.clone())).collect();
@@ -45,7 +45,7 @@ impl ThingDrag {
         })
     }
 
-    /// What is pulled.
+    /// The part that is changed.
     pub fn pull(&self) -> Pull {
         self.pull
     }
@@ -161,7 +161,8 @@ pub fn thing_under(scene: &Scene, hand: &Hand, at_m: DVec2, reach_m: f64) -> Opt
         .flatten()
 }
 
-/// What a press from above takes hold of among the chosen things: a corner of the only one, or all of them.
+/// The drag that a press from above starts among the chosen things: of a corner if there is only one thing, or of all
+/// of them.
 pub(super) fn held(scene: &Scene, hand: &Hand, at_m: DVec2, reach_m: f64, shift: bool) -> Option<ThingDrag> {
     let things = &hand.things;
     if shift || things.chosen.is_empty() {

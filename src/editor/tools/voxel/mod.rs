@@ -42,7 +42,7 @@ const CHOSEN: [u8; 3] = [255, 70, 255];
 /// Distance between two samples of a quick stroke, points.
 const SAMPLE_EVERY: f64 = 3.0;
 
-/// What the button held does.
+/// Drag in progress.
 #[derive(Clone, Debug, PartialEq)]
 enum Drag {
     /// Follows the pointer.
