@@ -10,7 +10,7 @@ use scene::{BevLayer, Class, Extent, Frame, Scene, SceneBox};
 /// Ids that a list holds at most.
 const MOST_IDS: usize = 100;
 
-/// What a call changed. Of more than 100 boxes the first are named.
+/// Changes by a call. Of more than 100 boxes the first are named.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Change {
     /// Boxes by what became of them.

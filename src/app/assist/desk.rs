@@ -52,18 +52,18 @@ impl Holder {
     }
 }
 
-/// What a call that may change the scene did.
+/// Result of a call that may change the scene.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Done {
     /// Number of the state that the scene is in now. A state that comes back by undo has its old number.
     pub revision: u64,
     /// Name of the undo step; empty if nothing changed.
     pub step: String,
-    /// What changed, in numbers.
+    /// Changes, in numbers.
     pub changed: Change,
     /// Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
     pub draft_columns: usize,
-    /// What should be looked at, such as findings of the checks that were not there before.
+    /// Warnings to look at, such as findings of the checks that were not there before.
     pub warnings: Vec<String>,
 }
 

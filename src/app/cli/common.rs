@@ -60,8 +60,8 @@ pub(super) struct Gen {
     /// Fixes every random draw.
     #[arg(long, default_value_t = 0)]
     pub(super) seed: u64,
-    /// What is regenerated: `auto`, what an edit touches; `full`, everything from fresh noise; or `X0,Y0,X1,Y1`, what
-    /// an edit touches and a rectangle (ego frame, m; give it a strength above 0).
+    /// Region that is regenerated: `auto`, what an edit touches; `full`, everything from fresh noise; or `X0,Y0,X1,Y1`,
+    /// what an edit touches and a rectangle (ego frame, m; give it a strength above 0).
     #[arg(long, value_name = "REGION", allow_hyphen_values = true)]
     pub(super) region: Option<RegionArg>,
     /// Number of fixed-point updates per inversion step.

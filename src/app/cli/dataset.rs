@@ -28,7 +28,7 @@ use formats::out_folder::OutFolder;
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Dataset {
-    /// What the frames hold, as shards for training; `occ3d` writes simulated labels with their masks as Occ3D files,
+    /// Content of the frames, as shards for training; `occ3d` writes simulated labels with their masks as Occ3D files,
     /// `memory` the bank of remembered scenes.
     #[arg(value_parser = ["occupancy", "drives", "lidar", "layout", "text", "pictures", "occ3d", "memory"])]
     kind: String,
@@ -43,7 +43,7 @@ pub struct Dataset {
     /// rest on templates.
     #[arg(long, value_name = "DIR", conflicts_with = "from")]
     roads: Option<PathBuf>,
-    /// Of the drives of --from, by name, those from A on, before B: to hold some out.
+    /// Range of the drives of --from, in the order of their names: from A on, before B. It serves to hold some out.
     #[arg(long, value_name = "A..B", value_parser = drives, requires = "from")]
     drives: Option<Range<usize>>,
     /// Size of camera pictures (kind `pictures`): 400x225 if left out, 256x144 with --from.

@@ -27,7 +27,7 @@ fn suites() -> clap::builder::PossibleValuesParser {
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Eval {
-    /// What is measured; `all`: every suite, one after another.
+    /// Suite that is measured; `all`: every suite, one after another.
     #[arg(value_parser = suites())]
     suite: String,
     /// Number of held-out worlds, or of frames of --data [default: 24, quick: a few].
@@ -60,7 +60,7 @@ pub struct Eval {
     /// At most so many of the sentences, spread evenly (layout) [default: all, quick: 240].
     #[arg(long, value_name = "N")]
     sentences: Option<usize>,
-    /// Who reads the sentences (layout).
+    /// Reader of the sentences (layout).
     #[arg(long, value_enum, default_value_t)]
     reader: Who,
     /// Prompts on which the placers are compared, with and without memory (layout); 0 leaves that out [default: 60, quick: 2].

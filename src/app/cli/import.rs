@@ -31,7 +31,8 @@ pub struct Import {
     /// Fixes the traffic.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Of a point cloud: lift it by so many metres, 0 for not at all; without it a sweep whose ground lies beside the map is lifted onto it, which is told.
+    /// For a point cloud: lift it by so many metres, 0 for not at all; without it a sweep whose ground lies beside the
+    /// map is lifted onto it, which is told.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     lift: Option<f64>,
     /// Without vehicles and people.

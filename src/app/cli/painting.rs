@@ -16,11 +16,10 @@ pub(super) struct Painting {
     /// model_index.json.
     #[arg(long, value_name = "DIR")]
     weights: Option<PathBuf>,
-    /// What learned pictures show, in words, for public weights; time, weather and
-    /// camera are added.
+    /// Content of learned pictures, in words, for public weights; time, weather and camera are added.
     #[arg(long = "paint-prompt", value_name = "WORDS")]
     prompt: Option<String>,
-    /// What they do not show, in words.
+    /// Content that they must not show, in words.
     #[arg(long = "paint-negative", value_name = "WORDS")]
     negative: Option<String>,
     /// How public weights make a step: ddim, pndm, dpmpp2m, euler or unipc [default: as their folder has it].

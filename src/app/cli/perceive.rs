@@ -25,10 +25,10 @@ pub struct Perceive {
     /// Number of the box that is to be missed.
     #[arg(long = "box", value_name = "ID", requires = "vary")]
     of: Option<u32>,
-    /// What is varied until the box is missed.
+    /// Property that is varied until the box is missed.
     #[arg(long, requires = "of")]
     vary: Option<Vary>,
-    /// Whose network is to miss it: that of the cameras if left out. Without a search all look.
+    /// Sensor whose network is to miss it: the cameras if left out. Without a search all networks look.
     #[arg(long)]
     by: Option<Sensor>,
     /// Scene to write in which it is missed.

@@ -29,7 +29,7 @@ use words::stage::Candidate;
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Prompt {
-    /// What the scene should hold, or what should change in it. {car|bus} and {2-5} are wildcards: the seed draws one.
+    /// Content of the new scene, or changes of the given one. {car|bus} and {2-5} are wildcards: the seed draws one.
     #[arg(required_unless_present = "schema", default_value = "")]
     text: String,
     /// Scene to edit; without one a new scene is made.
@@ -50,7 +50,7 @@ pub struct Prompt {
     /// Print the JSON Schema of readings, and read nothing.
     #[arg(long)]
     schema: bool,
-    /// Who places the objects.
+    /// Placer of the objects.
     #[arg(long, value_enum, default_value_t)]
     placer: Placer,
     /// Fill in what the prompt leaves open from remembered scenes.

@@ -14,7 +14,7 @@ use formats::loom;
 use job::inpaint::InpaintMask;
 use world::scenery::Setting;
 
-/// What draws scenery.
+/// Generator of scenery.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum By {
     Rules,
@@ -29,10 +29,10 @@ pub struct Scenery {
     /// Scene to write.
     #[arg(short, long, value_name = "S.loom")]
     output: PathBuf,
-    /// What draws it: rules for a kind of place, or a network.
+    /// Generator of the scenery: rules for a kind of place, or a network.
     #[arg(long, value_enum, default_value_t = By::Rules)]
     by: By,
-    /// What kind of place the rules draw; one that suits the road if left out.
+    /// Kind of place that the rules draw; one that suits the road if left out.
     #[arg(long, value_enum, value_name = "NAME")]
     setting: Option<Setting>,
     /// Number of plants, 1 = usual there; 0 is none.

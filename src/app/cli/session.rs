@@ -18,7 +18,7 @@ pub struct Session {
     pub(super) on: On,
 }
 
-/// What a session works on; `mcp` takes the same.
+/// Scene, folder and weights of a session; `mcp` takes the same.
 #[derive(clap::Args, Clone)]
 pub struct On {
     /// Scene to begin with; the one that ships with the program if left out.

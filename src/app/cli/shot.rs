@@ -20,10 +20,10 @@ use sensors::cameras::{self, bounds};
 pub struct Shot {
     /// Scene to read.
     scene: PathBuf,
-    /// What is shown: view (the 3D view), map, occupancy, cameras (all on one sheet) or lidar.
+    /// Picture to make: view (the 3D view), map, occupancy, cameras (all on one sheet) or lidar.
     #[arg(long, value_name = "WHAT", default_value = "view")]
     what: String,
-    /// What cameras show: semantic, depth, appearance, learned, perceived, normals and so on.
+    /// Camera pictures to make: semantic, depth, appearance, learned, perceived, normals and so on.
     #[arg(long, value_name = "VIEW", default_value = "semantic")]
     show: String,
     /// With names, a legend and a scale.

@@ -44,9 +44,9 @@ fn usual_size() -> [u32; 2] {
 pub struct Exported {
     /// The files.
     files: Vec<FileEntry>,
-    /// What they hold.
+    /// Content of the files.
     holds: String,
-    /// What of that does not come back when they are read again; empty if all of it does.
+    /// Content that is lost when they are read again; empty if none is.
     lost: String,
     /// Number of the state that was written.
     revision: u64,

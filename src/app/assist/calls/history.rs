@@ -34,7 +34,7 @@ fn one() -> u32 {
 /// Receipt of `undo` and `redo`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Moved {
-    /// What changed.
+    /// Changes of the scene.
     #[serde(flatten)]
     done: Done,
     /// Names of the steps that were undone or redone, in that order.

@@ -28,8 +28,8 @@ const MOST_PIXELS: u64 = 40_000_000;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Render {
-    /// What is rendered: `bev` is the map and the voxels from above, `view` the 3D view (needs a graphics driver), `lidar` the
-    /// points of a sweep; the others are what cameras see, `appearance` as a photograph.
+    /// Kinds of output: `bev` is the map and the voxels from above, `view` the 3D view (needs a graphics driver),
+    /// `lidar` the points of a sweep; the others are what cameras see, `appearance` as a photograph.
     #[schemars(schema_with = "names::what")]
     what: Vec<String>,
     /// Names of cameras, as `state` lists them; all of them if left out.
@@ -39,7 +39,7 @@ pub struct Render {
     #[serde(default = "usual_size")]
     #[schemars(schema_with = "names::size")]
     size: [u32; 2],
-    /// What classes and depths are rendered from.
+    /// Source that classes and depths are rendered from.
     #[serde(default = "usual_source")]
     #[schemars(schema_with = "names::source")]
     source: String,

@@ -126,7 +126,7 @@ pub struct BoxState {
     id: u32,
     /// Its class.
     class: Class,
-    /// What it is called and how it is painted.
+    /// Its name and its paint.
     label: BoxLabel,
     /// Its middle, world frame, m.
     center_m: [f64; 3],
@@ -136,7 +136,7 @@ pub struct BoxState {
     yaw_deg: f64,
     /// Velocity over ground, world frame, m/s.
     velocity_mps: [f64; 2],
-    /// Where it is, as the ego vehicle sees it.
+    /// Its place in words, as seen from the ego vehicle.
     place: String,
     /// True if it has a track.
     moves: bool,
