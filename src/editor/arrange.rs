@@ -10,7 +10,7 @@ use scene::{Arrangement, BoxId, Frame, Motion, Moving, Scene, SceneBox};
 use super::Edit;
 use super::lanes::nearest_lane;
 
-/// How far a lane may be from what is to follow it, m.
+/// Farthest lane that a box follows, m.
 pub const LANE_REACH_M: f64 = 6.0;
 
 /// Edits that add boxes, and the names that these get.

@@ -33,7 +33,7 @@ pub struct Repair {
 pub enum Stays {
     /// Its repair would bring a finding that is as bad, or would not help.
     NoBetter,
-    /// Its repair makes the map larger, which is done only where it is asked for by itself.
+    /// Its repair makes the map larger, which is done only if it is asked for by itself.
     AskedForAlone,
     /// Its repair would change locked parts.
     Locked,
@@ -84,8 +84,8 @@ pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 /// How edits are applied in the end, for example as corrections.
 pub type Meaning = dyn Fn(Vec<Edit>) -> Vec<Edit>;
 
-/// Repairs of these findings of a scene, and of what they leave, again and again. What is waived or locked stays. The result
-/// depends on nothing but the scene, the findings and when `watch` ends it.
+/// Plans repairs of these findings, and of the findings that they leave, in rounds. Waived findings and locked objects
+/// are not touched. The result depends on nothing but the scene, the findings and when `watch` ends it.
 pub fn plan_all(scene: &Scene, findings: &[Finding], meaning: &Meaning, watch: &mut Watch<'_>) -> Plan {
     plan(scene, findings, MOST_ROUNDS, meaning, watch)
 }
@@ -156,7 +156,7 @@ fn plan(
     }
 }
 
-/// How many findings nobody waived.
+/// The number of findings without a waiver, by severity.
 fn open_counts(scene: &Scene, found: &[Finding], tally: &Tally) -> Counts {
     let waived = found.iter().filter(|f| waive::of(scene.frame(), f).is_some());
     let (all, waived) = (tally.counts(), Counts::of(waived));
@@ -254,8 +254,8 @@ impl Planning<'_, '_> {
         }
     }
 
-    /// The scene with these repairs of one severity and what is found in it then, if it is better so: what they repair is gone,
-    /// and nothing as bad or worse has come.
+    /// The scene with these repairs of one severity, and its findings; `None` unless it is better: the repaired
+    /// findings are gone, and no new finding is as bad or worse.
     fn with(&self, batch: &[Repair]) -> Option<(Scene, Tally)> {
         let severity = batch.first()?.finding.severity;
         let edits: Vec<Edit> = batch.iter().flat_map(|r| r.edits.iter().cloned()).collect();

@@ -74,7 +74,7 @@ impl Area {
 }
 
 fn steps(pair: &[DVec2]) -> usize {
-    // Points lie within 10 km; what is not finite counts as one step.
+    // Points lie within 10 km; a length that is not finite counts as one step.
     ((pair[0].distance(pair[1]) / STEP_M).ceil().min(1e5) as usize).max(1)
 }
 

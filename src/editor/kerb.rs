@@ -15,7 +15,7 @@ pub struct KerbPoint {
     pub along: DVec2,
     /// Unit vector across it, from roadway to walkway to open ground.
     pub away: DVec2,
-    /// How far from the point that was asked for, m.
+    /// Distance from the point that was asked for, m.
     pub distance_m: f64,
 }
 

@@ -11,7 +11,7 @@ pub struct LanePoint {
     pub at_m: DVec2,
     /// Driving direction there, rad.
     pub yaw_rad: f64,
-    /// How far from the point that was asked for, m.
+    /// Distance from the point that was asked for, m.
     pub distance_m: f64,
     line: usize,
     segment: usize,

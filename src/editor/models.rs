@@ -12,7 +12,7 @@ const LANE_REACH_M: f64 = 3.0;
 /// A free place is looked for in rings so far apart, m, and in so many of them.
 const RING_M: f64 = 2.0;
 const RINGS: usize = 20;
-/// So far ahead of the ego vehicle's origin the nearest part of a model is put, m.
+/// Distance of the nearest part of a model ahead of the ego vehicle's origin, m.
 const AHEAD_M: f64 = 8.0;
 /// Length and width that are kept free where the ego vehicle stands, m.
 const EGO_M: [f64; 2] = [5.0, 2.2];

@@ -19,7 +19,7 @@ pub(crate) fn reaching(
     let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
     let [mut below, mut above] = [DVec2::ZERO; 2];
     for p in places {
-        // (what stays inside along an axis needs nothing there)
+        // (an axis along which the places stay inside needs no margin)
         below = below.max(low - p + sight_below_m);
         above = above.max(p - high + sight_above_m);
     }

@@ -1,4 +1,4 @@
-//! A drag that moves, turns or scales boxes: what the pointer, a locked axis, typed digits and snapping make of it.
+//! A drag that moves, turns or scales boxes: the edits of a pointer move, a locked axis, typed digits and snapping.
 
 use glam::{DVec2, DVec3};
 
@@ -216,7 +216,7 @@ impl Transform {
         self.start.iter().map(edit).collect()
     }
 
-    /// Sizes scaled about the middle of each bottom, so that what stands keeps standing.
+    /// Sizes scaled about the middle of each bottom, so that standing boxes keep standing.
     fn scaled(&self, factor: f64, snap: &Snap) -> Vec<Edit> {
         const SMALLEST_M: f64 = 0.1;
         let free = match snap.grid_m {

@@ -1,5 +1,5 @@
-//! Sets of voxels that the voxel tools work on: boxes, lines, what is connected, faces pulled out, mirror images.
-//! None is ever larger than the grid, and each is sorted and holds a voxel once.
+//! Sets of voxels that the voxel tools work on: boxes, lines, connected voxels, faces pulled out, mirror images. None
+//! is ever larger than the grid, and each is sorted and holds a voxel once.
 
 use std::collections::BTreeMap;
 

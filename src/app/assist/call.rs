@@ -1,4 +1,4 @@
-//! The vocabulary: every call with its arguments, its receipt, and what a client is told about it.
+//! The vocabulary: every call with its arguments, its receipt, and its description for clients.
 
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -137,7 +137,8 @@ fn tracks(before: &Scene, after: &Scene) -> Counts {
     }
 }
 
-/// Cells that differ, and what each map layer gained and lost; layers that did neither are left out.
+/// The number of cells that differ, and the cells that each map layer gained and lost; layers without a change are left
+/// out.
 fn layers(before: &Frame, after: &Frame) -> (usize, BTreeMap<String, Gained>) {
     let (a, b) = (before.layout.cells(), after.layout.cells());
     let mut layers: BTreeMap<String, Gained> = BTreeMap::new();

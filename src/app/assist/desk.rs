@@ -84,7 +84,7 @@ pub struct Desk {
     weights: Option<PathBuf>,
     pipeline: Option<OccPipeline>,
     revisions: HashMap<SceneRev, u64>,
-    /// How many states were numbered so far.
+    /// Number of states that were numbered so far.
     numbered: u64,
     versions: Vec<(String, Arc<Scene>)>,
     /// Findings of the state that was checked last, without sensors.
@@ -107,7 +107,7 @@ impl Desk {
         }
     }
 
-    /// The scene as it is now. Errors if whoever owns the document is gone.
+    /// The scene as it is now. Errors if the document's owner is gone.
     pub fn scene(&mut self) -> anyhow::Result<Arc<Scene>> {
         self.look(|document| document.settled_scene().clone())
     }
@@ -125,8 +125,8 @@ impl Desk {
         matches!(self.holder, Holder::Own(_))
     }
 
-    /// Changes the document in a way that is not an undo step, or has its own; returns what `work` does and the states before
-    /// and after.
+    /// Changes the document in a way that is no undo step, or brings its own; returns the result of `work` and the
+    /// states before and after.
     pub fn with<R: Send + 'static>(
         &mut self,
         work: impl FnOnce(&mut Document) -> R + Send + 'static,
@@ -153,8 +153,8 @@ impl Desk {
         Ok(done)
     }
 
-    /// Puts another state in the place of the state `from`, as one undo step. Errors if the scene has changed since. Its
-    /// findings are no warnings: it is another scene, or is checked by whoever made it.
+    /// Replaces the state `from` by another state, as one undo step. Errors if the scene has changed since. Findings of
+    /// the new state are no warnings: it is another scene, or its maker checks it.
     pub fn put(&mut self, step: String, from: SceneRev, scene: Scene) -> anyhow::Result<Done> {
         let label = step.clone();
         let (is_current, states) = self.with(move |document| {
@@ -208,7 +208,7 @@ impl Desk {
 
     /// Forgets the numbers of states that are gone for good, other than `newest`.
     fn forget_revisions(&mut self, newest: SceneRev) {
-        // (if whoever owns the document is gone, nothing comes back)
+        // (if the document's owner is gone, no old state comes back)
         let steps = self.look(|document| document.contents().collect::<Vec<_>>());
         let mut there: HashSet<SceneRev> = steps.unwrap_or_default().into_iter().collect();
         there.extend(self.versions.iter().map(|(_, scene)| scene.content()));
@@ -230,7 +230,7 @@ impl Desk {
         found
     }
 
-    /// Findings that were not there before, of what is the same scene.
+    /// Findings that are new in a later state of the same scene.
     fn warnings(&mut self, before: &Scene, after: &Scene) -> Vec<String> {
         let known: Vec<_> = self.findings(before).iter().map(same).collect();
         let found = self.findings(after);

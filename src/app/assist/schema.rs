@@ -202,7 +202,7 @@ fn references(value: &Value, out: &mut Vec<String>) {
     }
 }
 
-/// Takes out what says nothing to a client: numbers of bits, defaults of nothing, links of the documentation.
+/// Takes out parts of no use to a client: numbers of bits, defaults of nothing, links of the documentation.
 fn tidy(value: &mut Value) {
     match value {
         Value::Object(map) => {

@@ -40,7 +40,7 @@ impl Busy {
     }
 }
 
-/// Where calls are asked for. Clones ask the same thread; it ends with the last of them.
+/// Handle by which calls are asked for. Clones ask the same thread; it ends with the last of them.
 #[derive(Clone)]
 pub struct Service {
     queue: Sender<Request>,

@@ -71,7 +71,7 @@ impl Callers {
         })
     }
 
-    /// A place for the body of a request to come in, and what tells that no more is waited for it.
+    /// A place for the body of a request to come in, and the signal that tells that the server waits for it no longer.
     pub fn reading(&self) -> (Arc<Ending>, Place) {
         let ending = Arc::new(Ending::default());
         (ending.clone(), self.reading.take(ending, Instant::now()))
@@ -142,7 +142,7 @@ impl Caller {
 pub struct Asking(Arc<Caller>);
 
 impl Asking {
-    /// It was read whole, by somebody who may ask: the connection is a stranger's no longer.
+    /// Notes that the request was read whole and its sender may ask: the connection is no stranger any more.
     pub fn is_read(&self) {
         self.0.with(|state| state.is_known = true);
     }

@@ -32,7 +32,7 @@ pub fn listen(at: SocketAddr) -> io::Result<std::net::TcpListener> {
 }
 
 impl Callers {
-    /// The next connection. Takes all that come: whoever is silent gives way.
+    /// The next connection. Takes all that come: the longest silent one makes room.
     pub async fn accept(&self, listener: &TcpListener) -> Connection {
         loop {
             match listener.accept().await {
@@ -74,7 +74,7 @@ impl Connection {
         &self.caller
     }
 
-    /// Its stream, as long as it was not told to end.
+    /// Its stream; an error once it was told to end.
     fn open(&mut self, c: &mut Context<'_>) -> io::Result<Pin<&mut TcpStream>> {
         if self.caller.ending().is_told() || self.told.as_mut().poll(c).is_ready() {
             return Err(io::ErrorKind::TimedOut.into());

@@ -17,17 +17,17 @@ impl Default for Ending {
 }
 
 impl Ending {
-    /// Tells it.
+    /// Sends the signal.
     pub fn tell(&self) {
         self.0.send_replace(true);
     }
 
-    /// True once it was told.
+    /// True once the signal was sent.
     pub fn is_told(&self) -> bool {
         *self.0.borrow()
     }
 
-    /// Ready once it was told, or nobody is left who could.
+    /// Ready once the signal was sent, or the sender is gone.
     pub fn told(&self) -> impl Future<Output = ()> + Send + use<> {
         let mut told = self.0.subscribe();
         async move { drop(told.wait_for(|told| *told).await) }
@@ -53,7 +53,7 @@ struct Waiting {
 }
 
 impl Waiting {
-    /// Tells the oldest, if there is one.
+    /// Ends the oldest, if there is one.
     fn end_oldest(&mut self) -> bool {
         let oldest = self.all.pop_first();
         oldest.map(|(_, (_, ending))| ending.tell()).is_some()
@@ -86,7 +86,7 @@ impl Places {
         })
     }
 
-    /// Tells all whose time is over.
+    /// Ends all whose time is over.
     pub fn sweep(&self, now: Instant) {
         self.with(|waiting| {
             let over = |at: &Instant| now.saturating_duration_since(*at) >= self.0.within;
@@ -96,7 +96,7 @@ impl Places {
         });
     }
 
-    /// Tells the oldest, if there is one; true if there was.
+    /// Ends the oldest, if there is one; true if there was.
     pub fn end_oldest(&self) -> bool {
         self.with(Waiting::end_oldest)
     }

@@ -10,7 +10,8 @@ use http_body::{Body, Frame, SizeHint};
 use crate::caller::Asking;
 use crate::places::Place;
 
-/// Longest piece, bytes. Of a body in one piece all would be taken over at once, and nobody could tell whether it was sent.
+/// Longest piece, bytes. A body in one piece would be taken over at once, and the server could not tell whether it was
+/// sent.
 const PIECE: usize = 64 << 10;
 
 /// The body of an answer, piece by piece. Holds its places until it is sent but for the last pieces.

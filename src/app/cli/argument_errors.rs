@@ -1,4 +1,4 @@
-//! Wrong arguments in one line: what was found, what was expected, and where it helps what was probably meant.
+//! Wrong arguments in one line: what was found, what was expected, and where it helps the likely meaning.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
@@ -111,7 +111,7 @@ fn context(error: &clap::Error, kind: ContextKind) -> Option<Vec<String>> {
     }
 }
 
-/// On one line of so many characters at most.
+/// The text on one line of so many characters at most.
 fn short(text: &str, longest: usize) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let clean = |c: char| if c.is_control() { '?' } else { c };

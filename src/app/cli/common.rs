@@ -90,8 +90,8 @@ pub(super) struct Gen {
 }
 
 impl Gen {
-    /// The networks that a generation takes. Errors in one line if the folder of weights lacks or damages what was asked for by
-    /// name.
+    /// The networks that a generation takes. Errors in one line if the folder of weights lacks or damages a network
+    /// that was asked for by name.
     pub(super) fn models(&self, weights: &Weights) -> anyhow::Result<Arc<OccModels>> {
         let models = OccModels::of(weights.folder.as_deref())?;
         if let (Some(n @ 1..), None, Some(folder)) = (self.fine_steps, &models.refiner, &weights.folder) {

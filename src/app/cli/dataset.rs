@@ -189,7 +189,7 @@ impl Dataset {
         })
     }
 
-    /// Errors: what is named by --from or --drives is nothing for this kind.
+    /// Errors if --from or --drives is given and this kind does not take it.
     fn check_from(&self) -> anyhow::Result<()> {
         match (self.kind.as_str(), &self.from, &self.drives) {
             ("occupancy", _, None) | (_, None, _) => Ok(()),

@@ -15,7 +15,7 @@ use words::reading::Reading;
 const LARGEST_ANSWER: u64 = 1 << 20;
 /// Most acts of an answer.
 const MOST_ACTS: usize = 100;
-/// Boxes that the model is told of.
+/// Boxes that are described to the model.
 const MOST_BOXES: usize = 60;
 
 /// Where to ask.
@@ -152,7 +152,7 @@ fn checked(content: &str) -> anyhow::Result<Reading> {
     if let Some(problem) = reading.background.iter().find_map(|s| s.problem()) {
         bail!("background: {problem}");
     }
-    // (what the notation cannot say, such as a number that is none, no reader says)
+    // (a reading that the notation cannot express, such as a number that is not finite, is refused)
     let line = notation::write(&reading);
     if line.len() > notation::LONGEST {
         bail!(

@@ -147,7 +147,7 @@ impl Eval {
         self.against_bars(report.missed())
     }
 
-    /// Prints what all suites found. Errors if one could not be measured.
+    /// Prints the tables of all suites. Errors if one could not be measured.
     fn tell(&self, tables: &[Table]) -> Outcome {
         let called: Vec<String> = std::env::args().skip(1).collect();
         let origin = Origin::now(format!("sceneloom {}", called.join(" ")));

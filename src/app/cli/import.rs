@@ -196,7 +196,7 @@ impl Import {
         Ok(())
     }
 
-    /// A scene as the file holds it, and what of it was inferred.
+    /// A scene as the file holds it, with a report of its inferred parts.
     fn whole(&self, importer: &Importer, loaded: &Loaded) -> Outcome {
         let scene = &loaded.scene;
         loom::save(&self.output, scene).context("write the scene")?;

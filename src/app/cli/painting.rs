@@ -67,8 +67,8 @@ impl Painting {
         Ok(())
     }
 
-    /// The networks that the arguments ask for. Errors in one line if they are missing, damaged or foreign, or of the program's
-    /// own kind and told what public ones alone take.
+    /// The networks that the arguments ask for. Errors in one line if they are missing, damaged or foreign, or if they
+    /// are of the program's own kind and get options of public ones.
     pub fn open(&self) -> anyhow::Result<PaintWith> {
         let wish = self.wish();
         let with = wish.open()?;
@@ -81,7 +81,7 @@ impl Painting {
         Ok(with)
     }
 
-    /// One that public weights alone take.
+    /// An option that is given and that public weights alone take.
     fn public(&self) -> Option<&'static str> {
         let given = [
             ("--paint-prompt", self.prompt.is_some()),

@@ -1,5 +1,5 @@
-//! `sceneloom perceive`: what small networks see of a scene in the cameras, in the LiDAR and in both; and a search for a change after
-//! which one misses an object.
+//! `sceneloom perceive`: predictions of small networks for a scene, from the cameras, the LiDAR and both; and a search
+//! for a change after which one misses an object.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;

@@ -289,7 +289,7 @@ impl Prompt {
             .map(|q| q.text.as_str())
             .chain(edited.things.questions.iter().map(|q| q.text.as_str()))
             .collect();
-        // With an open question nothing is written: the answer may change what the rest means.
+        // With an open question nothing is written: the answer may change the meaning of the rest.
         let write = asked.is_empty() && !edits.is_empty();
         let (mut scene, mut generated) = (document.scene().clone(), None);
         if self.generate && write {

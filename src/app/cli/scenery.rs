@@ -1,4 +1,4 @@
-//! `sceneloom scenery`: what stands beside the roads, regenerated.
+//! `sceneloom scenery`: the scenery beside the roads, regenerated.
 
 use std::path::PathBuf;
 

@@ -58,7 +58,7 @@ impl Shot {
         let options = self.options(&scene)?;
         let start = Instant::now();
         let (shot, adapter) = match options.subject {
-            // (also without a legend the adapter is told)
+            // (also without a legend, the report names the adapter)
             Subject::View if !options.legend => {
                 let mut view = picture::View3d::new()?;
                 (view.shot(&scene, &options.shot)?, Some(view.adapter))

@@ -1,4 +1,4 @@
-//! `sceneloom trade`: what each knob costs and what it buys, measured on this machine.
+//! `sceneloom trade`: cost and benefit of each knob, measured on this machine.
 
 use std::path::PathBuf;
 

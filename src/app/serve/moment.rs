@@ -162,7 +162,7 @@ fn stands(scene: &Scene, placed: &Placed, share: f64) -> bool {
     scene.frame().boxes.get(&placed.id).is_some_and(there)
 }
 
-/// Moves what belongs to the canvas, with its voxels.
+/// Moves a box of the canvas, with its voxels.
 fn move_box(scene: &mut Scene, placed: &Placed, share: f64) -> Result<(), Status> {
     let Some(b) = scene.frame().boxes.get(&placed.id).copied() else {
         return Ok(());

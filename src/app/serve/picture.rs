@@ -137,7 +137,7 @@ impl Asked {
             });
         }
         let mut camera = lens::camera_of(spec, size)?;
-        // (nothing is called by what a client calls it)
+        // (the name that a client gives is not used)
         camera.name = "CAM".into();
         let pose = self.sensor.at(share);
         let q = pose.rotation;
@@ -167,7 +167,7 @@ impl Asked {
         }
     }
 
-    /// True if a camera of the rig is asked for, where the scene has it.
+    /// True if the request is for a camera of the rig, where the scene has it.
     fn is_own(&self, scene: &Scene, own: &Camera, spec: &CameraSpec, shutter: Option<Shutter>) -> bool {
         let same_shutter = match (own.shutter, shutter) {
             (None, None) => true,

@@ -1,4 +1,4 @@
-//! The scenes that a server offers: files by their names, read when they are asked for first.
+//! The scenes that a server offers: files by their names, read when they are first asked for.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -110,7 +110,7 @@ impl Server {
     }
 }
 
-/// Ready when the process is told to end. Where the system tells no signals, never.
+/// Ready when the process is told to end; never where the system sends no signals.
 async fn signal() {
     #[cfg(unix)]
     {
@@ -149,13 +149,13 @@ async fn serve(listener: TcpListener, service: Service, end: impl Future<Output 
     }
     accepting.abort();
     let _ = ended.send(());
-    // Whoever takes longer is left.
+    // Requests that take longer are dropped.
     let _ = tokio::time::timeout(END_WITHIN, serving).await;
     deadlines.abort();
     Ok(())
 }
 
-/// Takes connections. Whoever is silent gives way to whoever comes.
+/// Takes connections. A silent one makes room for a new one.
 async fn accept(
     listener: tokio::net::TcpListener,
     callers: Callers,

@@ -50,7 +50,7 @@ pub(super) fn apply_scoped(edit: &Edit, scene: &mut Scene, scope: Scope) -> Resu
         return Ok(());
     }
     let new = match (edit, scope) {
-        // What appears from here on is a track that stands still.
+        // An object that appears from here on is a track that stands still.
         (Edit::AddBox { .. }, Scope::FromHereOn) => frame
             .boxes
             .values()

@@ -15,7 +15,7 @@ const BESIDE_LANE_M: f64 = 18.0;
 const ONE_ROAD_M: f64 = 8.0;
 /// A line that ends this near to the edge is one that reaches it, m.
 const AT_EDGE_M: f64 = 2.5;
-/// Lines that go on end so far beyond the new edge, m.
+/// Length by which lines go on beyond the new edge, m.
 const BEYOND_M: f64 = 5.0;
 /// Flatter than this against the edge no line leaves the map.
 const STEEPEST: f64 = 0.35;
@@ -74,7 +74,7 @@ pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
 /// Farthest that a map grows on one side at once, m.
 const FARTHEST_M: f64 = 2000.0;
 
-/// A frame over a larger layout. What is new holds a draft of its ground and nothing of a source: it is to be generated.
+/// A frame over a larger layout. The new part holds a draft of its ground and no source: it is to be generated.
 fn over(frame: &Frame, layout: BevLayout) -> Frame {
     let (old, new) = (frame.extent(), layout.extent());
     let mut occupancy = draft::draft(&layout, frame.boxes.values());
@@ -196,7 +196,8 @@ impl Side {
         side_by_side
     }
 
-    /// The layout with so many columns more on this side, on which roads go on as they leave the map.
+    /// The layout with so many more columns on this side. Roads go on there in the direction in which they leave the
+    /// map.
     fn extended(
         self,
         layout: &BevLayout,
@@ -211,7 +212,7 @@ impl Side {
         }
         let new = Extent::new(from, size).map_err(EditError::BadMap)?;
         let last = [old.nx(), old.ny()].map(|n| n as i64 - 1);
-        // Each new column takes what lies where its road comes from, at the edge.
+        // Each new column copies the column at the edge from which its road comes.
         let cell = |[x, y]: [usize; 2]| {
             let p = new.center(x, y, 0).truncate();
             let outside_m = self.outside_m(old, p);

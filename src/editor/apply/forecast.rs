@@ -1,5 +1,5 @@
-//! How a scene goes on after its end: what moves keeps moving along its lane and behind whoever is ahead, the vehicle too, and
-//! the map grows to where it comes.
+//! Forecast of a scene after its end: moving objects keep moving along their lanes and behind the vehicle ahead, the
+//! ego vehicle too, and the map grows to where the ego vehicle comes.
 
 use std::collections::BTreeSet;
 
@@ -91,7 +91,8 @@ pub fn forecast(scene: &Scene, seconds: f64) -> Result<Forecast, String> {
     })
 }
 
-/// Edits that let these move on from a time to another, each looking out for the others; and the scene after `first` and them.
+/// Edits that let these move on from a time to another, each with regard to the others; and the scene after `first` and
+/// these edits.
 pub(super) fn together(
     scene: &Scene,
     goers: &[Goer],
@@ -110,21 +111,21 @@ pub(super) fn together(
         let motion = |g: &Goer| set(g, g.goes_on(scene, everybody.as_ref(), (from_s, to_s)));
         goers.iter().map(motion).collect()
     };
-    // First everybody goes on as fast as they are, so that who follows then finds the others moving.
+    // First all go on at their present speed, so that the followers then find the others moving.
     let mut later = scene.clone();
     let mut found = motions(None);
     let all: Vec<Edit> = first.iter().chain(&found).cloned().collect();
     apply_all(&all, &mut later).map_err(|e| e.to_string())?;
     for _ in 1..ROUNDS {
         found = motions(Some(&later));
-        // (what moves by now only moves otherwise)
+        // (objects that already have a motion only get another one)
         apply_all(&found, &mut later).map_err(|e| e.to_string())?;
     }
     Ok((found, later))
 }
 
-/// The edit that makes the map reach where the ego vehicle comes after `from_s`, with as much around it as there was until then;
-/// none if it does. Others may leave the map.
+/// The edit that makes the map reach where the ego vehicle comes after `from_s`, with as much map around it as there
+/// was until then; `None` if it does already. Other objects may leave the map.
 pub(super) fn room_for_us(scene: &Scene, from_s: f64) -> Option<Edit> {
     let relief = &scene.canvas().layout.relief;
     let still = scene.canvas().world_from_ego;
@@ -188,7 +189,8 @@ pub(super) fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
 }
 
 impl Goer {
-    /// Its motion up to `to_s`; `everybody`: who is where from `from_s` on, none to keep its speed.
+    /// Its motion up to `to_s`; `everybody` gives the positions of all objects from `from_s` on, `None` keeps the
+    /// present speed.
     fn goes_on(
         &self,
         scene: &Scene,

@@ -71,7 +71,7 @@ fn set_shape(scene: &mut Scene, id: BoxId, cells: &[[i32; 3]]) -> Result<(), Edi
     Ok(())
 }
 
-/// The motion of what stands where a box is.
+/// The motion of a box that stands where it is.
 fn standing(b: &SceneBox) -> Motion {
     Motion::Keys(vec![Key {
         time_s: 0.0,

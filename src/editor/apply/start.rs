@@ -24,7 +24,7 @@ pub struct Start {
     pub edits: Vec<Edit>,
     /// Objects that drive off.
     pub starts: usize,
-    /// Objects that stay where they are, each with what would happen otherwise.
+    /// Objects that stay where they are, each with the collision that driving would bring.
     pub stays: BTreeMap<BoxId, String>,
 }
 
@@ -56,9 +56,9 @@ impl Start {
     }
 }
 
-/// Lets everything that is labelled as moving, but has no motion, move from the beginning on, as far as that meets nothing: no
-/// wall, nothing that stands, nobody else and not the ego vehicle, over the whole clip, by the checks of the editor. A scene of
-/// one moment becomes a clip. Errors in one line.
+/// Lets every object that has a velocity, but no motion, move from the beginning on, unless it collides with a wall, a
+/// standing object, another moving one or the ego vehicle at any time of the clip, by the checks of the editor. A scene
+/// of one moment becomes a clip. Errors in one line.
 pub fn traffic_drives(scene: &Scene) -> Result<Start, String> {
     let mut waiting = goers(scene, 0.0);
     waiting.retain(|g| g.id.is_some() && g.motion.is_none());
@@ -109,11 +109,11 @@ fn who_stays(waiting: &[Goer], met: &[Met], both: bool) -> BTreeMap<BoxId, Strin
             (None, None) => {}
         }
     }
-    // (who stays for another reason may be no trouble any more)
+    // (an object that stays for another reason may be no obstacle any more)
     pairs.retain(|(a, b, _)| both || !(out.contains_key(a) || out.contains_key(b)));
     while let Some(&(a, b, text)) = pairs.first() {
         let count = |id: BoxId| pairs.iter().filter(|(a, b, _)| *a == id || *b == id).count();
-        // Who meets most of the others stays; of two alike the later one.
+        // The object with the most collisions stays; of two with as many the one of the larger id.
         let worst = pairs
             .iter()
             .flat_map(|(a, b, _)| [*a, *b])

@@ -51,9 +51,9 @@ pub(super) struct Findings {
     tally: Tally,
     /// Findings of each check that are listed at most.
     most: usize,
-    /// Boxes that are as a recording has them: what is odd about them is worth knowing and nobody's mistake.
+    /// Boxes that are as a recording has them: findings about them are worth knowing and no mistakes.
     recorded: BTreeSet<BoxId>,
-    /// Where somebody painted voxels of a recording: findings about all others of its voxels are nobody's mistake either.
+    /// Painted voxels of a recording: findings about all its other voxels are no mistakes either.
     painted: Option<VoxelPaint>,
     /// Where the findings of the check that runs begin.
     from: usize,
@@ -62,7 +62,7 @@ pub(super) struct Findings {
 }
 
 impl Findings {
-    /// Lists so many of each check and counts the others.
+    /// Lists so many findings of each check and counts the others.
     pub fn listing(most: usize) -> Self {
         Self {
             list: Vec::new(),
@@ -95,7 +95,7 @@ impl Findings {
         self.push_all(finding, 1);
     }
 
-    /// Takes one finding in that stands for so many, or counts them.
+    /// Takes in one finding that stands for `n`, or counts them.
     pub fn push_all(&mut self, mut finding: Finding, n: usize) {
         let is_measured = |painted: &VoxelPaint| {
             let mut cells = finding.cells.iter();
@@ -111,7 +111,7 @@ impl Findings {
         self.take(finding, n);
     }
 
-    /// Takes a finding in about a recorded box and something that somebody made: it is as bad as it is.
+    /// Takes in a finding about a recorded box and something that a user made; its severity stays.
     pub fn push_made(&mut self, finding: Finding) {
         self.take(finding, 1);
     }
@@ -147,7 +147,7 @@ impl Findings {
         self.recorded.contains(&id)
     }
 
-    /// Ends a check: what was only counted becomes its last finding.
+    /// Ends a check: its findings that were only counted become its last finding.
     pub fn end(&mut self, check: &'static str) {
         if let Some((n, severity, where_m)) = self.more.take() {
             self.list.push(Finding {

@@ -1,5 +1,5 @@
-//! Quality checks of a scene: what is probably a mistake, where, and how to repair it. One check per file; each looks
-//! at the frame being edited and never panics, whatever the frame holds.
+//! Quality checks of a scene: probable mistakes, their places, and repairs. One check per file; each looks at the frame
+//! being edited and never panics, whatever the frame holds.
 
 mod against_lane;
 mod box_without_occupancy;

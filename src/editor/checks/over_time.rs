@@ -317,7 +317,7 @@ fn walls_that_are_met(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
         let mut met = None;
         box_cells(extent, &core, 0.0, |x, y| {
             let ground_m = relief.column_m(x, y);
-            // What a bumper meets, and not what hangs over the road.
+            // Heights of a bumper: voxels that hang over the road are not met.
             for up in [0.9, 1.3] {
                 let p = extent.center(x, y, 0).with_z(ground_m + up);
                 let Some([x, y, z]) = extent.voxel_at(p) else {

@@ -23,7 +23,7 @@ const ROUND: NodeKind = NodeKind::Roundabout {
     ring_m: 6.5,
 };
 
-/// Changes the street nearest to a place; errors say what cannot be.
+/// Changes the street nearest to a place; errors say why a wish cannot be granted.
 pub(super) fn grant(
     net: &mut RoadNetwork,
     at_m: DVec2,

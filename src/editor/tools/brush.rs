@@ -331,7 +331,7 @@ fn layer_at(frame: &Frame, hand: &Hand, at_m: DVec2) -> Option<BevLayer> {
     DRAW_ORDER.iter().rev().find(there).copied()
 }
 
-/// The highest voxel of each column in a disc: what a brush on the ground would cover.
+/// The highest voxel of each column in a disc: the voxels that a brush on the ground would cover.
 fn tops_in_disc(frame: &Frame, center_m: DVec2, radius_m: f64) -> Vec<[usize; 3]> {
     let mut cells = Vec::new();
     disc_cells(frame.extent(), center_m, radius_m, |x, y| {
@@ -434,7 +434,7 @@ impl Brush {
                 .map(|change| Edit::ChangeRoads { change })
                 .into_iter()
                 .collect();
-            // What was drawn stays until the layer is unlocked.
+            // The drawing stays until the layer is unlocked.
             if cx.hand.locked_layer(&cx.frame().layout, &edits).is_none() {
                 self.points_m.clear();
             }

@@ -222,7 +222,7 @@ impl Hand {
         };
     }
 
-    /// The brush in hand so many times as large. The voxel brush has few sizes: each takes about a notch of the wheel.
+    /// Scales the brush in hand by a factor. The voxel brush has few sizes: each takes about a notch of the wheel.
     pub fn scale_brush(&mut self, factor: f64) {
         const NOTCH: f64 = 0.18;
         // Written so that NaN fails too.
@@ -287,7 +287,7 @@ impl Hand {
             return Vec::new();
         };
         let others = self.selection.iter().copied().filter(|id| *id != first);
-        // Who sets `selected` alone means that box alone.
+        // A caller that sets `selected` alone means that box alone.
         match self.selection.contains(&first) {
             true => std::iter::once(first).chain(others).collect(),
             false => vec![first],
@@ -347,7 +347,7 @@ impl Hand {
         self.selection = left.into_iter().collect();
     }
 
-    /// Keeps what is chosen in a state of the scene, for when an undo comes back to it.
+    /// Keeps the selection of a state of the scene, for an undo that comes back to it.
     pub fn remember_selection(&mut self, rev: SceneRev) {
         let kept = &mut self.selections;
         kept.insert(rev, Default::default());
@@ -359,7 +359,7 @@ impl Hand {
         self.selections.insert(rev, chosen);
     }
 
-    /// Chooses what was chosen last in a state of the scene; all stays if that was nothing.
+    /// Restores the last selection of a state of the scene; without one the present selection stays.
     pub fn recall_selection(&mut self, rev: SceneRev, scene: &Scene) {
         let (mut ids, mut things) = self.selections.get(&rev).cloned().unwrap_or_default();
         ids.retain(|id| scene.frame().boxes.contains_key(id));

@@ -1,5 +1,5 @@
-//! The tools: each is one file with a state machine that knows no window. Plain events go in, edits come out; what a
-//! tool shows and offers is data. Adding one takes its file and its line in [`all`].
+//! The tools: each is one file with a state machine that knows no window. Plain events go in, edits come out; marks and
+//! options are data. A new tool takes its file and its line in [`all`].
 
 pub mod add_box;
 pub mod beside;

@@ -1,4 +1,4 @@
-//! The region tool: marks what to inpaint, by rectangles, outlines or a brush.
+//! The region tool: marks areas to inpaint, by rectangles, outlines or a brush.
 
 use glam::DVec2;
 
@@ -107,7 +107,7 @@ impl Marker {
     }
 }
 
-/// True if what is drawn is marked; with Shift, and with Ctrl as where boxes are chosen, the mark is taken away.
+/// True if the drawn area is marked. With Shift or Ctrl (as in the selection of boxes) the mark is taken away.
 fn marks(held: Modifiers) -> bool {
     !(held.shift || held.ctrl)
 }

@@ -1,4 +1,4 @@
-//! Brushes that the user keeps: what a brush draws and how, under a name; voxels kept as a stamp among them.
+//! Saved brushes: the settings of a brush under a name; voxels kept as a stamp among them.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use scene::{BevLayer, Class, Frame};
 use super::{Hand, PaintShape, ToolId, VoxelMode, VoxelTip, VoxelVerb};
 use crate::voxel_ops::Cell;
 
-/// Voxels that are set down together: where, from the middle of their underside, and of what class.
+/// Voxels that are set down together: their places from the middle of their underside, and their classes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Stamp {

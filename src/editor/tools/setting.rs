@@ -1,4 +1,5 @@
-//! Options of a tool as a list: what the panel shows, and what comes back when the user changes one.
+//! Options of a tool as a list: the controls that the panel shows, and the values that come back when the user changes
+//! one.
 
 use scene::Class;
 

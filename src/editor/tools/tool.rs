@@ -18,7 +18,7 @@ impl ToolId {
     pub const SELECT: Self = Self("select_tool");
     /// The one that paints the map.
     pub const BRUSH: Self = Self("brush_tool");
-    /// The one whose brush is as wide as so many voxels.
+    /// The one whose brush has a size in voxels.
     pub const VOXEL: Self = Self("voxel_brush");
 }
 
@@ -137,7 +137,7 @@ pub trait Tool: Debug + Send {
         Vec::new()
     }
 
-    /// Points set so far, ego frame, m, of what is drawn or measured point by point.
+    /// Points set so far of a form that is drawn or measured point by point, ego frame, m.
     fn points_m(&self) -> &[DVec2] {
         &[]
     }

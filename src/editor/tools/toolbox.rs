@@ -58,7 +58,7 @@ impl Toolbox {
         }
     }
 
-    /// Does what the action of a tool says: mostly it takes the tool. False if there is no such action.
+    /// Runs the action of a tool: mostly it takes the tool. False if there is no such action.
     pub fn shortcut(&mut self, hand: &mut Hand, id: &str) -> bool {
         let Some((def, shortcut)) = super::shortcut(id) else {
             return false;

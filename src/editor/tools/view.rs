@@ -46,7 +46,7 @@ pub fn farthest_m(extent: Extent) -> f64 {
 pub struct Context<'a> {
     /// The scene shown, a drag in progress included.
     pub scene: &'a Scene,
-    /// The scene without the drag in progress: what a stroke picks against.
+    /// The scene without the drag in progress: strokes pick against it.
     pub settled: &'a Scene,
     /// The view under the pointer.
     pub view: &'a dyn View,
@@ -140,7 +140,7 @@ pub struct Pointer {
 /// Keys that a tool may ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// Drops what is drawn point by point.
+    /// Drops a form that is drawn point by point.
     Escape,
     /// Finishes what is drawn or typed.
     Enter,

@@ -12,7 +12,7 @@ use scene::{BoxId, Class, SceneBox};
 pub struct Driver {
     /// Speed behind a vehicle that is faster than `desired_mps`, m/s: a follower goes as fast as it takes to keep up.
     pub desired_mps: f64,
-    /// Speed behind somebody who is faster than that, m/s: who follows goes as fast as it takes.
+    /// Speed behind a vehicle that is faster than `desired_mps`, m/s: a follower goes as fast as it takes to keep up.
     pub catching_up_mps: f64,
     /// Free distance kept at every speed, m, instead of `headway_s` and `gap_m`.
     pub headway_s: f64,
@@ -106,12 +106,12 @@ pub struct Body {
     pub half_width_m: f64,
 }
 
-/// How somebody followed: speeds, and how it went.
+/// Result of following: speeds, and the gap.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Followed {
     /// Speeds at times.
     pub speeds: Vec<Speed>,
-    /// Free distance to whoever was ahead first, m: as it was, and at the end; none if nobody was.
+    /// Free distance to the first vehicle ahead, m: at the start, and at the end; `None` if none was ahead.
     pub gap_m: Option<[f64; 2]>,
 }
 
@@ -198,7 +198,7 @@ pub fn follow(
         now = then;
     }
     Followed {
-        // (what is kept to the decimetre is told as exactly)
+        // (a gap that is kept to the decimetre needs speeds as exact)
         speeds: thinned(
             &out,
             if driver.keeps_m.is_some() {

@@ -1,4 +1,4 @@
-//! The table of templates: what a motion is called, what it asks for, and how it is made.
+//! The table of templates: names, parameters, and how each motion is made.
 
 use glam::DVec2;
 
@@ -14,15 +14,15 @@ use crate::lanes::nearest_lane;
 
 /// Length of a clip that gets its first motion, s.
 const USUAL_LENGTH_S: f64 = 8.0;
-/// Braking and starting that nobody minds, m/s².
+/// Comfortable braking and starting, m/s².
 const EASY: f64 = 2.0;
-/// How fast somebody on foot starts, m/s².
+/// Acceleration of a pedestrian, m/s².
 const STRIDE: f64 = 3.0;
 /// Width of a lane where none is known, m.
 const LANE_M: f64 = 3.5;
 /// Farthest that a street to turn into is looked for, m.
 const TURN_WITHIN_M: f64 = 150.0;
-/// Whoever is ahead is looked for so far, m.
+/// Distance within which a vehicle ahead is looked for, m.
 const LEADER_WITHIN_M: f64 = 300.0;
 /// Farthest way of a pedestrian across a road, m.
 const WIDEST_M: f64 = 60.0;
@@ -133,7 +133,7 @@ pub(crate) fn body_of_ego(scene: &Scene) -> Body {
     }
 }
 
-/// How fast whoever is ahead of something on its lane goes at the moment that is shown, m/s; none if nobody is.
+/// Speed of the vehicle ahead on an object's lane at the moment that is shown, m/s; `None` if none is ahead.
 pub(crate) fn leader_mps(scene: &Scene, id: Option<BoxId>) -> Option<f64> {
     let (from, body) = place(scene, id)?;
     let points_m = lane_path(&scene.frame().layout, &from, LEADER_WITHIN_M);
@@ -141,7 +141,7 @@ pub(crate) fn leader_mps(scene: &Scene, id: Option<BoxId>) -> Option<f64> {
     Some(leader.body.velocity_mps.dot(way))
 }
 
-/// Speeds of somebody who follows along a path. Errors in one line, where whoever is ahead gets away.
+/// Speeds of a follower along a path. Errors in one line if the vehicle ahead gets away.
 fn following(
     scene: &Scene,
     id: Option<BoxId>,
@@ -166,7 +166,7 @@ fn following(
         };
         let steps = (length_s / 0.5).ceil().clamp(1.0, 1200.0) as usize;
         fastest_mps = (0..=steps).map(|i| speed(i as f64 * 0.5)).fold(0.0, f64::max);
-        // (faster than them, or what opened up would never close)
+        // (faster than them, or a gap that opened would never close)
         driver.catching_up_mps = (fastest_mps * 1.3 + 1.0).min(top_mps);
         driver.acceleration = acceleration;
     }
@@ -286,7 +286,7 @@ fn path_of(
 fn around_the_corner(turning: &Turning, mps: f64) -> Vec<Speed> {
     let [begin_m, end_m] = turning.corner_m;
     let slow = turning.mps.min(mps).max(0.1);
-    // Who is too near to brake in comfort is slower from the start.
+    // A vehicle that is too near to brake in comfort is slower from the start.
     let first = mps.min((slow * slow + 2.0 * EASY * begin_m).sqrt());
     let braked_m = (first * first - slow * slow) / (2.0 * EASY);
     let brake_s = (begin_m - braked_m) / first.max(0.1);

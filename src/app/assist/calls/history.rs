@@ -61,7 +61,7 @@ fn travel(desk: &mut Desk, steps: u32, back: bool) -> anyhow::Result<Moved> {
         bail!("there is nothing to {verb}");
     }
     let mut done = desk.done(format!("{what} {}", names.join(", ")), &states);
-    // What came back was looked at when it was made.
+    // A state that comes back was checked when it was made.
     done.warnings.clear();
     if names.len() < steps as usize {
         let found = names.len();

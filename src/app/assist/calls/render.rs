@@ -21,7 +21,7 @@ use sensors::cameras::{self, SourceId, ViewId};
 
 /// Longest side of the picture that goes with a receipt, pixels.
 const SMALL_SIDE: u32 = 640;
-/// Most pixels of all pictures of one call: a minute or so of two cores. Whoever waits for an answer gives up before long.
+/// Most pixels of all pictures of one call: a minute or so of two cores. Clients do not wait for an answer for long.
 const MOST_PIXELS: u64 = 40_000_000;
 
 /// Arguments of `render`.
@@ -169,7 +169,7 @@ impl Operation for Render {
         check_what(&self.what, "what")?;
         names::check_size(self.size)?;
         names::check("source", &self.source, &names::sources())?;
-        // (told before anything is rendered; the other files are looked at once they are there)
+        // (the error comes before anything is rendered; the other files are looked at once they are there)
         for file in self.surely() {
             let file = format!("{}/{file}", self.folder);
             desk.folder.may_write(&file, self.replace)?;

@@ -1,4 +1,4 @@
-//! `state`: what is there.
+//! `state`: a description of the scene.
 
 use std::collections::BTreeMap;
 

@@ -132,7 +132,7 @@ fn track_state(scene: &Scene, id: Option<BoxId>) -> Option<TrackState> {
     })
 }
 
-/// Whoever a call names, in words.
+/// Name of the object of a call, in words.
 fn who(id: Option<BoxId>) -> String {
     id.map_or("the ego vehicle".to_owned(), |id| format!("box {}", id.0))
 }

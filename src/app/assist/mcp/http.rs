@@ -28,9 +28,10 @@ use crate::service::Service;
 const PATH: &str = "/mcp";
 /// Shortest token, bytes.
 const SHORTEST_TOKEN: usize = 16;
-/// Longest body, bytes: a call and what a message has around it.
+/// Longest body, bytes: a call and the message around it.
 const LONGEST_BODY: usize = LONGEST_CALL + 4096;
-/// Connections, bodies and answers: how many of each wait, and for how long. A stranger is who has not shown the token.
+/// Connections, bodies and answers: how many of each wait, and for how long. A stranger is a connection that has not
+/// shown the token.
 const CALLERS: Limits = Limits {
     strangers: Wait {
         most: 128,
@@ -83,7 +84,7 @@ impl Drop for Http {
     }
 }
 
-/// A token that nobody can guess: 32 hexadecimal digits.
+/// A random token that cannot be guessed: 32 hexadecimal digits.
 pub fn random_token() -> anyhow::Result<String> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).context("draw a token")?;
@@ -169,7 +170,7 @@ async fn accept(listener: TcpListener, service: Service, token: &str) {
                 .header_read_timeout(CALLERS.strangers.within)
                 .serve_connection(TokioIo::new(connection), answer)
                 .await;
-            // (a connection that ends with an error has nobody left to be told)
+            // (if a connection ends with an error, no client is left to report it to)
             drop(served);
         });
     }
@@ -196,7 +197,7 @@ impl Door {
     }
 }
 
-/// A body, read whole before anything is done with it: one that does not come must not hold what others need.
+/// A body, read whole before it is handled: a body that does not come must not hold resources that others need.
 async fn read(body: Incoming, callers: &Callers) -> Result<Bytes, (StatusCode, &'static str)> {
     const TOO_LONG: &str = "the message is too long, expected at most 1 MiB";
     if body.size_hint().lower() > LONGEST_BODY as u64 {

@@ -58,7 +58,7 @@ fn tool(def: &CallDef) -> Tool {
         .with_annotations(annotations)
 }
 
-/// The formats that can be written, each with what it holds.
+/// The formats that can be written, each with its content.
 fn formats() -> String {
     let all = formats::export::all().iter();
     let all: Vec<String> = all.map(|f| format!("{} ({})", f.id, f.title)).collect();
@@ -114,7 +114,7 @@ impl ServerHandler for Server {
         let (answer, answered) = oneshot::channel();
         let cancelled = context.ct.clone();
         let stop: Stop = Arc::new(move || cancelled.is_cancelled());
-        // (nothing is awaited before this: calls are asked for in the order in which they came)
+        // (no `await` comes before this: calls are carried out in the order in which they came)
         let asked = self
             .service
             .ask(def.name.to_owned(), args, stop, |a| drop(answer.send(a)));

@@ -62,7 +62,7 @@ pub fn stdio(
     })
 }
 
-/// Reads messages until the input ends or nobody wants them any more. What is no message is refused at once.
+/// Reads messages until the input ends or the receiver is gone. Input that is no message is refused at once.
 fn read(mut input: impl BufRead, ahead: &mpsc::Sender<ClientJsonRpcMessage>, output: &Output) {
     let refuse = |id: Value, code: i32, message: &str| {
         let error = json!({ "code": code, "message": one_line(message) });
@@ -133,7 +133,7 @@ impl Transport<RoleServer> for Lines {
     async fn receive(&mut self) -> Option<RxJsonRpcMessage<RoleServer>> {
         let message = self.messages.recv().await;
         if message.is_none() {
-            // The input has ended: what was asked for is still answered.
+            // The input has ended: calls that were made are still answered.
             while !self.service.is_idle() {
                 tokio::time::sleep(POLL).await;
             }

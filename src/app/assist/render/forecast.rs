@@ -1,4 +1,5 @@
-//! How long many pixels will take on this machine: told before they are rendered, from small pictures of the same camera.
+//! Forecast of the time that many pixels take on this machine: reported before they are rendered, from small pictures
+//! of the same camera.
 
 use std::time::Instant;
 
@@ -107,7 +108,8 @@ impl Rendering {
 /// Seconds of a picture of so many pixels, on the line through two smaller ones: part of their time does not grow with them.
 fn per_picture_s(pixels: u64, [(few, few_s), (more, more_s)]: [(u64, f64); 2]) -> f64 {
     let rate = (more_s - few_s).max(0.0) / more.saturating_sub(few).max(1) as f64;
-    // Where noise hides the growth, all of it counts: too long is told rather than too short.
+    // Where noise hides the growth, all of the time counts as growth: too long a forecast is better than too short a
+    // one.
     let rate = if rate > 0.0 {
         rate
     } else {

@@ -1,4 +1,4 @@
-//! Pictures and data of what the sensors see, as files of a folder: what `sceneloom render` and the call `render` share.
+//! Pictures and data of the sensors, as files of a folder: shared by `sceneloom render` and the call `render`.
 
 mod forecast;
 mod plan;
@@ -67,7 +67,7 @@ pub fn kinds() -> Vec<&'static str> {
     views.chain(OTHERS).collect()
 }
 
-/// Errors if nothing is asked for, or something unknown; `key` is the name of the list.
+/// Errors if the list is empty, or holds an unknown name; `key` is the name of the list.
 pub fn check_what(what: &[String], key: &str) -> anyhow::Result<()> {
     let kinds = kinds();
     if what.is_empty() {
@@ -91,7 +91,7 @@ impl Rendering {
         }
     }
 
-    /// How the pictures come to be: under the weather and time that were asked for.
+    /// Recipe of the pictures, under the weather and time that were asked for.
     fn recipe(&self, scene: &Scene) -> Recipe {
         Recipe {
             conditions: self.input(scene).conditions,
@@ -141,9 +141,9 @@ impl Rendering {
         Ok(())
     }
 
-    /// Renders the moment that a scene shows, and writes the files into a folder, which is made; `listen` hears how long it will
-    /// take and how far it is. Errors in one line, also what `listen` says; whatever cannot be had is told before anything is
-    /// written.
+    /// Renders the moment that a scene shows, and writes the files into a folder, which is made; `listen` gets the
+    /// forecast of the time and the progress. Errors in one line, also those of `listen`; a missing sensor or network
+    /// is reported before anything is written.
     pub fn write(&self, scene: &Scene, folder: &Path, listen: &mut Listen<'_>) -> anyhow::Result<Rendered> {
         let of_file = scene;
         let scene = &*of_file.with_rig_in_world();

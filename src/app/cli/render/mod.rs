@@ -1,4 +1,4 @@
-//! `sceneloom render`: what the sensors see, as pictures and as data.
+//! `sceneloom render`: the sensors' view of a scene, as pictures and as data.
 
 mod arguments;
 

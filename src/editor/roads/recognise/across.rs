@@ -96,7 +96,7 @@ pub(super) fn read(layout: &BevLayout, middle_m: &[DVec2]) -> Option<Across> {
 
 fn lane(kind: LaneKind, width_m: f64) -> RoadLane {
     let (low, high) = (*scene::Road::LANE_M.start(), *scene::Road::LANE_M.end());
-    // A tenth of a metre is finer than what is painted.
+    // A tenth of a metre is finer than the painted cells.
     let width_m = ((width_m * 10.0).round() / 10.0).clamp(low, high);
     RoadLane { kind, width_m }
 }

@@ -21,13 +21,13 @@ pub(super) trait Draft: Clone + Debug + Default + Send + 'static {
     /// Takes the pointer.
     fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome;
 
-    /// Ends what is drawn point by point.
+    /// Finishes a form that is drawn point by point.
     fn finish(&mut self, options: &ThingState) -> Outcome {
         let _ = options;
         Outcome::Nothing
     }
 
-    /// Points set so far of what waits for more of them.
+    /// Points set so far of a form that waits for more of them.
     fn points_m(&self) -> &[DVec2] {
         &[]
     }
@@ -189,7 +189,7 @@ impl<D: Draft> Drawing<D> {
         };
         let outcome = match &mut self.draft {
             Some(draft) => draft.pointer(&p, &site, &cx.hand.things),
-            // What was let go of elsewhere is not for this tool.
+            // A click that ends outside the ground is not for this tool.
             None => Outcome::Nothing,
         };
         self.answer(outcome)
@@ -205,7 +205,7 @@ impl<D: Draft> Drawing<D> {
         response
     }
 
-    /// Shows or adds what was drawn.
+    /// Shows or adds the drawn forms.
     fn answer(&mut self, outcome: Outcome) -> Response {
         match outcome {
             Outcome::Nothing => Response::none(),

@@ -1,5 +1,5 @@
-//! The road tool: chooses roads and the nodes where they meet, and reshapes them by their points and lanes. A scene whose
-//! roads were only painted shows what is recognised in them.
+//! The road tool: chooses roads and the nodes where they meet, and reshapes them by their points and lanes. A scene
+//! whose roads were only painted shows the roads recognised in them.
 
 mod marks;
 mod options;
@@ -229,7 +229,7 @@ impl Roads {
         }
     }
 
-    /// The edits by which a node that is let go of at a place meets what is there.
+    /// The edits by which a node that is released at a place joins the node or road there.
     fn meeting(&self, net: &RoadNetwork, id: NodeId, at_m: DVec2) -> Option<Vec<Edit>> {
         let others = net
             .nodes
@@ -362,7 +362,7 @@ impl Tool for Roads {
     }
 }
 
-/// The edits by which what is chosen of the roads goes away; `None` if nothing is.
+/// The edits that delete a part of the roads; `None` for a point of a road that does not exist.
 pub fn deletion(scene: &Scene, part: RoadPart) -> Option<Vec<Edit>> {
     let change = match part {
         RoadPart::Road(id) => RoadChange::Remove { id },

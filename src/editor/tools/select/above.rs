@@ -110,7 +110,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
             _ => {}
         }
         let over_box = pick::box_at(frame, at_m);
-        // Where the thing itself is, it is dragged, and with it its way.
+        // Over the object itself, a press drags the object, and its motion with it.
         if over_box.is_none_or(|id| !cx.hand.is_chosen(id))
             && let Some(drag) = MotionDrag::held(cx.settled, cx.hand, at_m, reach_m)
         {
@@ -123,7 +123,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
         if let Some(id) = over_box {
             if shift && !(chosen.len() == 1 && cx.hand.is_chosen(id)) {
                 cx.hand.choose(&[id], Choose::Toggle);
-                // Letting go elsewhere than pressed moves nothing: the selection is what was meant.
+                // A release elsewhere than the press moves nothing: the press meant the selection.
                 return Some(Drag::Marquee {
                     from_m: at_m,
                     to_m: at_m,
@@ -358,14 +358,14 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
     Response::none()
 }
 
-/// Chooses what lies in an outline, ego frame, m.
+/// Chooses the objects in an outline, ego frame, m.
 pub(super) fn outline(cx: &mut Context<'_>, points_m: &[DVec2], how: Choose) {
     let scene = cx.settled;
     cx.hand.choose(&choose::in_outline(scene.frame(), points_m), how);
     things::choose_in(scene, cx.hand, how, |p| choose::is_inside(points_m, p));
 }
 
-/// How what a rectangle or outline took joins the selection, by the keys that are held.
+/// The way in which the objects of a rectangle or outline join the selection, by the held keys.
 pub(super) fn how(held: Modifiers) -> Choose {
     match (held.shift, held.ctrl) {
         (true, _) => Choose::Add,

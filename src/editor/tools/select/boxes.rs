@@ -16,7 +16,7 @@ pub(super) fn transform(frame: &Frame, hand: &Hand, ids: &[BoxId], kind: Transfo
         axis: None,
         orientation: hand.orientation,
         pivot: match kind {
-            // The ring goes about the middle of what it is drawn around.
+            // The ring turns the boxes about the middle of the ring.
             TransformKind::Turn => Pivot::Middle,
             _ => hand.pivot,
         },
@@ -85,7 +85,7 @@ pub(super) fn take(scene: &Scene, hand: &mut Hand, id: BoxId) {
     choose_groups(scene, hand);
 }
 
-/// Chooses the whole groups of what is chosen, too; the box chosen last stays the first.
+/// Extends the selection to whole groups; the box chosen last stays the first.
 pub(super) fn choose_groups(scene: &Scene, hand: &mut Hand) {
     let chosen = members(hand);
     let whole = scene.arranged.with_groups(&chosen);

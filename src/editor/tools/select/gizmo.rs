@@ -1,4 +1,4 @@
-//! The gizmo of the chosen boxes: arrows, a ring or knobs, on either view; what of it lies under the pointer.
+//! The gizmo of the chosen boxes: arrows, a ring or knobs, on either view; finds its part under the pointer.
 
 use glam::{DVec2, DVec3};
 

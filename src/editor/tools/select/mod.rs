@@ -109,7 +109,7 @@ pub struct Select {
 }
 
 impl Select {
-    /// Chooses what lies in an outline that was closed.
+    /// Chooses the objects in an outline that was closed.
     fn closed(&mut self, cx: &mut Context<'_>, set: Set) {
         if let Set::Closed(points, held) = set {
             match cx.from_above() {

@@ -155,11 +155,11 @@ fn knots(motion: &Motion) -> Vec<(Knot, DVec2)> {
     }
 }
 
-/// A path whose point so far along moves by `by_m`; what lies near it comes along smoothly.
+/// A path whose point at `along_m` moves by `by_m`; points near it follow smoothly.
 fn bent(path: &Path, along_m: f64, by_m: DVec2) -> Path {
     let mut points_m: Vec<DVec2> = Vec::with_capacity(path.points_m.len() + 64);
     let mut passed_m = 0.0;
-    // What goes far takes more along, so that the way does not turn sharply.
+    // A long move bends more of the path, so that the path does not turn sharply.
     let reach_m = BEND_M.max(2.5 * by_m.length());
     let moved = |at_m: DVec2, passed_m: f64| {
         let apart = ((passed_m - along_m).abs() / reach_m).min(1.0);
@@ -202,8 +202,8 @@ fn snapped(frame: &Frame, hand: &Hand, to_m: DVec2, held: Modifiers) -> (DVec2, 
     (step_m.map_or(to_m, |step| (to_m / step).round() * step), None)
 }
 
-/// The heading of a lane, degrees, at the turn nearest to what was there, along the lane or against it: a keyframe does not
-/// spin round, and who drives the wrong way goes on doing so.
+/// The heading of a lane, degrees, along the lane or against it, in the turn nearest to the heading before: a keyframe
+/// does not spin round, and a vehicle that drives the wrong way goes on doing so.
 fn nearest_turn(was_deg: f64, lane_deg: f64) -> f64 {
     lane_deg + ((was_deg - lane_deg) / 180.0).round() * 180.0
 }

@@ -197,7 +197,7 @@ pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Resp
     }
 }
 
-/// How far the pointer went on the level of what it holds, or up, m; `None` beyond `limit_m` from the ego vehicle.
+/// Way of the pointer on the level of the dragged object, or up, m; `None` beyond `limit_m` from the ego vehicle.
 fn way_m(
     view: &dyn View,
     limit_m: f64,
@@ -358,7 +358,7 @@ fn area(cx: &mut Context<'_>, points: &[DVec2], at: DVec2, lasso: bool, how: Cho
     chosen_in(cx, &outline, how);
 }
 
-/// Chooses what lies in an outline on the screen.
+/// Chooses the objects in an outline on the screen.
 pub(super) fn chosen_in(cx: &mut Context<'_>, outline: &[DVec2], how: Choose) {
     let (scene, view) = (cx.settled, cx.view);
     let frame = scene.frame();

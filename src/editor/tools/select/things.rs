@@ -1,5 +1,5 @@
-//! Chosen things dragged on either view: moved together with the chosen boxes, a corner pulled, raised. Each move of the
-//! pointer starts over from what was there when the button went down.
+//! Chosen things dragged on either view: moved together with the chosen boxes, a corner pulled, raised. Each move of
+//! the pointer starts over from the things as they were when the button went down.
 
 use glam::{DVec2, DVec3};
 
@@ -191,7 +191,7 @@ pub(super) fn choose(hand: &mut Hand, hit: Option<ThingId>, how: Choose) {
     }
 }
 
-/// Chooses the things whose middle (ego frame, m) lies in an area, too, or takes them out of what is chosen.
+/// Adds the things whose middle (ego frame, m) lies in an area to the selection, or takes them out of it.
 pub(super) fn choose_in(scene: &Scene, hand: &mut Hand, how: Choose, inside: impl Fn(DVec2) -> bool) {
     if hand.things.is_open() {
         let ids = pick_things::things_in(&scene.background, inside);
@@ -217,7 +217,7 @@ pub(super) fn handles_m(scene: &Scene, hand: &Hand) -> Vec<DVec2> {
     }
 }
 
-/// The knob that raises what is chosen in space: in the middle of its top, ego frame, m.
+/// The knob that raises the chosen things in the 3D view: in the middle of their top, ego frame, m.
 pub(super) fn knob_m(scene: &Scene, hand: &Hand) -> Option<DVec3> {
     let frame = scene.frame();
     let chosen = hand.things.chosen_in(&scene.background);
