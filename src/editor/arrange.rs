@@ -64,7 +64,7 @@ impl Added {
     }
 }
 
-/// Where an edit puts a new box.
+/// Place and heading, rad, of the new box of an edit; `None` if the edit adds another box or none.
 fn placed(edit: &Edit, new: BoxId) -> Option<(DVec2, f64)> {
     match edit {
         Edit::AddBox {
@@ -105,7 +105,7 @@ impl Ties {
     }
 }
 
-/// Boxes taken along, to be put down elsewhere.
+/// Copied boxes, to be put down elsewhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clipboard {
     /// The boxes when they were copied.
@@ -137,7 +137,7 @@ pub(super) fn shapes_of(frame: &Frame, ids: &[BoxId]) -> Shapes {
     own.collect()
 }
 
-/// About what several boxes turn.
+/// Point about which several boxes turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Pivot {
     /// Each about its own centre.

@@ -25,7 +25,7 @@ pub struct Placed {
     pub id: BoxId,
 }
 
-/// Where a model stands that is put ahead of the ego vehicle, world frame, m.
+/// Place of a model that is put ahead of the ego vehicle, world frame, m.
 pub fn ahead_m(scene: &Scene, model: &Model) -> DVec2 {
     let ahead_m = AHEAD_M + model.size_m.x / 2.0;
     let p = glam::DVec3::new(ahead_m, 0.0, 0.0);

@@ -1,4 +1,4 @@
-//! Which thing of the background lies under the pointer, in a rectangle, behind a voxel. All points are in the world frame,
+//! Picking of background things: under the pointer, in a rectangle, behind a voxel. All points are in the world frame,
 //! m, as things are, unless a name says otherwise.
 
 use glam::DVec2;

@@ -32,7 +32,7 @@ pub struct Row {
     pub copies: usize,
     /// From one to the next, centre to centre, m; negative goes backward.
     pub spacing_m: f64,
-    /// Which way.
+    /// Direction of the row.
     pub along: RowAlong,
     /// Rows, the first one counted.
     pub rows: usize,

@@ -151,7 +151,7 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
         let change = Change::on(layout, &gone, &come, &near);
         change.redraw(occupancy, layout, painted, guessed);
         let source = Arc::make_mut(source);
-        // Where voxels of things lie depends on the ground alone.
+        // The places of things' voxels depend on the ground alone.
         let other =
             (source.layout.relief != layout.relief).then(|| Change::on(&source.layout, &gone, &come, &near));
         let change = other.as_ref().unwrap_or(&change);

@@ -199,7 +199,7 @@ impl Transform {
                 yaw_deg = Some(wrapped_deg(lane.yaw_rad.to_degrees()));
             }
             if self.axis != Some(Axis::Z) {
-                // It stays as high above the ground as it was.
+                // It keeps its height above the ground.
                 let ground_m = |p: DVec3| frame.layout.relief.height_m(p.truncate());
                 center_m.z += ground_m(center_m) - ground_m(b.center_m);
             }

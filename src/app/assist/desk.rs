@@ -27,7 +27,7 @@ pub type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
 
 /// Owner of the document.
 pub enum Holder {
-    /// This session.
+    /// The session itself.
     Own(Box<Document>),
     /// Another thread, such as that of a window. It is handed tasks, which it does one by one; false if it is gone.
     Elsewhere(Box<dyn FnMut(Task) -> bool + Send>),
@@ -77,7 +77,7 @@ const MOST_VERSIONS: usize = 64;
 /// One scene and all that calls need to work on it.
 pub struct Desk {
     holder: Holder,
-    /// Where files are read and written.
+    /// Folder in which files are read and written.
     pub folder: Folder,
     /// Whether the call in progress is still wanted.
     pub stop: Stop,

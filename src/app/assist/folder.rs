@@ -37,7 +37,7 @@ pub struct FileEntry {
 }
 
 impl Folder {
-    /// That folder. Errors if it is none.
+    /// Opens a folder. Errors if the path is none.
     pub fn new(path: &Path) -> anyhow::Result<Self> {
         let root = fs::canonicalize(path).with_context(|| format!("folder {}", path.display()))?;
         if !root.is_dir() {
@@ -46,7 +46,7 @@ impl Folder {
         Ok(Self { root })
     }
 
-    /// Where the folder is.
+    /// Path of the folder.
     pub fn root(&self) -> &Path {
         &self.root
     }

@@ -9,7 +9,7 @@ use serde_json::Value;
 pub enum Line {
     /// All of it, without its end.
     Whole(Vec<u8>),
-    /// It was longer than allowed and was passed over.
+    /// A line that was longer than allowed and was passed over.
     TooLong {
         /// The value of the key `id` of the object that it began with, if that was found.
         id: Option<Value>,

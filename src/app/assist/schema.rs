@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use crate::call::{CallDef, table};
 
-/// Where definitions are, as references begin.
+/// Start of a reference to a definition.
 const DEFS: &str = "#/$defs/";
 
 /// Generator for the schemas of arguments: fields that may be left out are not required.

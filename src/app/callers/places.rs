@@ -34,7 +34,7 @@ impl Ending {
     }
 }
 
-/// So many places. Clones are the same places.
+/// A bounded number of places. Clones share them.
 #[derive(Clone, Debug)]
 pub struct Places(Arc<Shared>);
 
@@ -61,7 +61,7 @@ impl Waiting {
 }
 
 impl Places {
-    /// So many places, at least one, each for so long at most.
+    /// Makes `most` places, at least one, each held for `within` at most.
     pub fn new(most: usize, within: Duration) -> Self {
         Self(Arc::new(Shared {
             most: most.max(1),

@@ -18,7 +18,7 @@ const MOST_ACTS: usize = 100;
 /// Boxes that are described to the model.
 const MOST_BOXES: usize = 60;
 
-/// Where to ask.
+/// Language model that is asked, and its server.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Endpoint {
     /// `http://host:port`, with or without `/v1`.

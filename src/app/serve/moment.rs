@@ -12,7 +12,7 @@ use crate::poses::{self, Pair};
 use crate::wire::DynamicObject;
 use scene::{BoxId, Edit, Frame, Key, Motion, Scene, SceneBox};
 
-/// So near to where the scene has it an object is left there, m and rad: the protocol's numbers have 24 bits.
+/// Tolerance within which an object is left where the scene has it, m and rad: the protocol's numbers have 24 bits.
 const NEAR: f64 = 1e-4;
 
 /// From when to when a frame or a spin lasts.
@@ -58,7 +58,7 @@ impl Span {
 pub struct Placed {
     /// The box or track.
     pub id: BoxId,
-    /// Where the middle of its box is.
+    /// Pose of the middle of its box.
     pub at: Pair,
 }
 

@@ -1,4 +1,4 @@
-//! Edits of another moment than the one that is shown, and what they mean for the other moments of a moving object.
+//! Edits of another moment than the one that is shown, and their effect on the other moments of a moving object.
 
 use scene::{BoxId, Edit, EditError, Frame, Key, Motion, Scene, Scope};
 

@@ -55,7 +55,7 @@ pub(super) struct Findings {
     recorded: BTreeSet<BoxId>,
     /// Painted voxels of a recording: findings about all its other voxels are no mistakes either.
     painted: Option<VoxelPaint>,
-    /// Where the findings of the check that runs begin.
+    /// Index of the first finding of the check that runs.
     from: usize,
     /// Findings of that check beyond those that are listed: how many, the worst of them, and where the first is.
     more: Option<(usize, Severity, DVec3)>,

@@ -82,7 +82,7 @@ pub struct Finding {
     pub severity: Severity,
     /// Position in the world frame, m; always finite.
     pub where_m: DVec3,
-    /// When in the clip, s; none if it is about the moment that is shown.
+    /// Time in the clip, s; `None` if it is about the moment that is shown.
     pub time_s: Option<f64>,
     /// The box it is about, if it is about one.
     pub box_id: Option<BoxId>,
@@ -170,7 +170,7 @@ struct Context<'a> {
 struct Bits {
     /// By class id; empty for a class that does not occur.
     by_class: Vec<Vec<u16>>,
-    /// Not free.
+    /// Voxels that are not free.
     occupied: Vec<u16>,
     /// Voxels of a ground class.
     ground: Vec<u16>,

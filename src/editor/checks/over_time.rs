@@ -263,7 +263,7 @@ fn boxes_that_meet(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
     }
     let mut out = Vec::new();
     for (i, trace) in over_time.traces.iter().enumerate() {
-        // When each other one is met first, and the largest share of area while they do.
+        // The first moment at which each other object is met, and the largest share of area while they overlap.
         let mut met: BTreeMap<Option<BoxId>, Met> = BTreeMap::new();
         for (at, time_s) in over_time.times_s.iter().enumerate() {
             let Some(b) = &trace.at[at] else { continue };

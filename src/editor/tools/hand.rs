@@ -41,9 +41,9 @@ pub const DRAW_ORDER: [BevLayer; 8] = [
 /// How boxes join the selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choose {
-    /// They alone.
+    /// Replaces the selection by them.
     Only,
-    /// They too.
+    /// Adds them to the selection.
     Add,
     /// Each changes sides.
     Toggle,

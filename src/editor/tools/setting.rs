@@ -68,7 +68,7 @@ pub enum Control {
     Class {
         /// The one chosen.
         chosen: Class,
-        /// Which there are.
+        /// Classes to choose from.
         classes: Vec<Class>,
         /// Verb for the name of a row.
         verb: &'static str,
@@ -237,7 +237,7 @@ impl Setting {
     }
 }
 
-/// Where a value stands among those to choose from; the first if it is none of them.
+/// Index of a value among those to choose from; the first if it is none of them.
 pub fn index_in<T: Copy + PartialEq>(chosen: T, all: &[(T, &'static str, &'static str)]) -> usize {
     all.iter().position(|c| c.0 == chosen).unwrap_or(0)
 }

@@ -35,9 +35,9 @@ pub struct ToolDef {
     pub icon: &'static str,
     /// Its part of the tool bar.
     pub group: Group,
-    /// It is a brush: the keys for size change the brush, not the height of things.
+    /// True for a brush: the keys for size change the brush, not the height of things.
     pub is_brush: bool,
-    /// It paints the map or voxels: its letter keys work even if something is chosen.
+    /// True if it paints the map or voxels: its letter keys work even if objects are chosen.
     pub paints: bool,
     /// Actions that take it, one for each way of using it.
     pub shortcuts: &'static [Shortcut],
@@ -63,20 +63,20 @@ pub struct Shortcut {
     pub title: &'static str,
     /// Default chords, separated by blanks.
     pub keys: &'static str,
-    /// When its chords count.
+    /// Condition under which its chords count.
     pub when: When,
     /// Change of the hand: mostly it takes the tool.
     pub set: fn(&mut Hand),
 }
 
-/// When the chords of a shortcut count.
+/// Condition under which the chords of a shortcut count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// Always.
     Always,
     /// With the pointer over the 3D view.
     OverSpace,
-    /// While something is chosen and no brush is in hand.
+    /// While objects are chosen and no brush is in hand.
     Chosen,
 }
 
@@ -162,7 +162,7 @@ pub trait Tool: Debug + Send {
     fn restart(&mut self) {}
 }
 
-/// Which keys a tool wants beside the pointer.
+/// Keys that a tool wants beside the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wants {
     /// No key.

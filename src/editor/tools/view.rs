@@ -12,7 +12,7 @@ pub const CLICK_SLACK: f64 = 4.0;
 /// Size of handles under the pointer, points.
 pub const HANDLE_REACH: f64 = 8.0;
 
-/// Which of the large views.
+/// Kind of a large view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewKind {
     /// From above.
@@ -21,11 +21,11 @@ pub enum ViewKind {
     Space,
 }
 
-/// Where ego frame and screen meet. Points of the screen are in the window's points, y down.
+/// Projection between ego frame and screen. Points of the screen are in the window's points, y down.
 pub trait View {
-    /// Which view it is.
+    /// Kind of the view.
     fn kind(&self) -> ViewKind;
-    /// Where a point of the ego frame (m) appears; `None` behind the eye.
+    /// Point of the screen at which a point of the ego frame (m) appears; `None` behind the eye.
     fn project(&self, p_m: DVec3) -> Option<DVec2>;
     /// The ray under a point of the screen; from above it falls straight down.
     fn ray(&self, at: DVec2) -> Option<Ray>;
@@ -98,7 +98,7 @@ impl Sight<'_> {
     }
 }
 
-/// Where the ray under a point of the screen meets ground, voxels or boxes, ego frame, m.
+/// The point where the ray under a point of the screen meets ground, voxels or boxes, ego frame, m.
 fn ground_m(view: &dyn View, scene: &Scene, at: DVec2) -> Option<DVec2> {
     let ray = view.ray(at)?;
     if view.kind() == ViewKind::Bev {

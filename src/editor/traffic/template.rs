@@ -402,8 +402,8 @@ fn across(scene: &Scene, from: &Moving) -> Vec<DVec2> {
     vec![from.at_m, from.at_m + way * end_m]
 }
 
-/// When the ego vehicle and an object come as near as asked, s: the free distance between the two, bumper to bumper where one is
-/// behind the other. `None` if they never do.
+/// The time at which the ego vehicle and an object come as near as asked, s: the free distance between the two, bumper
+/// to bumper where one is behind the other. `None` if they never do.
 pub fn time_near(clip: &Clip, canvas: &scene::Frame, rig: &SensorRig, id: BoxId, gap_m: f64) -> Option<f64> {
     let relief = &canvas.layout.relief;
     let gap_at = |time_s: f64| {

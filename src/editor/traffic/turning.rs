@@ -29,7 +29,7 @@ const ASIDE_MPS2: f64 = 2.0;
 pub struct Turning {
     /// Points a metre or less apart.
     pub points_m: Vec<DVec2>,
-    /// Where the corner begins and ends, m along the way.
+    /// Begin and end of the corner, m along the way.
     pub corner_m: [f64; 2],
     /// Speed around it, m/s.
     pub mps: f64,

@@ -162,7 +162,7 @@ fn tidy(v: f64) -> f64 {
     (v * 100.0).round() / 100.0 + 0.0
 }
 
-/// Where a box is, as the ego vehicle sees it: `12 m ahead, 3 m left`.
+/// Place of a box in words, as seen from the ego vehicle: `12 m ahead, 3 m left`.
 fn place(frame: &Frame, b: &SceneBox) -> String {
     let p = frame.world_from_ego.inverse().apply(b.center_m);
     let along = if p.x >= 0.0 { "ahead" } else { "behind" };

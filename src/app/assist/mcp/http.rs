@@ -24,7 +24,7 @@ use super::server::Server;
 use crate::LONGEST_CALL;
 use crate::service::Service;
 
-/// Where clients ask.
+/// Path of the server's URL.
 const PATH: &str = "/mcp";
 /// Shortest token, bytes.
 const SHORTEST_TOKEN: usize = 16;

@@ -28,7 +28,7 @@ const POLL: Duration = Duration::from_millis(10);
 const PARSE_ERROR: i32 = -32700;
 const INVALID_REQUEST: i32 = -32600;
 
-/// Where replies go, each as a whole line.
+/// Output for replies, each as a whole line.
 type Output = Arc<Mutex<dyn Write + Send>>;
 
 /// Serves a client until the input ends and all calls are answered. Errors only if the system gives no thread.

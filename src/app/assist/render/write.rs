@@ -67,12 +67,12 @@ impl Writer {
         files.into_iter().try_for_each(|f| self.bytes(&f.name, &f.bytes))
     }
 
-    /// How the pictures come to be.
+    /// Recipe of the pictures.
     pub fn recipe(&self) -> &Recipe {
         &self.recipe
     }
 
-    /// Where the sensors look, and when.
+    /// Writes the calibration: where the sensors look, and when.
     pub fn calibration(
         &mut self,
         scene: &Scene,

@@ -20,7 +20,7 @@ pub enum ShutterType {
     Global = 5,
 }
 
-/// Which polynomial of an f-theta lens is the given one; the other follows from it.
+/// Polynomial of an f-theta lens that is given; the other follows from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, prost::Enumeration)]
 #[repr(i32)]
 pub enum FthetaPolynomial {
@@ -200,7 +200,7 @@ pub struct AvailableCamera {
     /// Lens, size and shutter.
     #[prost(message, optional, tag = "1")]
     pub intrinsics: Option<CameraSpec>,
-    /// Where the camera is in the rig: takes points of the camera to the rig.
+    /// Pose of the camera in the rig: takes points of the camera to the rig.
     #[prost(message, optional, tag = "2")]
     pub rig_to_camera: Option<Pose>,
     /// Its name in the rig.

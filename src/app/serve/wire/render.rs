@@ -9,7 +9,7 @@ pub struct DynamicObject {
     /// Number of the box or track in the scene.
     #[prost(string, tag = "1")]
     pub track_id: String,
-    /// Where the middle of its box is.
+    /// Pose of the middle of its box.
     #[prost(message, optional, tag = "2")]
     pub pose_pair: Option<PosePair>,
 }
@@ -82,7 +82,7 @@ pub struct RgbRenderRequest {
     /// End of the frame, us.
     #[prost(fixed64, tag = "6")]
     pub frame_end_us: u64,
-    /// Where the camera is in the world.
+    /// Pose of the camera in the world.
     #[prost(message, optional, tag = "7")]
     pub sensor_pose: Option<PosePair>,
     /// Objects that are elsewhere than the scene has them.
@@ -97,10 +97,10 @@ pub struct RgbRenderRequest {
     /// True if a mask of the own vehicle goes over the picture.
     #[prost(bool, tag = "11")]
     pub insert_ego_mask: bool,
-    /// Which mask.
+    /// Name of the mask.
     #[prost(message, optional, tag = "12")]
     pub ego_mask_id: Option<EgoMaskId>,
-    /// Where the own vehicle is in the world.
+    /// Pose of the own vehicle in the world.
     #[prost(message, optional, tag = "13")]
     pub ego_pose: Option<PosePair>,
 }
@@ -146,7 +146,7 @@ pub struct LidarRenderRequest {
     /// End of the spin, us.
     #[prost(fixed64, tag = "4")]
     pub frame_end_us: u64,
-    /// Where the LiDAR is in the world.
+    /// Pose of the LiDAR in the world.
     #[prost(message, optional, tag = "5")]
     pub sensor_pose: Option<PosePair>,
     /// Objects that are elsewhere than the scene has them.

@@ -219,7 +219,8 @@ fn spare(ends: [DVec2; 2], points: &[DVec2]) -> Vec<DVec2> {
         .to_vec()
 }
 
-/// Where lines meet: the point nearest to all of them; the place of the knot if they are parallel or meet far from it.
+/// Meeting point of lines: the point nearest to all of them; the place of the knot if they are parallel or meet far
+/// from it.
 fn meeting(arms: &[(DVec2, DVec2)], knot_m: DVec2, depth_m: f64) -> DVec2 {
     if let [(at, _)] = arms {
         return *at;

@@ -71,7 +71,7 @@ fn join(known: &RoadNetwork, found: RoadNetwork) -> RoadNetwork {
     net
 }
 
-/// The node of a known network that a free end leads to, straight on within the longest of [`AHEAD_M`]; `None` if it
+/// The node of a known network that a free end leads to, straight on within the longest of `AHEAD_M`; `None` if it
 /// leads to none.
 fn meeting(net: &mut RoadNetwork, found: &RoadNetwork, node: NodeId, at_m: DVec2) -> Option<NodeId> {
     const AHEAD_M: [f64; 5] = [0.0, 2.0, 4.0, 6.0, 9.0];

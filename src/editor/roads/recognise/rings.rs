@@ -38,7 +38,7 @@ pub(super) fn take(graph: &mut Graph, mask: &Mask) -> Vec<Ring> {
             continue;
         }
         widths.sort_by(f64::total_cmp);
-        // Where arms open the ring is wide: its own width is that of the rest.
+        // The ring is wider where arms open; its own width is that of the rest.
         let ring_m = widths[widths.len() / 4];
         let middle_m = island_m + ring_m / 2.0;
         let on_ring = |p: &DVec2| (p.distance(center) - middle_m).abs() < ring_m * 0.6 + 0.8;

@@ -10,7 +10,7 @@ use scene::{BevLayout, Form};
 pub enum Phase {
     /// The button went down.
     Press,
-    /// It is held, and the pointer has left the place where it went down.
+    /// The button is held, and the pointer has left the place where it went down.
     Drag,
     /// The button came up.
     Release {

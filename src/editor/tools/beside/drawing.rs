@@ -106,7 +106,7 @@ pub(super) struct Drawing<D> {
     press: Option<Press>,
 }
 
-/// Where trees stand and houses are, ego frame, m.
+/// Places of the trees and outlines of the houses, ego frame, m.
 fn standing(scene: &Scene) -> (Vec<DVec2>, Vec<Vec<DVec2>>) {
     let (mut trees_m, mut houses_m) = (Vec::new(), Vec::new());
     for thing in scene.background.iter() {

@@ -69,7 +69,7 @@ pub(super) fn at(seen: &Seen, p_m: DVec2, reach_m: f64, chosen: Option<RoadPart>
         .or_else(|| net.road_among(&seen.lines, p_m, 0.0).map(RoadPart::Road))
 }
 
-/// Where among the points of a road's line a place on it lies; `None` beside the line.
+/// Index among the points of a road's line at which a place on it lies; `None` beside the line.
 pub(super) fn on_line(seen: &Seen, id: RoadId, p_m: DVec2, reach_m: f64) -> Option<usize> {
     let (road, line) = (seen.net.road(id)?, seen.lines.get(&id)?);
     let (along_m, left_m) = curve::project(line, p_m)?;

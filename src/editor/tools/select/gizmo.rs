@@ -12,7 +12,7 @@ use crate::tools::{At, Hand, Mark, Role, View, ViewKind};
 
 /// Length of an arrow, radius of the ring, points.
 const LENGTH: f64 = 62.0;
-/// Where an arrow begins to be one, points: nearer to the middle the box itself is taken hold of.
+/// Distance from the middle at which an arrow begins, points: nearer to the middle the box itself is dragged.
 const HOLLOW: f64 = 26.0;
 /// How near the pointer has to be, points.
 const REACH: f64 = 7.0;

@@ -115,7 +115,7 @@ impl MotionDrag {
     }
 }
 
-/// Where the knots to draw are, m.
+/// Places of the knots to draw, m.
 pub(super) fn knots_m(sight: &Sight<'_>) -> Vec<DVec2> {
     let Some((_, motion)) = editable(sight.scene.clip(), sight.hand) else {
         return Vec::new();
