@@ -253,7 +253,7 @@ pub fn box_at(frame: &Frame, p_m: DVec2) -> Option<BoxId> {
         .map(|b| b.id)
 }
 
-/// A part of a selected box that the pointer can take hold of in the bird's-eye view.
+/// A part of a selected box that can be dragged in the bird's-eye view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
     /// The knob ahead of the box: turns it.

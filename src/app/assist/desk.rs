@@ -319,7 +319,7 @@ fn same(f: &Finding) -> (&'static str, Option<scene::BoxId>, [i64; 3]) {
     (f.check, f.box_id, place)
 }
 
-/// A finding in a line.
+/// The text of a finding in a line.
 fn told(f: &Finding) -> String {
     let [x, y, _] = f.where_m.to_array();
     let of_box = f.box_id.map_or(String::new(), |id| format!(", box {}", id.0));

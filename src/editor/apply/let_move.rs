@@ -1,4 +1,4 @@
-//! Manoeuvres as edits: when they begin, and the motion that comes of them.
+//! Manoeuvres as edits: their time of begin, and the motions that they make.
 
 use scene::{BoxId, Edit, EditError, Scene, Template};
 
@@ -47,7 +47,7 @@ pub(super) fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditErro
     Ok(edits)
 }
 
-/// The speed limit where a motor vehicle (the ego vehicle if none) stands, m/s; none where nobody set one.
+/// The speed limit where a motor vehicle (the ego vehicle if `None`) stands, m/s; `None` where no limit is set.
 fn limit_mps(scene: &Scene, id: Option<BoxId>) -> Option<f64> {
     let frame = scene.frame();
     let at_m = match id {

@@ -294,7 +294,7 @@ impl Hand {
         }
     }
 
-    /// True if an outline chooses: where it begins nothing is taken hold of.
+    /// True if an outline chooses: a press that begins one drags nothing.
     pub fn outlines(&self) -> bool {
         self.choose_by != ChooseBy::Rectangle
     }

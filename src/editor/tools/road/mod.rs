@@ -45,7 +45,7 @@ pub static DEF: ToolDef = ToolDef {
     make: || Box::new(Roads::default()),
 };
 
-/// A node that is let go of so near to another one meets it, m.
+/// Distance from another node within which a released node joins it, m.
 const MEET_M: f64 = 3.0;
 
 /// Part of the roads that is being dragged.

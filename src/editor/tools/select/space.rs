@@ -31,7 +31,7 @@ pub(super) enum Drag {
     /// Moves, turns or scales boxes.
     Boxes {
         transform: Transform,
-        /// Point that was taken hold of, m.
+        /// Point of the press, m.
         grabbed_m: DVec3,
         from: DVec2,
         to: DVec2,
@@ -370,7 +370,7 @@ pub(super) fn chosen_in(cx: &mut Context<'_>, outline: &[DVec2], how: Choose) {
     things::choose_in(scene, cx.hand, how, on_screen);
 }
 
-/// The part of the gizmo that a drag holds.
+/// The part of the gizmo that is dragged.
 fn held_part(axis: Option<Axis>, kind: TransformKind) -> Option<Part> {
     match (kind, axis) {
         (TransformKind::Turn, _) => Some(Part::Ring),
