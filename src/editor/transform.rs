@@ -70,7 +70,7 @@ const CATCH_M: f64 = 2.0;
 pub struct Transform {
     /// Part of the boxes that it changes.
     pub kind: TransformKind,
-    /// The boxes as they were; the first is the one under the press.
+    /// The boxes as they were when the drag began; a box that was pressed comes first.
     pub start: Vec<SceneBox>,
     /// Axis that it keeps to.
     pub axis: Option<Axis>,

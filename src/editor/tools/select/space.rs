@@ -31,7 +31,7 @@ pub(super) enum Drag {
     /// Moves, turns or scales boxes.
     Boxes {
         transform: Transform,
-        /// Point of the press, m.
+        /// Point that the drag pulls, m: the one that was hit, or the middle of the boxes for the gizmo.
         grabbed_m: DVec3,
         from: DVec2,
         to: DVec2,
