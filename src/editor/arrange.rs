@@ -10,7 +10,7 @@ use scene::{Arrangement, BoxId, Frame, Motion, Moving, Scene, SceneBox};
 use super::Edit;
 use super::lanes::nearest_lane;
 
-/// How far a lane may be from what is to follow it, m.
+/// Farthest lane that a box follows, m.
 pub const LANE_REACH_M: f64 = 6.0;
 
 /// Edits that add boxes, and the names that these get.
@@ -64,7 +64,7 @@ impl Added {
     }
 }
 
-/// Where an edit puts a new box.
+/// Place and heading, rad, of the new box of an edit; `None` if the edit adds another box or none.
 fn placed(edit: &Edit, new: BoxId) -> Option<(DVec2, f64)> {
     match edit {
         Edit::AddBox {
@@ -77,7 +77,7 @@ fn placed(edit: &Edit, new: BoxId) -> Option<(DVec2, f64)> {
     }
 }
 
-/// What ties boxes to time and to each other: their motions and groups.
+/// Motions and groups of boxes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ties {
     /// How a box moves, when it is there, and where it is at the moment that is shown.
@@ -87,7 +87,7 @@ pub struct Ties {
 }
 
 impl Ties {
-    /// Of those boxes.
+    /// Reads the motions and groups of these boxes.
     pub fn of(scene: &Scene, ids: &[BoxId]) -> Self {
         let motion = |id: &BoxId| {
             let track = scene.clip().tracks.get(id).filter(|t| !t.stands())?;
@@ -105,10 +105,10 @@ impl Ties {
     }
 }
 
-/// Boxes taken along, to be put down elsewhere.
+/// Copied boxes, to be put down elsewhere.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clipboard {
-    /// As they were.
+    /// The boxes when they were copied.
     pub boxes: Vec<SceneBox>,
     /// Voxels of those that have their own, as [`Edit::SetShape`] takes them.
     pub shapes: Shapes,
@@ -137,7 +137,7 @@ pub(super) fn shapes_of(frame: &Frame, ids: &[BoxId]) -> Shapes {
     own.collect()
 }
 
-/// About what several boxes turn.
+/// Point about which several boxes turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Pivot {
     /// Each about its own centre.
@@ -177,7 +177,7 @@ pub fn turn(frame: &Frame, ids: &[BoxId], degrees: f64, pivot: Pivot) -> Vec<Edi
     turned(&boxes, degrees, pivot)
 }
 
-/// The same for boxes as they were.
+/// Like [`turn`], for boxes that are given by value.
 pub fn turned(boxes: &[SceneBox], degrees: f64, pivot: Pivot) -> Vec<Edit> {
     let Some(middle_m) = middle_m(boxes) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Hidden and locked objects: what a lock keeps from edits, what the large views show.
+//! Hidden and locked objects: locks keep objects from edits, and hidden objects are left out of the large views.
 
 use std::sync::Arc;
 
@@ -53,7 +53,7 @@ pub fn locked(scene: &Scene, edits: &[Edit]) -> Result<(), EditError> {
     Ok(())
 }
 
-/// Edits without what locks keep from them, and what these keep.
+/// Edits without their effect on locked objects, and these objects.
 pub fn unlocked(scene: &Scene, edits: Vec<Edit>) -> (Vec<Edit>, Members) {
     let (locked, mut kept) = (&scene.arranged.locked, Members::default());
     if locked.is_empty() {
@@ -81,7 +81,7 @@ pub fn unlocked(scene: &Scene, edits: Vec<Edit>) -> (Vec<Edit>, Members) {
     (open, kept)
 }
 
-/// The scene as the large views show it: without what is hidden, and without its voxels.
+/// The scene as the large views show it: without hidden objects and their voxels.
 pub fn seen(scene: &Arc<Scene>) -> Arc<Scene> {
     let hidden = &scene.arranged.hidden;
     if hidden.is_empty() {
@@ -99,7 +99,7 @@ pub fn seen(scene: &Arc<Scene>) -> Arc<Scene> {
     }
     match apply_all(&edits, &mut seen) {
         Ok(()) => Arc::new(seen),
-        // (what is hidden is there: a file that names others is refused, and edits forget them)
+        // (hidden objects exist: a file that names others is refused, and edits drop them)
         Err(_) => scene.clone(),
     }
 }

@@ -1,4 +1,4 @@
-//! Which boxes a rectangle or a lasso on the ground takes.
+//! Selection of boxes by a rectangle or a lasso on the ground.
 
 use glam::DVec2;
 

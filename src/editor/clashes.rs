@@ -1,4 +1,5 @@
-//! What stands in each other or meets in the course of the clip, as sentences: for whoever changed a scene and did not look.
+//! Objects that overlap, or collide in the course of the clip, as sentences: for callers that change a scene without
+//! looking at it.
 
 use std::collections::HashSet;
 
@@ -6,7 +7,7 @@ use scene::Scene;
 
 use crate::checks::{meetings, overlaps};
 
-/// All of it, as the checks say it, each once.
+/// All overlaps and collisions, as sentences of the checks. Neighbours that are equal are listed once.
 pub fn clashes(scene: &Scene) -> Vec<String> {
     let standing = overlaps(scene).into_iter().map(|f| f.text);
     let meeting = meetings(scene).into_iter().map(|m| m.text);
@@ -17,7 +18,7 @@ pub fn clashes(scene: &Scene) -> Vec<String> {
         .collect()
 }
 
-/// Those of the scene after a change that were not there before it.
+/// The overlaps and collisions after a change that were not there before it.
 pub fn new_clashes(before: &Scene, after: &Scene) -> Vec<String> {
     let mut out = clashes(after);
     if !out.is_empty() {

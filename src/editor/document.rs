@@ -25,7 +25,7 @@ struct Step {
     bytes: usize, // not shared with the step before; 0 for the first
 }
 
-/// What an undo step is called.
+/// Name of an undo step.
 pub type Label = std::borrow::Cow<'static, str>;
 
 /// A result came too late: the document shows another state by now. A result that covers another part of the ground
@@ -59,7 +59,7 @@ impl Document {
         }
     }
 
-    /// The state that is shown, with the drag in progress: what is drawn and generated from.
+    /// The state that is shown, with the drag in progress: views draw it, and generation starts from it.
     pub fn scene(&self) -> &Arc<Scene> {
         self.drag.as_ref().unwrap_or(&self.steps[self.at].scene)
     }
@@ -89,7 +89,7 @@ impl Document {
         self.preview_all(std::slice::from_ref(edit))
     }
 
-    /// The same with several edits.
+    /// Like [`Self::preview`], with several edits.
     pub fn preview_all(&mut self, edits: &[Edit]) -> Result<(), EditError> {
         self.drag = Some(Arc::new(self.edited(edits)?));
         Ok(())
@@ -112,7 +112,8 @@ impl Document {
         self.drag = None;
     }
 
-    /// One step back; the label of what was undone. During a drag only the drag is cancelled (`None`).
+    /// Goes one step back and returns the label of the step that was undone. During a drag only the drag is cancelled
+    /// (`None`).
     pub fn undo(&mut self) -> Option<&str> {
         if self.drag.take().is_some() || self.at == 0 {
             return None;
@@ -123,7 +124,7 @@ impl Document {
         Some(&self.steps[self.at + 1].label)
     }
 
-    /// One step forward again; the label of what was redone. During a drag only the drag is
+    /// Goes one step forward again and returns the label of the step that was redone. During a drag only the drag is
     /// cancelled (`None`).
     pub fn redo(&mut self) -> Option<&str> {
         if self.drag.take().is_some() || self.at + 1 == self.steps.len() {
@@ -165,12 +166,13 @@ impl Document {
         self.steps.iter().map(|s| s.scene.content())
     }
 
-    /// Memory that the history takes beside its oldest state: what each step does not share with the one before.
+    /// Memory that the history takes beside its oldest state, bytes: the parts of each step that are not shared with
+    /// the step before.
     pub fn history_bytes(&self) -> usize {
         self.steps.iter().map(|s| s.bytes).sum()
     }
 
-    /// What the history may take; see [`Self::set_history_limit`].
+    /// Memory limit of the history, bytes; see [`Self::set_history_limit`].
     pub fn history_limit(&self) -> usize {
         self.limit_bytes
     }

@@ -12,7 +12,7 @@ use scene::{BoxId, Edit, Extent, Frame, SceneBox};
 const AROUND_M: f64 = 1.2;
 /// Headings are tried in steps of this, degrees.
 const STEP_DEG: f64 = 1.0;
-/// Another heading than the box has must make the rectangle so much smaller.
+/// A heading other than the box's must make the rectangle smaller than this share of its area.
 const SMALLER: f64 = 0.97;
 /// Fewer columns say nothing of a shape.
 const FEWEST: usize = 4;
@@ -42,7 +42,7 @@ pub fn fit(frame: &Frame, id: BoxId) -> Option<Edit> {
     let same = found.middle_m.distance(b.center_m.truncate()) < 1e-3
         && (found.size_m - b.size_m.truncate()).length() < 1e-3
         && (found.yaw_rad - b.yaw_rad).abs() < 1e-6;
-    // The voxels are what the box is fitted to: they stay.
+    // The box is fitted to its voxels, so they stay.
     (!same).then(|| Edit::Correct { edit: edit.into() })
 }
 
@@ -55,7 +55,7 @@ fn own_columns(frame: &Frame, b: &SceneBox) -> Vec<DVec2> {
     box_cells(extent, b, AROUND_M, |x, y| {
         near.insert([x, y]);
     });
-    // What stands under another box is that box's.
+    // Voxels in another box belong to that box.
     for other in frame
         .boxes
         .values()
@@ -95,7 +95,7 @@ struct Rectangle {
 }
 
 impl Rectangle {
-    /// The smallest of a heading around voxels with these centres: half of a voxel's edge beyond them.
+    /// The smallest rectangle of a heading around voxels with these centres, with half of a voxel's edge beyond them.
     fn around(points_m: &[DVec2], yaw_rad: f64) -> Self {
         let turn = DVec2::from_angle(-yaw_rad);
         let (low, high) = points_m
@@ -115,7 +115,7 @@ impl Rectangle {
         self.size_m.x * self.size_m.y
     }
 
-    /// The same with the heading that is nearest to another: quarter turns change length and width.
+    /// This rectangle under its heading nearest to `yaw_rad`: quarter turns swap length and width.
     fn like(self, yaw_rad: f64) -> Self {
         let quarters = ((yaw_rad - self.yaw_rad) / FRAC_PI_2).round();
         let size_m = if quarters.rem_euclid(2.0) == 1.0 {

@@ -1,5 +1,5 @@
-//! What repairs of the findings of a scene would do, as a plan: plain data, made without changing the scene. A repair is in
-//! it only if what it repairs is gone with it and nothing as bad has come.
+//! Repairs of the findings of a scene as a plan: plain data, made without changing the scene. A repair is in the plan
+//! only if it removes its finding and brings no new finding that is as bad.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -10,19 +10,19 @@ use crate::apply_all;
 use crate::arranged;
 use crate::checks::{self, Counts, Finding, Kind, Severity, Tally, waive};
 
-/// Times that what the repairs left is looked at again, at most.
+/// Rounds at most; each looks again at the findings that the repairs before it left.
 const MOST_ROUNDS: usize = 8;
 /// Scenes that are tried out for a plan, at most.
 const MOST_TRIES: usize = 600;
-/// Scenes in a row that are tried out in vain for findings of one severity: then the others of it are left.
+/// Failed tries in a row for findings of one severity, after which the other findings of that severity are left.
 const MOST_IN_VAIN: usize = 64;
 
 /// One repair of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repair {
-    /// What it repairs; its own repairs are taken out.
+    /// Finding that it repairs, without its list of repairs.
     pub finding: Finding,
-    /// What it does: `Drop to the ground`.
+    /// Name of the repair: `Drop to the ground`.
     pub label: &'static str,
     /// The edits.
     pub edits: Vec<Edit>,
@@ -31,30 +31,30 @@ pub struct Repair {
 /// Why a finding stays as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stays {
-    /// Its repair would bring something as bad, or would not help.
+    /// Its repair would bring a finding that is as bad, or would not help.
     NoBetter,
-    /// Its repair makes the map larger, which is done only where it is asked for by itself.
+    /// Its repair makes the map larger, which is done only if it is asked for by itself.
     AskedForAlone,
-    /// What it would change is locked.
+    /// Its repair would change locked parts.
     Locked,
-    /// It was not tried: the planning was stopped, or there was too much of it.
+    /// It was not tried: the planning was stopped, or there were too many repairs to try.
     NotTried,
 }
 
-/// What would be done about the findings of a scene.
+/// Plan of repairs for the findings of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The state that it was made for.
     pub of: SceneRev,
-    /// What is done, in order.
+    /// Repairs that are done, in order.
     pub repairs: Vec<Repair>,
-    /// Findings that have a repair and keep as they are, each with the reason.
+    /// Findings that have a repair and stay as they are, each with the reason.
     pub stays: Vec<(Finding, Stays)>,
     /// Open findings of the checks that need no sensor, before: all of them, whether they are listed or not.
     pub before: Counts,
-    /// The same after the repairs.
+    /// Counts as in `before`, after the repairs.
     pub after: Counts,
-    /// It is not all that could have been planned: `watch` ended it.
+    /// True if `watch` ended the planning before everything was tried.
     pub stopped: bool,
 }
 
@@ -84,18 +84,18 @@ pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 /// How edits are applied in the end, for example as corrections.
 pub type Meaning = dyn Fn(Vec<Edit>) -> Vec<Edit>;
 
-/// Repairs of these findings of a scene, and of what they leave, again and again. What is waived or locked stays. The result
-/// depends on nothing but the scene, the findings and when `watch` ends it.
+/// Plans repairs of these findings, and of the findings that they leave, in rounds. Waived findings and locked objects
+/// are not touched. The result depends on nothing but the scene, the findings and when `watch` ends it.
 pub fn plan_all(scene: &Scene, findings: &[Finding], meaning: &Meaning, watch: &mut Watch<'_>) -> Plan {
     plan(scene, findings, MOST_ROUNDS, meaning, watch)
 }
 
-/// The same for these findings alone: no others are repaired after them.
+/// Like [`plan_all`], for these findings alone: findings that are left or new are not repaired.
 pub fn plan_these(scene: &Scene, findings: &[Finding], meaning: &Meaning, watch: &mut Watch<'_>) -> Plan {
     plan(scene, findings, 0, meaning, watch)
 }
 
-/// All repairs, with edits as they are and nobody who could stop it.
+/// All repairs, with edits as they are and without a way to stop.
 pub fn plan_at_once(scene: &Scene, findings: &[Finding]) -> Plan {
     plan_all(
         scene,
@@ -156,7 +156,7 @@ fn plan(
     }
 }
 
-/// How many findings nobody waived.
+/// The number of findings without a waiver, by severity.
 fn open_counts(scene: &Scene, found: &[Finding], tally: &Tally) -> Counts {
     let waived = found.iter().filter(|f| waive::of(scene.frame(), f).is_some());
     let (all, waived) = (tally.counts(), Counts::of(waived));
@@ -171,7 +171,7 @@ fn open_counts(scene: &Scene, found: &[Finding], tally: &Tally) -> Counts {
 struct Planning<'a, 'w> {
     /// The scene with the repairs so far.
     scene: Scene,
-    /// What is found in it.
+    /// Number of findings of each kind in that scene.
     tally: Tally,
     repairs: Vec<Repair>,
     /// Edits that were tried and are not done.
@@ -254,8 +254,8 @@ impl Planning<'_, '_> {
         }
     }
 
-    /// The scene with these repairs of one severity and what is found in it then, if it is better so: what they repair is gone,
-    /// and nothing as bad or worse has come.
+    /// The scene with these repairs of one severity, and its findings; `None` unless it is better: the repaired
+    /// findings are gone, and no new finding is as bad or worse.
     fn with(&self, batch: &[Repair]) -> Option<(Scene, Tally)> {
         let severity = batch.first()?.finding.severity;
         let edits: Vec<Edit> = batch.iter().flat_map(|r| r.edits.iter().cloned()).collect();
@@ -273,7 +273,7 @@ impl Planning<'_, '_> {
         (!tally.iter().any(new) && repaired.iter().all(gone)).then_some((scene, tally))
     }
 
-    /// Of the findings that were asked about and have a repair, those that are still there.
+    /// The findings among `asked` that have a repair and are still there, each with the reason.
     fn staying(&self, asked: Vec<Finding>, left: &[Finding]) -> Vec<(Finding, Stays)> {
         let same = |a: &Finding, b: &Finding| (a.check, a.box_id, &a.text) == (b.check, b.box_id, &b.text);
         let is_done = |f: &Finding| self.repairs.iter().any(|r| same(&r.finding, f));

@@ -2,7 +2,7 @@
 
 use scene::{BevLayer, BevLayout};
 
-/// What bounds a fill.
+/// Border of a fill.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FillBounds {
     /// Cells of exactly the same map layers as the first.

@@ -61,7 +61,7 @@ fn background(source_label: u8) -> u8 {
     }
 }
 
-/// Stamps the voxels of a box in the rough profile of its class, in place of what was there.
+/// Stamps the voxels of a box in the rough profile of its class, over the voxels that were there.
 pub(super) fn stamp_box(frame: &mut Frame, b: &SceneBox) {
     for (x, y, layers) in box_columns(frame.extent(), b) {
         let painted = *frame.painted.column(x, y);
@@ -74,7 +74,7 @@ pub(super) fn stamp_box(frame: &mut Frame, b: &SceneBox) {
     }
 }
 
-/// True for the layers that say what the ground is made of; lines and crossings lie on it.
+/// True for the layers that decide the class of the ground; lines and crossings lie on it.
 pub(super) fn shapes_ground(layer: BevLayer) -> bool {
     BevLayer::GROUND.contains(&layer)
 }
@@ -105,8 +105,8 @@ pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
     }
 }
 
-/// Lays ground in columns that were emptied: what the layout says, else what most of the
-/// nearest ground columns around have, else terrain.
+/// Lays ground in columns that were emptied: the class of the layout, else the class of most of the nearest ground
+/// columns around, else terrain.
 pub(super) fn refill_ground(grid: &mut VoxelGrid, layout: &BevLayout, emptied: &[[usize; 2]]) {
     if emptied.is_empty() {
         return;
@@ -138,7 +138,7 @@ struct Around {
 }
 
 impl Around {
-    /// Of columns of a map, as far as ground is searched for.
+    /// Reads the ground around columns of a map, as far out as ground is searched for.
     fn of(grid: &VoxelGrid, layout: &BevLayout, columns: &[[usize; 2]]) -> Self {
         let extent = layout.extent();
         let map = [extent.nx(), extent.ny()];

@@ -45,7 +45,7 @@ impl Area {
         })
     }
 
-    /// What of a line lies outside, in its order.
+    /// The pieces of a line outside the area, in their order.
     pub(super) fn outside(&self, points_m: &[DVec2]) -> Vec<Vec<DVec2>> {
         let mut pieces: Vec<Vec<DVec2>> = Vec::new();
         let mut piece: Vec<DVec2> = Vec::new();
@@ -74,7 +74,7 @@ impl Area {
 }
 
 fn steps(pair: &[DVec2]) -> usize {
-    // Points lie within 10 km; what is not finite counts as one step.
+    // Points lie within 10 km; a length that is not finite counts as one step.
     ((pair[0].distance(pair[1]) / STEP_M).ceil().min(1e5) as usize).max(1)
 }
 

@@ -9,13 +9,13 @@ use super::lanes::nearest_lane;
 /// A point on the kerb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KerbPoint {
-    /// Where, ego frame, m.
+    /// Position, ego frame, m.
     pub at_m: DVec2,
     /// Unit vector along it.
     pub along: DVec2,
     /// Unit vector across it, from roadway to walkway to open ground.
     pub away: DVec2,
-    /// How far from the point that was asked for, m.
+    /// Distance from the point that was asked for, m.
     pub distance_m: f64,
 }
 

@@ -7,11 +7,11 @@ use scene::{BevLayout, Polyline, PolylineKind};
 /// A point on the middle of a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LanePoint {
-    /// Where, ego frame, m.
+    /// Position, ego frame, m.
     pub at_m: DVec2,
     /// Driving direction there, rad.
     pub yaw_rad: f64,
-    /// How far from the point that was asked for, m.
+    /// Distance from the point that was asked for, m.
     pub distance_m: f64,
     line: usize,
     segment: usize,

@@ -1,4 +1,4 @@
-//! Distances and angles between points: on the ground, or on whatever was met in space.
+//! Distances and angles between points: on the ground, or on surfaces that were hit in space.
 
 use glam::{DVec2, DVec3};
 
@@ -10,7 +10,7 @@ use scene::Frame;
 pub struct Measure {
     /// In the order clicked.
     pub points_m: Vec<DVec2>,
-    /// How high each lies, m; 0 for what was clicked from above.
+    /// Height of each point, m; 0 for points clicked from above.
     heights_m: Vec<f64>,
 }
 
@@ -43,7 +43,8 @@ impl Measure {
         set.chain(next_m.filter(|_| self.points_m.len() < 3)).collect()
     }
 
-    /// What there is to say about the points, with `next_m` as one more.
+    /// Distances between the points, with `next_m` as one more, and their direction (two points) or angle (three);
+    /// `None` for fewer than two.
     pub fn text(&self, next_m: Option<DVec3>) -> Option<String> {
         let points = self.with(next_m);
         let (first, last) = (points.first()?, points.last()?);

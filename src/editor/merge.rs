@@ -2,8 +2,9 @@
 
 use scene::{BevLayer, BevLayout, Edit, Polyline, PolylineKind, Shape};
 
-/// What makes a layer part of another, as one step: its cells are painted with the other and its lines become lines of that kind.
-/// Nothing if there is nothing of the layer, or if one of the two comes from boxes.
+/// Edits that make a layer part of another, as one step: its cells are painted with the other layer and its lines
+/// become lines of that kind. Empty if the layer has no cells, if both layers are the same, or if one of the two comes
+/// from boxes.
 pub fn merge(layout: &BevLayout, from: BevLayer, into: BevLayer) -> Vec<Edit> {
     let cells: Vec<[usize; 2]> = layout
         .extent()

@@ -12,20 +12,20 @@ const LANE_REACH_M: f64 = 3.0;
 /// A free place is looked for in rings so far apart, m, and in so many of them.
 const RING_M: f64 = 2.0;
 const RINGS: usize = 20;
-/// So far ahead of the ego vehicle's origin the nearest part of a model is put, m.
+/// Distance of the nearest part of a model ahead of the ego vehicle's origin, m.
 const AHEAD_M: f64 = 8.0;
 /// Length and width that are kept free where the ego vehicle stands, m.
 const EGO_M: [f64; 2] = [5.0, 2.2];
 
 /// A model on its way into a scene.
 pub struct Placed {
-    /// What puts it there.
+    /// Edits that put it there.
     pub edits: Vec<Edit>,
     /// The number of its box.
     pub id: BoxId,
 }
 
-/// Where a model stands that is put ahead of the ego vehicle, world frame, m.
+/// Place of a model that is put ahead of the ego vehicle, world frame, m.
 pub fn ahead_m(scene: &Scene, model: &Model) -> DVec2 {
     let ahead_m = AHEAD_M + model.size_m.x / 2.0;
     let p = glam::DVec3::new(ahead_m, 0.0, 0.0);

@@ -2,7 +2,7 @@
 
 use scene::{Class, Extent, VoxelGrid};
 
-/// What is taken.
+/// Part of a result that is accepted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Part {
     /// Every voxel of these columns, `[x][y]` of the map.

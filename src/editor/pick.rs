@@ -1,4 +1,4 @@
-//! What lies under the pointer: rays against boxes, voxels and the ground, points against footprints.
+//! Picking with the pointer: rays against boxes, voxels and the ground, points against footprints.
 
 use glam::{DVec2, DVec3};
 
@@ -7,9 +7,9 @@ use scene::{BoxId, Class, Extent, Frame, SceneBox, VoxelGrid};
 /// A half line in the ego frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts, m.
+    /// Start of the ray, m.
     pub origin_in_ego: DVec3,
-    /// Where it goes, unit length.
+    /// Direction of the ray, unit length.
     pub direction_in_ego: DVec3,
 }
 
@@ -29,9 +29,9 @@ impl Ray {
     }
 }
 
-/// Where a line is inside the closed box `min..=max`: the parameters at which it enters and leaves
-/// (negative behind the origin), `None` if it misses. Kay and Kajiya 1986, with a direction of zero
-/// along an axis decided by the position alone, so that 0/0 never arises on the plane of a face.
+/// Part of a line inside the closed box `min..=max`: the parameters at which it enters and leaves (negative behind the
+/// origin), `None` if it misses. Kay and Kajiya 1986, with a direction of zero along an axis decided by the position
+/// alone, so that 0/0 never arises on the plane of a face.
 pub fn slab(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<(f64, f64)> {
     let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
@@ -163,7 +163,7 @@ pub fn ray_voxels(ray: &Ray, grid: &VoxelGrid, solid: impl Fn([usize; 3], u8) ->
     None
 }
 
-/// Where the ray meets the level plane at height `z_m`, if it does in front of its origin.
+/// The point where the ray meets the level plane at height `z_m`, if it does in front of its origin.
 pub fn ray_ground(ray: &Ray, z_m: f64) -> Option<DVec3> {
     let (o, d) = (ray.origin_in_ego, ray.direction_in_ego);
     if d.z == 0.0 {
@@ -191,7 +191,7 @@ pub enum Hit {
     Voxel(VoxelHit),
     /// The plane z = 0.
     Ground {
-        /// Where, ego frame, m.
+        /// Point that is hit, ego frame, m.
         point_in_ego: DVec3,
     },
 }
@@ -253,7 +253,7 @@ pub fn box_at(frame: &Frame, p_m: DVec2) -> Option<BoxId> {
         .map(|b| b.id)
 }
 
-/// A part of a selected box that the pointer can take hold of in the bird's-eye view.
+/// A part of a selected box that can be dragged in the bird's-eye view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
     /// The knob ahead of the box: turns it.
@@ -267,7 +267,7 @@ pub enum Handle {
 /// Distance of the rotate knob from the front of the box, m.
 pub const ROTATE_KNOB_M: f64 = 1.2;
 
-/// Where the rotate knob of a box is drawn, ego frame, m.
+/// Place of the rotate knob of a box, ego frame, m.
 pub fn rotate_knob(b: &SceneBox) -> DVec2 {
     b.center_m.truncate() + b.heading() * (b.size_m.x / 2.0 + ROTATE_KNOB_M)
 }

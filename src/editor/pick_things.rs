@@ -1,4 +1,4 @@
-//! Which thing of the background lies under the pointer, in a rectangle, behind a voxel. All points are in the world frame,
+//! Picking of background things: under the pointer, in a rectangle, behind a voxel. All points are in the world frame,
 //! m, as things are, unless a name says otherwise.
 
 use glam::DVec2;
@@ -7,7 +7,7 @@ use scene::{Background, Class, Form, Frame, Thing, ThingId};
 
 use super::choose::is_inside;
 
-/// What a post is taken hold of by around its place, m.
+/// Radius around a post's place within which the post is picked, m.
 const POST_M: f64 = 0.5;
 /// Voxels reach this far beyond the thing that they show, m.
 const VOXEL_REACH_M: f64 = 0.9;

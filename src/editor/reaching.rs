@@ -1,16 +1,16 @@
-//! The edit that makes a map reach where something comes.
+//! The edit that extends a map to where objects will go.
 
 use glam::DVec2;
 
 use scene::{Edit, Extent};
 
-/// What is added around a way that leaves the map, m: what the sensors see there.
+/// Margin that is added around a path that leaves the map, m, for the surroundings that the sensors see there.
 const AROUND_M: f64 = 40.0;
-/// A map grows by so much at once, m.
+/// A map grows in steps of this size, m.
 const STEP_M: f64 = 20.0;
 
-/// The edit that makes a map reach `sight_m` (along x and y below, then above) around all these places, and more where they leave
-/// it; none where it does.
+/// The edit that extends a map so that it reaches `sight_m` (along x and y below, then above) around all these places,
+/// with a margin where they leave it; `None` where it reaches that far already.
 pub(crate) fn reaching(
     extent: Extent,
     places: impl Iterator<Item = DVec2>,
@@ -19,7 +19,7 @@ pub(crate) fn reaching(
     let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
     let [mut below, mut above] = [DVec2::ZERO; 2];
     for p in places {
-        // (what stays inside along an axis needs nothing there)
+        // (an axis along which the places stay inside needs no margin)
         below = below.max(low - p + sight_below_m);
         above = above.max(p - high + sight_above_m);
     }
@@ -39,7 +39,8 @@ pub(crate) fn reaching(
     })
 }
 
-/// How far a map reaches around places, m: along x and y below them, then above; [`AROUND_M`] at most, 0 at least.
+/// The distance by which a map reaches beyond places, m: along x and y below them, then above; at most [`AROUND_M`], at
+/// least 0.
 pub(crate) fn sights_m(extent: Extent, places: impl Iterator<Item = DVec2>) -> [DVec2; 2] {
     let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
     places.fold([DVec2::splat(AROUND_M); 2], |[below, above], p| {

@@ -13,7 +13,7 @@ pub const MAX_COPIES: usize = 200;
 /// How far a lane may be from a thing beside the road that is to follow it, m.
 const BESIDE_REACH_M: f64 = 25.0;
 
-/// Along what a row of copies runs.
+/// Line along which a row of copies runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RowAlong {
     /// The heading of each box; for things that of the ego vehicle.
@@ -32,7 +32,7 @@ pub struct Row {
     pub copies: usize,
     /// From one to the next, centre to centre, m; negative goes backward.
     pub spacing_m: f64,
-    /// Which way.
+    /// Direction of the row.
     pub along: RowAlong,
     /// Rows, the first one counted.
     pub rows: usize,
@@ -127,7 +127,7 @@ fn on_map(frame: &Frame, p_m: DVec2) -> bool {
 enum Way {
     /// Straight, in this direction.
     Straight(DVec2),
-    /// As a lane does.
+    /// Along a lane, from this point.
     Lane(super::lanes::LanePoint),
 }
 
@@ -142,7 +142,7 @@ impl Way {
         }
     }
 
-    /// Where a copy of what is at `from_m` stands, and how far it is turned, rad.
+    /// Place of a copy of an object at `from_m`, and the angle by which the copy is turned, rad.
     fn to(&self, frame: &Frame, from_m: DVec2, by_m: DVec2) -> (DVec2, f64) {
         match self {
             Self::Straight(ahead) => (from_m + *ahead * by_m.x + ahead.perp() * by_m.y, 0.0),

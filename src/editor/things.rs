@@ -17,7 +17,7 @@ use scene::{
 };
 use scene::{Edit, EditError};
 
-/// Voxels of a thing's class this close to it go with it, columns: what a network drew of it is not exact.
+/// Voxels of a thing's class this close to it belong to it, columns: a network does not draw it exactly.
 const MARGIN: usize = 1;
 /// Most things in one edit.
 const MOST: usize = Background::MAX_THINGS;
@@ -105,7 +105,7 @@ fn for_each(
         let mut thing = before.clone();
         change(&mut thing.form);
         thing.form = sound(thing.form)?;
-        // What a user moved or shaped is the user's.
+        // A thing that a user moved or shaped is the user's own.
         thing.placed |= thing.form != before.form;
         background.insert(thing);
     }
@@ -151,7 +151,7 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
         let change = Change::on(layout, &gone, &come, &near);
         change.redraw(occupancy, layout, painted, guessed);
         let source = Arc::make_mut(source);
-        // Where voxels of things lie depends on the ground alone.
+        // The places of things' voxels depend on the ground alone.
         let other =
             (source.layout.relief != layout.relief).then(|| Change::on(&source.layout, &gone, &come, &near));
         let change = other.as_ref().unwrap_or(&change);
@@ -187,7 +187,7 @@ fn clear_columns(
     cells: &[[usize; 2]],
     kept: &[Thing],
 ) -> bool {
-    // What the things' own forms account for, in these columns and their class.
+    // Voxels of the things' own forms, in these columns and of their class.
     let mut owned: BTreeMap<[usize; 2], [bool; Extent::NZ]> = BTreeMap::new();
     for thing in kept {
         let class = thing.form.class().id();
@@ -247,13 +247,13 @@ fn only_in(a: &Background, b: &Background) -> Vec<Thing> {
 /// Things with their voxels.
 type Drawn<'a> = Vec<(&'a Thing, Columns)>;
 
-/// What a change of the background does to the voxels of a map.
+/// Change of the background, as the things whose voxels go, come or stay.
 struct Change<'a> {
-    /// Their voxels go.
+    /// Things whose voxels are taken away.
     gone: Drawn<'a>,
-    /// Their voxels come.
+    /// Things whose voxels are added.
     come: Drawn<'a>,
-    /// They stay, near to what goes.
+    /// Things that stay, near to those that go.
     kept: Drawn<'a>,
 }
 
@@ -267,8 +267,9 @@ impl<'a> Change<'a> {
         }
     }
 
-    /// Takes the voxels of what goes out of a grid, and stamps those of what comes, and of what stays where they were taken
-    /// out. Where what stays is `guessed` from voxels it only gets back what was of its class: more of it was never seen there.
+    /// Clears the voxels of the things that go, and stamps those of the things that come. Things that stay get back the
+    /// voxels that were cleared; with `guessed` (things inferred from voxels) only those that were of their own class:
+    /// more of them was never seen there.
     fn redraw(&self, grid: &mut VoxelGrid, layout: &BevLayout, painted: &VoxelPaint, guessed: bool) {
         let mut cleared = Columns::new();
         for (thing, own) in &self.gone {
@@ -332,7 +333,7 @@ fn clear(
         }
         if taken != [Class::FREE; Extent::NZ] {
             let before = cleared.entry([x, y]).or_insert([Class::FREE; Extent::NZ]);
-            // What it was first, if several things clear it.
+            // The first label, if several things clear the voxel.
             for (before, taken) in before.iter_mut().zip(taken) {
                 *before = if *before == Class::FREE { taken } else { *before };
             }
@@ -359,7 +360,8 @@ fn with_margin(extent: Extent, own: &Columns) -> BTreeSet<[usize; 2]> {
         .collect()
 }
 
-/// Columns of an area of shrubs: what grows there is the area's, whether one of the plants drawn for it stands there or not.
+/// Columns of an area of shrubs: all plants there belong to the area, whether one of the plants drawn for it stands
+/// there or not.
 fn grown_over(extent: Extent, thing: &Thing) -> Vec<[usize; 2]> {
     let mut out = Vec::new();
     if let Form::Shrubs(shrubs) = &thing.form {

@@ -1,4 +1,4 @@
-//! A drag that moves, turns or scales boxes: what the pointer, a locked axis, typed digits and snapping make of it.
+//! A drag that moves, turns or scales boxes: the edits of a pointer move, a locked axis, typed digits and snapping.
 
 use glam::{DVec2, DVec3};
 
@@ -9,7 +9,7 @@ use super::Edit;
 use super::arrange::{LANE_REACH_M, Pivot, middle_m, standing, turned, wrapped_deg};
 use super::lanes::nearest_lane;
 
-/// What a drag changes.
+/// Part of the boxes that a drag changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TransformKind {
     /// The place.
@@ -42,17 +42,17 @@ impl Axis {
     }
 }
 
-/// Whose axes are meant.
+/// Frame whose axes are used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Orientation {
-    /// Those of the ego frame.
+    /// Axes of the ego frame.
     #[default]
     World,
-    /// Those of the box that was chosen last.
+    /// Axes of the box that was chosen last.
     Local,
 }
 
-/// What a move snaps to.
+/// Snaps of a move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Snap {
     /// Multiples of this, m; degrees are multiples of 15 then, factors of 0.1. `None` means free.
@@ -69,17 +69,17 @@ const CATCH_M: f64 = 2.0;
 /// A drag in progress. Every frame starts over from the boxes as they were.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transform {
-    /// What it changes.
+    /// Part of the boxes that it changes.
     pub kind: TransformKind,
-    /// The boxes as they were; the one that was taken hold of first.
+    /// The boxes as they were when the drag began; a box that was pressed comes first.
     pub start: Vec<SceneBox>,
-    /// Axis it keeps to.
+    /// Axis that it keeps to.
     pub axis: Option<Axis>,
-    /// Whose axes.
+    /// Frame of that axis.
     pub orientation: Orientation,
-    /// About what several turn.
+    /// Point about which several boxes turn.
     pub pivot: Pivot,
-    /// What was typed: metres, degrees or a factor.
+    /// Typed text: metres, degrees or a factor.
     pub typed: String,
 }
 
@@ -200,7 +200,7 @@ impl Transform {
                 yaw_deg = Some(wrapped_deg(lane.yaw_rad.to_degrees()));
             }
             if self.axis != Some(Axis::Z) {
-                // It stays as high above the ground as it was.
+                // It keeps its height above the ground.
                 let ground_m = |p: DVec3| frame.layout.relief.height_m(p.truncate());
                 center_m.z += ground_m(center_m) - ground_m(b.center_m);
             }
@@ -217,7 +217,7 @@ impl Transform {
         self.start.iter().map(edit).collect()
     }
 
-    /// Sizes scaled about the middle of each bottom, so that what stands keeps standing.
+    /// Sizes scaled about the middle of each bottom, so that standing boxes keep standing.
     fn scaled(&self, factor: f64, snap: &Snap) -> Vec<Edit> {
         const SMALLEST_M: f64 = 0.1;
         let free = match snap.grid_m {
@@ -245,7 +245,7 @@ impl Transform {
         self.start.iter().map(edit).collect()
     }
 
-    /// What is being done, for a person: `x  1.25 m`.
+    /// Text about the drag for the user: `x  1.25 m`.
     pub fn text(&self, pull: &Pull, snap: &Snap) -> String {
         let axis = match self.axis {
             Some(Axis::X) => "x  ",

@@ -1,5 +1,5 @@
-//! Sets of voxels that the voxel tools work on: boxes, lines, what is connected, faces pulled out, mirror images.
-//! None is ever larger than the grid, and each is sorted and holds a voxel once.
+//! Sets of voxels that the voxel tools work on: boxes, lines, connected voxels, faces pulled out, mirror images. None
+//! is ever larger than the grid, and each is sorted and holds a voxel once.
 
 use std::collections::BTreeMap;
 
@@ -167,8 +167,8 @@ pub fn face(grid: &VoxelGrid, start: Cell, normal: [i32; 3]) -> Vec<Cell> {
     tidy(cells)
 }
 
-/// What pulling a face out by `layers` changes: the free voxels in front of it to be filled (a column ends at
-/// the first that is not free), or, for negative layers, the voxels to be taken away.
+/// The voxels that change when a face is pulled out by `layers`: the free voxels in front of it, which are filled (a
+/// column ends at the first that is not free), or, for negative layers, the voxels that are taken away.
 pub fn extrude(grid: &VoxelGrid, face: &[Cell], normal: [i32; 3], layers: i32) -> Vec<Cell> {
     let normal = IVec3::from_array(normal);
     let extent = grid.extent();

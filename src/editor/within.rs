@@ -1,4 +1,4 @@
-//! Edits that hold for a region only: what lies outside is left as it is, what comes is put inside.
+//! Edits that hold for a region only: objects outside are left as they are, and new ones are put inside.
 
 use glam::DVec2;
 
@@ -6,9 +6,10 @@ use scene::{BoxId, Edit, Form, Scene, ThingId};
 
 use super::arranged::{box_of, things_of};
 
-/// Edits as far as they are of a region, and how many objects they leave out. New boxes and things of which none would be in it
-/// are moved there together; what then still lies outside does not come. Roads, lines, painted cells, time and weather hold for
-/// the whole scene. `inside` tells of a point of the ground, world frame, m; `middle_m` is the middle of the region.
+/// Edits as far as they are of a region, and how many objects they leave out. New boxes and things of which none would
+/// be in the region are moved there together; those that then still lie outside are left out. Roads, lines, painted
+/// cells, time and weather hold for the whole scene. `inside` tells of a point of the ground, world frame, m;
+/// `middle_m` is the middle of the region.
 pub fn within(
     scene: &Scene,
     edits: Vec<Edit>,
@@ -70,7 +71,7 @@ pub fn within(
     (out, left)
 }
 
-/// How what comes is moved: not at all if some of it would be in the region, else so that its middle is the region's.
+/// Shift of the new objects: none if some of them would be in the region, else so that their middle is the region's.
 fn way_in(edits: &[Edit], inside: &dyn Fn(DVec2) -> bool, middle_m: DVec2) -> DVec2 {
     let places: Vec<DVec2> = edits
         .iter()

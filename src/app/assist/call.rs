@@ -1,4 +1,4 @@
-//! The vocabulary: every call with its arguments, its receipt, and what a client is told about it.
+//! The vocabulary: every call with its arguments, its receipt, and its description for clients.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -11,15 +11,15 @@ use scene::message;
 
 /// One operation: its arguments are the type itself.
 pub trait Operation: DeserializeOwned + JsonSchema {
-    /// What it is called.
+    /// Name of the call.
     const NAME: &'static str;
-    /// What it does, for a client that knows nothing: one or a few sentences, with units.
+    /// Description for a client that knows nothing: one or a few sentences, with units.
     const ABOUT: &'static str;
     /// One example of its arguments, as JSON.
     const EXAMPLE: &'static str;
     /// True if it may change the scene.
     const CHANGES: bool;
-    /// What it answers.
+    /// Receipt of the call.
     type Receipt: Serialize + JsonSchema;
 
     /// Carries it out. Errors in one line; the scene is then as before.
@@ -47,7 +47,7 @@ pub struct CallDef {
     pub receipt: fn(&mut schemars::SchemaGenerator) -> schemars::Schema,
 }
 
-/// What a call answers.
+/// Answer to a call.
 #[derive(Debug)]
 pub struct Answer {
     /// The receipt as JSON, an object.
@@ -63,7 +63,7 @@ macro_rules! calls {
             $($(#[$doc])* $name(Box<$args>),)+
         }
 
-        /// What each call answers.
+        /// Receipt of each call.
         #[derive(Serialize)]
         #[serde(untagged)]
         pub enum Receipt {

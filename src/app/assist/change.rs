@@ -1,4 +1,4 @@
-//! What differs between two states of a scene, in numbers.
+//! Differences between two states of a scene, in numbers.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use scene::{BevLayer, Class, Extent, Frame, Scene, SceneBox};
 /// Ids that a list holds at most.
 const MOST_IDS: usize = 100;
 
-/// What a call changed. Of more than 100 boxes the first are named.
+/// Changes by a call. Of more than 100 boxes the first are named.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Change {
     /// Boxes by what became of them.
@@ -64,7 +64,7 @@ pub struct Gained {
 }
 
 impl Change {
-    /// What differs between two states, at the moment that the later one shows.
+    /// The differences between two states, at the moment that the later one shows.
     pub fn between(before: &Scene, after: &Scene) -> Self {
         if before.content() == after.content() {
             return Self::default();
@@ -137,7 +137,8 @@ fn tracks(before: &Scene, after: &Scene) -> Counts {
     }
 }
 
-/// Cells that differ, and what each map layer gained and lost; layers that did neither are left out.
+/// The number of cells that differ, and the cells that each map layer gained and lost; layers without a change are left
+/// out.
 fn layers(before: &Frame, after: &Frame) -> (usize, BTreeMap<String, Gained>) {
     let (a, b) = (before.layout.cells(), after.layout.cells());
     let mut layers: BTreeMap<String, Gained> = BTreeMap::new();

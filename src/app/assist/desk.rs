@@ -1,5 +1,5 @@
-//! What the calls of a session work on: the document (its own or that of a window), the folder, versions, numbers of
-//! revisions, the networks.
+//! Desk of a session: the document (its own or that of a window), the folder, versions, numbers of revisions, the
+//! networks.
 
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
@@ -25,16 +25,16 @@ use scene::{KeptVersion, Scene, SceneRev};
 /// True once the call in progress is not wanted any more.
 pub type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
 
-/// Who owns the document.
+/// Owner of the document.
 pub enum Holder {
-    /// This session.
+    /// The session itself.
     Own(Box<Document>),
     /// Another thread, such as that of a window. It is handed tasks, which it does one by one; false if it is gone.
     Elsewhere(Box<dyn FnMut(Task) -> bool + Send>),
 }
 
 impl Holder {
-    /// Does something with the document. Errors if whoever owns it is gone.
+    /// Runs work on the document. Errors if its owner is gone.
     fn with<R: Send + 'static>(
         &mut self,
         work: impl FnOnce(&mut Document) -> R + Send + 'static,
@@ -52,18 +52,18 @@ impl Holder {
     }
 }
 
-/// What a call that may change the scene did.
+/// Result of a call that may change the scene.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Done {
     /// Number of the state that the scene is in now. A state that comes back by undo has its old number.
     pub revision: u64,
     /// Name of the undo step; empty if nothing changed.
     pub step: String,
-    /// What changed, in numbers.
+    /// Changes, in numbers.
     pub changed: Change,
     /// Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
     pub draft_columns: usize,
-    /// What should be looked at, such as findings of the checks that were not there before.
+    /// Warnings to look at, such as findings of the checks that were not there before.
     pub warnings: Vec<String>,
 }
 
@@ -77,14 +77,14 @@ const MOST_VERSIONS: usize = 64;
 /// One scene and all that calls need to work on it.
 pub struct Desk {
     holder: Holder,
-    /// Where files are read and written.
+    /// Folder in which files are read and written.
     pub folder: Folder,
     /// Whether the call in progress is still wanted.
     pub stop: Stop,
     weights: Option<PathBuf>,
     pipeline: Option<OccPipeline>,
     revisions: HashMap<SceneRev, u64>,
-    /// How many states were numbered so far.
+    /// Number of states that were numbered so far.
     numbered: u64,
     versions: Vec<(String, Arc<Scene>)>,
     /// Findings of the state that was checked last, without sensors.
@@ -107,7 +107,7 @@ impl Desk {
         }
     }
 
-    /// The scene as it is now. Errors if whoever owns the document is gone.
+    /// The scene as it is now. Errors if the document's owner is gone.
     pub fn scene(&mut self) -> anyhow::Result<Arc<Scene>> {
         self.look(|document| document.settled_scene().clone())
     }
@@ -125,8 +125,8 @@ impl Desk {
         matches!(self.holder, Holder::Own(_))
     }
 
-    /// Changes the document in a way that is not an undo step, or has its own; returns what `work` does and the states before
-    /// and after.
+    /// Changes the document in a way that is no undo step, or brings its own; returns the result of `work` and the
+    /// states before and after.
     pub fn with<R: Send + 'static>(
         &mut self,
         work: impl FnOnce(&mut Document) -> R + Send + 'static,
@@ -153,8 +153,8 @@ impl Desk {
         Ok(done)
     }
 
-    /// Puts another state in the place of the state `from`, as one undo step. Errors if the scene has changed since. Its
-    /// findings are no warnings: it is another scene, or is checked by whoever made it.
+    /// Replaces the state `from` by another state, as one undo step. Errors if the scene has changed since. Findings of
+    /// the new state are no warnings: it is another scene, or its maker checks it.
     pub fn put(&mut self, step: String, from: SceneRev, scene: Scene) -> anyhow::Result<Done> {
         let label = step.clone();
         let (is_current, states) = self.with(move |document| {
@@ -208,7 +208,7 @@ impl Desk {
 
     /// Forgets the numbers of states that are gone for good, other than `newest`.
     fn forget_revisions(&mut self, newest: SceneRev) {
-        // (if whoever owns the document is gone, nothing comes back)
+        // (if the document's owner is gone, no old state comes back)
         let steps = self.look(|document| document.contents().collect::<Vec<_>>());
         let mut there: HashSet<SceneRev> = steps.unwrap_or_default().into_iter().collect();
         there.extend(self.versions.iter().map(|(_, scene)| scene.content()));
@@ -216,7 +216,7 @@ impl Desk {
         self.revisions.retain(|state, _| there.contains(state));
     }
 
-    /// What the checks that need no sensors find, the open findings alone.
+    /// The open findings of the checks that need no sensors.
     fn findings(&mut self, scene: &Scene) -> Arc<Vec<Finding>> {
         if let Some((of, found)) = &self.checked
             && *of == scene.rev
@@ -230,7 +230,7 @@ impl Desk {
         found
     }
 
-    /// Findings that were not there before, of what is the same scene.
+    /// Findings that are new in a later state of the same scene.
     fn warnings(&mut self, before: &Scene, after: &Scene) -> Vec<String> {
         let known: Vec<_> = self.findings(before).iter().map(same).collect();
         let found = self.findings(after);
@@ -310,7 +310,7 @@ impl Desk {
     }
 }
 
-/// What tells findings apart; numbers in their words may change.
+/// Key that tells findings apart; numbers in their texts may change.
 fn same(f: &Finding) -> (&'static str, Option<scene::BoxId>, [i64; 3]) {
     let place = match f.box_id {
         Some(_) => [0; 3],
@@ -319,7 +319,7 @@ fn same(f: &Finding) -> (&'static str, Option<scene::BoxId>, [i64; 3]) {
     (f.check, f.box_id, place)
 }
 
-/// A finding in a line.
+/// The text of a finding in a line.
 fn told(f: &Finding) -> String {
     let [x, y, _] = f.where_m.to_array();
     let of_box = f.box_id.map_or(String::new(), |id| format!(", box {}", id.0));

@@ -17,7 +17,7 @@ use scene::plain_name::check_file;
 const LONGEST_NAME: usize = 240;
 /// Files that a list holds at most.
 const MOST_LISTED: usize = 1000;
-/// So many folders deep a list looks.
+/// Depth of folders that a list goes into.
 const DEEPEST: usize = 4;
 
 /// A folder whose files a session may read and write.
@@ -37,7 +37,7 @@ pub struct FileEntry {
 }
 
 impl Folder {
-    /// That folder. Errors if it is none.
+    /// Opens a folder. Errors if the path is none.
     pub fn new(path: &Path) -> anyhow::Result<Self> {
         let root = fs::canonicalize(path).with_context(|| format!("folder {}", path.display()))?;
         if !root.is_dir() {
@@ -46,7 +46,7 @@ impl Folder {
         Ok(Self { root })
     }
 
-    /// Where the folder is.
+    /// Path of the folder.
     pub fn root(&self) -> &Path {
         &self.root
     }
@@ -191,7 +191,7 @@ impl Folder {
     }
 }
 
-/// What is at a path, links not followed; `None` if nothing is.
+/// The metadata of a path, links not followed; `None` if nothing is there.
 fn look(path: &Path, name: &str) -> anyhow::Result<Option<Metadata>> {
     match fs::symlink_metadata(path) {
         Ok(is) => Ok(Some(is)),
@@ -243,7 +243,7 @@ fn parts(name: &str) -> anyhow::Result<Vec<&str>> {
     }
 }
 
-/// The parts of the name of a file that is made: what other systems refuse is refused here too.
+/// The parts of the name of a new file: names that other systems refuse are refused here too.
 fn parts_of_new(name: &str) -> anyhow::Result<Vec<&str>> {
     let parts = parts(name)?;
     parts.iter().try_for_each(|part| check_file(part))?;

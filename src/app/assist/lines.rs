@@ -9,7 +9,7 @@ use serde_json::Value;
 pub enum Line {
     /// All of it, without its end.
     Whole(Vec<u8>),
-    /// It was longer than allowed and was passed over.
+    /// A line that was longer than allowed and was passed over.
     TooLong {
         /// The value of the key `id` of the object that it began with, if that was found.
         id: Option<Value>,
@@ -82,7 +82,7 @@ struct IdFinder {
     escaped: bool,
     /// A string of the outermost object, which may be a key.
     string: Vec<u8>,
-    /// What was read last in the outermost object was a string.
+    /// True if the last token of the outermost object was a string.
     key: bool,
     /// Bytes of the value, once the key has come by.
     value: Option<Vec<u8>>,

@@ -8,15 +8,15 @@ use serde_json::{Map, Value, json};
 
 use crate::call::{CallDef, table};
 
-/// Where definitions are, as references begin.
+/// Start of a reference to a definition.
 const DEFS: &str = "#/$defs/";
 
-/// Of what is read: what may be left out is not required.
+/// Generator for the schemas of arguments: fields that may be left out are not required.
 fn of_arguments() -> SchemaGenerator {
     SchemaSettings::draft2020_12().into_generator()
 }
 
-/// Of what is written: all keys are there.
+/// Generator for the schemas of receipts: all fields are required.
 fn of_receipts() -> SchemaGenerator {
     SchemaSettings::draft2020_12().for_serialize().into_generator()
 }
@@ -78,7 +78,7 @@ pub fn document() -> Value {
     document
 }
 
-/// What the name of the second definition of a type ends in.
+/// Ending of the name of a type's second definition.
 const WRITTEN: &str = "Written";
 
 /// Names of types whose two definitions differ, in themselves or in what they refer to.
@@ -202,7 +202,7 @@ fn references(value: &Value, out: &mut Vec<String>) {
     }
 }
 
-/// Takes out what says nothing to a client: numbers of bits, defaults of nothing, links of the documentation.
+/// Takes out parts of no use to a client: numbers of bits, defaults of nothing, links of the documentation.
 fn tidy(value: &mut Value) {
     match value {
         Value::Object(map) => {

@@ -18,7 +18,7 @@ pub const MOST_WAITING: usize = 32;
 const STACK: usize = 8 << 20;
 const THREAD: &str = "assistant";
 
-/// What is done with an answer.
+/// Callback that gets the answer.
 type Reply = Box<dyn FnOnce(Result<Answer, String>) + Send>;
 
 struct Request {
@@ -29,7 +29,7 @@ struct Request {
     _counted: Counted,
 }
 
-/// As many calls wait as may wait, or the thread is gone.
+/// Error of a full queue: as many calls wait as may wait, or the thread is gone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Busy;
 
@@ -40,7 +40,7 @@ impl Busy {
     }
 }
 
-/// Where calls are asked for. Clones ask the same thread; it ends with the last of them.
+/// Handle by which calls are asked for. Clones ask the same thread; it ends with the last of them.
 #[derive(Clone)]
 pub struct Service {
     queue: Sender<Request>,

@@ -44,7 +44,7 @@ fn reply_to(desk: &mut Desk, line: &[u8]) -> Value {
         }
         Err(e) => return failed(Value::Null, &format!("the line is no JSON: {e}")),
     };
-    // (a reply gives back what is no longer than it needs to be)
+    // (a reply repeats the id, so its length is bounded)
     let id = request.get("id").cloned().unwrap_or_default();
     let id = match &id {
         Value::Number(_) | Value::Null => id,

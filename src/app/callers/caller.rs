@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 
 use crate::places::{Ending, Place, Places};
 
-/// How often it is looked whose time is over.
+/// Interval between two checks of the deadlines.
 const SWEEP_EVERY: Duration = Duration::from_millis(250);
 
-/// So many at a time, each for so long.
+/// Bound of a state: so many connections or requests at a time, each for so long.
 #[derive(Clone, Copy, Debug)]
 pub struct Wait {
     /// Most at a time.
@@ -36,7 +36,7 @@ pub struct Limits {
     pub sending: Wait,
 }
 
-/// All that ask a server. Clones are the same.
+/// All callers of a server. Clones share the same state.
 #[derive(Clone, Debug)]
 pub struct Callers {
     strangers: Places,
@@ -46,7 +46,7 @@ pub struct Callers {
 }
 
 impl Callers {
-    /// Nobody yet.
+    /// Starts without callers.
     pub fn new(limits: Limits) -> Self {
         Self {
             strangers: limits.strangers.places(),
@@ -71,13 +71,13 @@ impl Callers {
         })
     }
 
-    /// A place for the body of a request to come in, and what tells that no more is waited for it.
+    /// A place for the body of a request to come in, and the signal that tells that the server waits for it no longer.
     pub fn reading(&self) -> (Arc<Ending>, Place) {
         let ending = Arc::new(Ending::default());
         (ending.clone(), self.reading.take(ending, Instant::now()))
     }
 
-    /// Ends the connection that has been silent longest, if there is one: for when no more can be taken.
+    /// Ends all connections and requests that have taken too long, over and over.
     pub fn make_room(&self) {
         let _ended = self.strangers.end_oldest() || self.idle.end_oldest();
     }
@@ -113,12 +113,12 @@ struct State {
 }
 
 impl Caller {
-    /// What tells it to end.
+    /// The signal that tells it to end.
     pub fn ending(&self) -> &Ending {
         &self.ending
     }
 
-    /// Whose it is.
+    /// The callers of its server.
     pub fn callers(&self) -> &Callers {
         &self.callers
     }
@@ -142,7 +142,7 @@ impl Caller {
 pub struct Asking(Arc<Caller>);
 
 impl Asking {
-    /// It was read whole, by somebody who may ask: the connection is a stranger's no longer.
+    /// Notes that the request was read whole and its sender may ask: the connection is no stranger any more.
     pub fn is_read(&self) {
         self.0.with(|state| state.is_known = true);
     }

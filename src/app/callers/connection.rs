@@ -1,4 +1,4 @@
-//! Connections as a server reads and writes them, each until its caller is told that it ends.
+//! Connections as a server reads and writes them, each until its caller is told to end.
 
 use std::io;
 use std::net::SocketAddr;
@@ -32,14 +32,14 @@ pub fn listen(at: SocketAddr) -> io::Result<std::net::TcpListener> {
 }
 
 impl Callers {
-    /// The next connection. Takes all that come: whoever is silent gives way.
+    /// The next connection. Takes all that come: the longest silent one makes room.
     pub async fn accept(&self, listener: &TcpListener) -> Connection {
         loop {
             match listener.accept().await {
                 Ok((stream, _)) => {
                     // (slower without, and no error)
                     let _ = stream.set_nodelay(true);
-                    // What those that were taken before have said is heard before the next one is taken.
+                    // Requests on the connections taken before are read before the next connection is taken.
                     tokio::task::yield_now().await;
                     return Connection::new(stream, self.connected());
                 }
@@ -69,12 +69,12 @@ impl Connection {
         }
     }
 
-    /// Whose it is.
+    /// The caller of this connection.
     pub fn caller(&self) -> &Arc<Caller> {
         &self.caller
     }
 
-    /// Its stream, as long as it was not told to end.
+    /// Its stream; an error once it was told to end.
     fn open(&mut self, c: &mut Context<'_>) -> io::Result<Pin<&mut TcpStream>> {
         if self.caller.ending().is_told() || self.told.as_mut().poll(c).is_ready() {
             return Err(io::ErrorKind::TimedOut.into());

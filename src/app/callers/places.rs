@@ -1,4 +1,4 @@
-//! Places of those who are waited for: so many, each for so long; the oldest gives way.
+//! Places of callers that the server waits for: so many, each for so long; the oldest makes room for a new one.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
 
-/// Tells somebody that no more is waited for them. Once told, it stays told.
+/// Signal to a caller that the server waits for it no longer. Once sent, it stays sent.
 #[derive(Debug)]
 pub struct Ending(watch::Sender<bool>);
 
@@ -17,24 +17,24 @@ impl Default for Ending {
 }
 
 impl Ending {
-    /// Tells it.
+    /// Sends the signal.
     pub fn tell(&self) {
         self.0.send_replace(true);
     }
 
-    /// True once it was told.
+    /// True once the signal was sent.
     pub fn is_told(&self) -> bool {
         *self.0.borrow()
     }
 
-    /// Ready once it was told, or nobody is left who could.
+    /// Ready once the signal was sent, or the sender is gone.
     pub fn told(&self) -> impl Future<Output = ()> + Send + use<> {
         let mut told = self.0.subscribe();
         async move { drop(told.wait_for(|told| *told).await) }
     }
 }
 
-/// So many places. Clones are the same places.
+/// A bounded number of places. Clones share them.
 #[derive(Clone, Debug)]
 pub struct Places(Arc<Shared>);
 
@@ -45,7 +45,7 @@ struct Shared {
     waiting: Mutex<Waiting>,
 }
 
-/// Who waits since when; numbers grow, so the first came first.
+/// Waiting callers with the time of their arrival; numbers grow, so the first number came first.
 #[derive(Debug, Default)]
 struct Waiting {
     next: u64,
@@ -53,7 +53,7 @@ struct Waiting {
 }
 
 impl Waiting {
-    /// Tells the oldest, if there is one.
+    /// Ends the oldest, if there is one.
     fn end_oldest(&mut self) -> bool {
         let oldest = self.all.pop_first();
         oldest.map(|(_, (_, ending))| ending.tell()).is_some()
@@ -61,7 +61,7 @@ impl Waiting {
 }
 
 impl Places {
-    /// So many places, at least one, each for so long at most.
+    /// Makes `most` places, at least one, each held for `within` at most.
     pub fn new(most: usize, within: Duration) -> Self {
         Self(Arc::new(Shared {
             most: most.max(1),
@@ -86,7 +86,7 @@ impl Places {
         })
     }
 
-    /// Tells all whose time is over.
+    /// Ends all whose time is over.
     pub fn sweep(&self, now: Instant) {
         self.with(|waiting| {
             let over = |at: &Instant| now.saturating_duration_since(*at) >= self.0.within;
@@ -96,7 +96,7 @@ impl Places {
         });
     }
 
-    /// Tells the oldest, if there is one; true if there was.
+    /// Ends the oldest, if there is one; true if there was.
     pub fn end_oldest(&self) -> bool {
         self.with(Waiting::end_oldest)
     }

@@ -10,14 +10,15 @@ use http_body::{Body, Frame, SizeHint};
 use crate::caller::Asking;
 use crate::places::Place;
 
-/// Longest piece, bytes. Of a body in one piece all would be taken over at once, and nobody could tell whether it was sent.
+/// Longest piece, bytes. A body in one piece would be taken over at once, and the server could not tell whether it was
+/// sent.
 const PIECE: usize = 64 << 10;
 
 /// The body of an answer, piece by piece. Holds its places until it is sent but for the last pieces.
 #[derive(Debug)]
 pub struct Sending<B> {
     body: B,
-    /// Of the piece that the body gave last.
+    /// Unsent rest of the piece that the body gave last.
     rest: Bytes,
     /// (the place first: it must be free before the connection idles)
     _place: Option<Place>,
@@ -35,7 +36,7 @@ impl<B> Sending<B> {
         }
     }
 
-    /// A few words that hold no place.
+    /// A short answer that holds no place.
     pub fn short(body: B) -> Self {
         Self {
             body,

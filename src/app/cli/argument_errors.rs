@@ -1,14 +1,14 @@
-//! Wrong arguments in one line: what was found, what was expected, and where it helps what was probably meant.
+//! Wrong arguments in one line: what was found, what was expected, and where it helps the likely meaning.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-/// Most characters of a line: what was typed may be long.
+/// Longest line, characters: a typed argument may be long.
 const LONGEST: usize = 400;
-/// Of these, most of the hint.
+/// Longest hint within that line, characters.
 const LONGEST_HINT: usize = 120;
 
-/// The message about wrong arguments: one line that begins with `sceneloom: `; what was probably meant, or where to look, stands in
-/// brackets at its end. Help and version are given as they are.
+/// The message about wrong arguments: one line that begins with `sceneloom: `. A hint in brackets at its end tells the
+/// likely meaning, or where to look. Help and version are given as they are.
 pub(super) fn message(error: &clap::Error) -> String {
     if !error.use_stderr() {
         return error.to_string();
@@ -18,7 +18,7 @@ pub(super) fn message(error: &clap::Error) -> String {
     format!("{line}{hint}\n")
 }
 
-/// What was found, and what was expected.
+/// The error in words: what was found, and what was expected.
 fn what(error: &clap::Error) -> String {
     let one = |kind| context(error, kind).map(|all| all.join(", "));
     let arg = one(ContextKind::InvalidArg).unwrap_or_else(|| "an argument".into());
@@ -80,7 +80,7 @@ fn what(error: &clap::Error) -> String {
     }
 }
 
-/// What was probably meant, or where to look.
+/// The hint: the likely meaning, or where to look.
 fn hint(error: &clap::Error) -> Option<String> {
     let meant = [
         ContextKind::SuggestedArg,
@@ -97,7 +97,7 @@ fn hint(error: &clap::Error) -> Option<String> {
     (!names.is_empty()).then(|| format!("see {} --help", names.join(" ")))
 }
 
-/// What clap knows of an error, as texts; none if there is nothing of that kind.
+/// A piece of context that clap keeps with an error, as texts; `None` if there is none of that kind.
 fn context(error: &clap::Error, kind: ContextKind) -> Option<Vec<String>> {
     match error.get(kind)? {
         ContextValue::String(text) => Some(vec![text.clone()]),
@@ -111,7 +111,7 @@ fn context(error: &clap::Error, kind: ContextKind) -> Option<Vec<String>> {
     }
 }
 
-/// On one line of so many characters at most.
+/// The text on one line of so many characters at most.
 fn short(text: &str, longest: usize) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let clean = |c: char| if c.is_control() { '?' } else { c };

@@ -1,4 +1,4 @@
-//! `sceneloom check`: the quality checks of a scene, and what of it can be repaired.
+//! `sceneloom check`: the quality checks of a scene, and repairs of its findings.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

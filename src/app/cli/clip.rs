@@ -24,8 +24,9 @@ use sensors::cameras::{self, learned};
 pub struct ClipCommand {
     /// Scene to read.
     scene: PathBuf,
-    /// What is shown: view (the 3D view), turntable (it turns once around; also of a scene of one moment), bev, map (as large as
-    /// fits the size), or what cameras see (semantic, depth, appearance, learned, perceived, normals and so on).
+    /// Picture of the clip: view (the 3D view), turntable (it turns once around; also of a scene of one moment), bev,
+    /// map (as large as fits the size), or what cameras see (semantic, depth, appearance, learned, perceived, normals
+    /// and so on).
     #[arg(long, value_name = "WHAT", default_value = "view")]
     what: String,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! What the commands have in common: options, knobs of a generation, and how a command ends.
+//! Common parts of the commands: options, knobs of a generation, and how a command ends.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -60,8 +60,8 @@ pub(super) struct Gen {
     /// Fixes every random draw.
     #[arg(long, default_value_t = 0)]
     pub(super) seed: u64,
-    /// What is regenerated: `auto`, what an edit touches; `full`, everything from fresh noise; or `X0,Y0,X1,Y1`, what
-    /// an edit touches and a rectangle (ego frame, m; give it a strength above 0).
+    /// Region that is regenerated: `auto`, what an edit touches; `full`, everything from fresh noise; or `X0,Y0,X1,Y1`,
+    /// what an edit touches and a rectangle (ego frame, m; give it a strength above 0).
     #[arg(long, value_name = "REGION", allow_hyphen_values = true)]
     pub(super) region: Option<RegionArg>,
     /// Number of fixed-point updates per inversion step.
@@ -90,8 +90,8 @@ pub(super) struct Gen {
 }
 
 impl Gen {
-    /// The networks that a generation takes. Errors in one line if the folder of weights lacks or damages what was asked for by
-    /// name.
+    /// The networks that a generation takes. Errors in one line if the folder of weights lacks or damages a network
+    /// that was asked for by name.
     pub(super) fn models(&self, weights: &Weights) -> anyhow::Result<Arc<OccModels>> {
         let models = OccModels::of(weights.folder.as_deref())?;
         if let (Some(n @ 1..), None, Some(folder)) = (self.fine_steps, &models.refiner, &weights.folder) {

@@ -28,7 +28,7 @@ use formats::out_folder::OutFolder;
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Dataset {
-    /// What the frames hold, as shards for training; `occ3d` writes simulated labels with their masks as Occ3D files,
+    /// Content of the frames, as shards for training; `occ3d` writes simulated labels with their masks as Occ3D files,
     /// `memory` the bank of remembered scenes.
     #[arg(value_parser = ["occupancy", "drives", "lidar", "layout", "text", "pictures", "occ3d", "memory"])]
     kind: String,
@@ -43,7 +43,7 @@ pub struct Dataset {
     /// rest on templates.
     #[arg(long, value_name = "DIR", conflicts_with = "from")]
     roads: Option<PathBuf>,
-    /// Of the drives of --from, by name, those from A on, before B: to hold some out.
+    /// Range of the drives of --from, in the order of their names: from A on, before B. It serves to hold some out.
     #[arg(long, value_name = "A..B", value_parser = drives, requires = "from")]
     drives: Option<Range<usize>>,
     /// Size of camera pictures (kind `pictures`): 400x225 if left out, 256x144 with --from.
@@ -153,7 +153,7 @@ impl Dataset {
         self.report(&report, None, start)
     }
 
-    /// Of camera pictures.
+    /// Size of camera pictures, px: as given, or the usual size of the source.
     fn size_px(&self) -> [u32; 2] {
         let usual = match self.from {
             Some(_) => [256, 144],
@@ -162,7 +162,7 @@ impl Dataset {
         self.size.unwrap_or(usual)
     }
 
-    /// All arguments that its data depend on; more frames of the same are no others.
+    /// All arguments that the data depend on; a larger number of frames is the same recipe.
     fn recipe(&self) -> anyhow::Result<Recipe> {
         let size = (self.kind == "pictures").then(|| self.size_px());
         let drives = self.drives.as_ref().map(|d| [d.start, d.end]);
@@ -189,7 +189,7 @@ impl Dataset {
         })
     }
 
-    /// Errors: what is named by --from or --drives is nothing for this kind.
+    /// Errors if --from or --drives is given and this kind does not take it.
     fn check_from(&self) -> anyhow::Result<()> {
         match (self.kind.as_str(), &self.from, &self.drives) {
             ("occupancy", _, None) | (_, None, _) => Ok(()),

@@ -1,4 +1,4 @@
-//! What a folder of training data was made of, so that a run that goes on does not mix two.
+//! Recipe of a folder of training data, so that a resumed run does not mix two.
 
 use std::path::{Path, PathBuf};
 
@@ -10,22 +10,23 @@ use formats::input;
 use formats::out_folder::OutFolder;
 use formats::recipe::hex_of;
 
-/// The file of it.
+/// Name of the recipe's file.
 const FILE: &str = "recipe.json";
 
-/// A folder that data are made of, as the recipe notes it: its own name, and what tells its files from those of another folder. Where it
-/// lies on this machine is nobody's business.
+/// A source folder as the recipe notes it: its own name, and a hash that tells its files from those of another folder.
+/// Its place on this machine stays private.
 pub(super) struct Made {
-    /// Without links and dots: older programs noted it.
+    /// Path without links and dots; recipes of older programs noted it.
     place: PathBuf,
     name: String,
     files: usize,
-    /// Of the names below the folder and the sizes of its files, SHA-256, hexadecimal.
+    /// SHA-256 of the names below the folder and the sizes of its files, hexadecimal.
     sha256: String,
 }
 
 impl Made {
-    /// Of the files of an extension below a folder, but for recipes of what was made into it. Errors if there is none.
+    /// Reads the files of an extension below a folder, without recipes of data that were written into it. Errors if
+    /// there is none.
     pub(super) fn of(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Self> {
         let place = dir.canonicalize().unwrap_or_else(|_| dir.into());
         let mut files = open::files_below(&place, extension, what)?;
@@ -49,12 +50,13 @@ impl Made {
         })
     }
 
-    /// As the recipe holds it.
+    /// The folder as the recipe's JSON.
     pub(super) fn to_json(&self) -> Value {
         json!({ "name": self.name, "files": self.files, "names_and_sizes_sha256": self.sha256 })
     }
 
-    /// True if a recipe means this folder: by its files, whatever it is called now, or by its path in those of older programs.
+    /// True if a recipe means this folder: by its files, whatever its name is now, or by its path in recipes of older
+    /// programs.
     fn is_meant_by(&self, noted: &Value) -> bool {
         match noted.as_str() {
             Some(path) => Path::new(path) == self.place,
@@ -63,11 +65,11 @@ impl Made {
     }
 }
 
-/// All that the data of a folder depend on.
+/// All inputs that the data of a folder depend on.
 pub(super) struct Recipe {
     /// Arguments by name.
     pub(super) arguments: Map<String, Value>,
-    /// Folders that they are made of, by the name of the argument.
+    /// Source folders of the data, by the name of the argument.
     pub(super) folders: Vec<(&'static str, Option<Made>)>,
 }
 

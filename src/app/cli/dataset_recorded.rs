@@ -1,4 +1,4 @@
-//! `sceneloom dataset pictures --from`: one's own recordings, as data to train the networks that draw pictures on.
+//! `sceneloom dataset pictures --from`: the user's own recordings, as data to train the networks that draw pictures on.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -24,7 +24,8 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// Those of some drives, or all; the first so many, or all. Errors if the folder has fewer, or none.
+    /// Opens the pairs of some drives, or of all; the first so many pairs, or all. Errors if the folder has fewer, or
+    /// none.
     pub(super) fn open(
         from: &Path,
         (drives, frames): (Option<Range<usize>>, Option<usize>),
@@ -107,7 +108,7 @@ impl Pairs {
         self.places.len()
     }
 
-    /// Writes shards of all; and how many key frames of the folder lack pictures.
+    /// Writes shards of all pairs; also returns how many key frames of the folder lack pictures.
     pub(super) fn write(
         &self,
         output: &Path,

@@ -41,7 +41,7 @@ fn nearest_car(scene: &Scene) -> Option<BoxId> {
     Some(nearest.id)
 }
 
-/// The edits of the demo for a scene: a name and what it does.
+/// The edits of the demo for a scene: each step's name and its edits.
 fn edits(scene: &Scene) -> Vec<(&'static str, Vec<Edit>)> {
     let mut list = Vec::new();
     if let Some(id) = nearest_car(scene) {

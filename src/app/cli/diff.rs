@@ -1,4 +1,5 @@
-//! `sceneloom diff`: what differs between two scenes: boxes, things beside the road, layout cells, voxels by class, LiDAR.
+//! `sceneloom diff`: differences between two scenes: boxes, things beside the road, layout cells, voxels by class,
+//! LiDAR.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -51,7 +52,8 @@ impl Diff {
         report.insert("boxes".into(), boxes(before, after));
         report.insert("layout".into(), layout(before, after));
         report.insert("things".into(), things(&a.background, &b.background));
-        // Where B's voxels may differ: what an edit from A to B would inpaint, and around things that differ.
+        // Columns where B's voxels may differ: those that an edit from A to B would inpaint, and those around things
+        // that differ.
         let of_things = columns_between(&a.background, &b.background, after);
         let region = edited_columns(&edited(before, after), GenParams::default().halo_columns as usize);
         let region_count = region.iter().filter(|c| **c).count();
@@ -187,7 +189,7 @@ fn boxes(before: &Frame, after: &Frame) -> Value {
     json!({ "added": only(after, before), "removed": only(before, after), "changed": changed })
 }
 
-/// What differs between two boxes of one id.
+/// The differences between two boxes of one id.
 fn change(a: &SceneBox, b: &SceneBox) -> Value {
     let mut out = Map::new();
     out.insert("id".into(), json!(a.id));

@@ -1,4 +1,4 @@
-//! `sceneloom doctor`: what this machine offers.
+//! `sceneloom doctor`: the capabilities of this machine.
 
 use serde_json::json;
 

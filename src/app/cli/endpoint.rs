@@ -15,10 +15,10 @@ use words::reading::Reading;
 const LARGEST_ANSWER: u64 = 1 << 20;
 /// Most acts of an answer.
 const MOST_ACTS: usize = 100;
-/// Boxes that the model is told of.
+/// Boxes that are described to the model.
 const MOST_BOXES: usize = 60;
 
-/// Where to ask.
+/// Language model that is asked, and its server.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Endpoint {
     /// `http://host:port`, with or without `/v1`.
@@ -34,7 +34,7 @@ pub fn schema() -> Value {
     schemars::schema_for!(Reading).to_value()
 }
 
-/// What the model is told beside the schema.
+/// Rules for the model beside the schema.
 const RULES: &str = "You turn a user's English sentence for a driving-scene editor into a reading: a JSON object of the given \
 schema and nothing else. \"add\" brings new things; \"remove\", \"move\", \"set\", \"replace\", \"turn\" and \"count\" change things that \
 are there. Write what is said and no more: no relation, state or number that is not in the sentence. The ego vehicle (me, us, \
@@ -152,7 +152,7 @@ fn checked(content: &str) -> anyhow::Result<Reading> {
     if let Some(problem) = reading.background.iter().find_map(|s| s.problem()) {
         bail!("background: {problem}");
     }
-    // (what the notation cannot say, such as a number that is none, no reader says)
+    // (a reading that the notation cannot express, such as a number that is not finite, is refused)
     let line = notation::write(&reading);
     if line.len() > notation::LONGEST {
         bail!(

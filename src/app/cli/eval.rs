@@ -16,7 +16,7 @@ use judge::origin::Origin;
 use judge::suite::Suite;
 use judge::table::{SUITES, named};
 
-/// What runs every suite.
+/// Name that stands for every suite.
 const ALL: &str = "all";
 
 /// Names of the suites, and of all of them.
@@ -27,7 +27,7 @@ fn suites() -> clap::builder::PossibleValuesParser {
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Eval {
-    /// What is measured; `all`: every suite, one after another.
+    /// Suite that is measured; `all`: every suite, one after another.
     #[arg(value_parser = suites())]
     suite: String,
     /// Number of held-out worlds, or of frames of --data [default: 24, quick: a few].
@@ -60,7 +60,7 @@ pub struct Eval {
     /// At most so many of the sentences, spread evenly (layout) [default: all, quick: 240].
     #[arg(long, value_name = "N")]
     sentences: Option<usize>,
-    /// Who reads the sentences (layout).
+    /// Reader of the sentences (layout).
     #[arg(long, value_enum, default_value_t)]
     reader: Who,
     /// Prompts on which the placers are compared, with and without memory (layout); 0 leaves that out [default: 60, quick: 2].
@@ -87,7 +87,7 @@ pub struct Eval {
 }
 
 impl Eval {
-    /// What a suite is asked to do: the usual, or little of it, and what the command line says.
+    /// The options of a suite: the usual ones, or the quick ones, with the command line's on top.
     fn options(&self, suite: &Suite, params: [GenParams; 2]) -> Options {
         let mut options = Options::default();
         if self.quick {
@@ -147,7 +147,7 @@ impl Eval {
         self.against_bars(report.missed())
     }
 
-    /// Prints what all suites found. Errors if one could not be measured.
+    /// Prints the tables of all suites. Errors if one could not be measured.
     fn tell(&self, tables: &[Table]) -> Outcome {
         let called: Vec<String> = std::env::args().skip(1).collect();
         let origin = Origin::now(format!("sceneloom {}", called.join(" ")));

@@ -34,7 +34,7 @@ pub struct Export {
     /// Size of camera pictures and maps in pixels.
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "800x450")]
     size: [u32; 2],
-    /// What classes and depths are rendered from.
+    /// Source that classes and depths are rendered from.
     #[arg(long, value_name = "NAME", value_parser = source(), default_value = "truth")]
     source: SourceId,
     /// How the LiDAR sweep comes about.

@@ -67,7 +67,7 @@ pub fn sense(scene: &Scene) -> (f64, f64) {
     (lidar_s, start.elapsed().as_secs_f64())
 }
 
-/// Draws scenery first where the scene leaves open what kind of place it is; true if it did.
+/// Draws scenery first if the scene does not say what kind of place it is; true if it did.
 fn draw_scenery(document: &mut Document, params: &GenParams) -> anyhow::Result<bool> {
     let edits = scenery_first(document.scene(), params)?;
     document.apply_all("Draw scenery", &edits)?;

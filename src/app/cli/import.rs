@@ -31,7 +31,8 @@ pub struct Import {
     /// Fixes the traffic.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Of a point cloud: lift it by so many metres, 0 for not at all; without it a sweep whose ground lies beside the map is lifted onto it, which is told.
+    /// For a point cloud: lift it by so many metres, 0 for not at all; without it a sweep whose ground lies beside the
+    /// map is lifted onto it, which is told.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     lift: Option<f64>,
     /// Without vehicles and people.
@@ -195,7 +196,7 @@ impl Import {
         Ok(())
     }
 
-    /// A scene as the file holds it, and what of it was inferred.
+    /// A scene as the file holds it, with a report of its inferred parts.
     fn whole(&self, importer: &Importer, loaded: &Loaded) -> Outcome {
         let scene = &loaded.scene;
         loom::save(&self.output, scene).context("write the scene")?;

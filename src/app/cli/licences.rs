@@ -10,7 +10,7 @@ pub struct Licences {}
 
 impl Licences {
     pub(super) fn run(self) -> Outcome {
-        // (whoever reads it may stop early)
+        // (the reader may stop early)
         let _ = std::io::stdout().write_all(assets::licences::NOTICES.as_bytes());
         Ok(())
     }

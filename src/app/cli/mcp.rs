@@ -18,8 +18,8 @@ pub struct Mcp {
     /// input and output.
     #[arg(long, value_name = "ADDRESS:PORT")]
     listen: Option<SocketAddr>,
-    /// What clients must show, at least 16 letters, digits or signs; else that of SCENELOOM_MCP_TOKEN, which other users of
-    /// this machine cannot see; else a random one, which is told on stderr.
+    /// Token that clients must show, at least 16 letters, digits or signs; else that of SCENELOOM_MCP_TOKEN, which
+    /// other users of this machine cannot see; else a random one, which is told on stderr.
     #[arg(long, value_name = "TOKEN", requires = "listen")]
     token: Option<String>,
 }

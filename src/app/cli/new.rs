@@ -19,7 +19,7 @@ pub struct New {
     /// Kind of street; `list` names them all.
     #[arg(long, value_name = "NAME")]
     template: String,
-    /// What kind of place; one that suits the road if left out.
+    /// Kind of place; one that suits the road if left out.
     #[arg(long, value_enum, value_name = "NAME")]
     setting: Option<Setting>,
     /// The lie of the land.

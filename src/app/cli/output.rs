@@ -1,4 +1,4 @@
-//! What commands print and write: one JSON object, atomic files, one-line errors, PNG pictures.
+//! Output of the commands: one JSON object, atomic files, one-line errors, PNG pictures.
 
 use std::io::Write;
 use std::path::Path;
@@ -49,7 +49,8 @@ pub fn write_png(path: &Path, width: usize, height: usize, rgba: &[u8]) -> anyho
     write_file(path, &bytes)
 }
 
-/// A line on stdout, or on stderr where a file went to stdout. Nobody is left to be told if its reader has closed it (`| head`).
+/// Writes a line on stdout, or on stderr where a file went to stdout. If the reader has closed it (`| head`), the error
+/// is dropped.
 fn say(line: &str) {
     let _ = match atomic::stdout_holds_a_file() {
         true => writeln!(std::io::stderr(), "{line}"),

@@ -16,11 +16,10 @@ pub(super) struct Painting {
     /// model_index.json.
     #[arg(long, value_name = "DIR")]
     weights: Option<PathBuf>,
-    /// What learned pictures show, in words, for public weights; time, weather and
-    /// camera are added.
+    /// Content of learned pictures, in words, for public weights; time, weather and camera are added.
     #[arg(long = "paint-prompt", value_name = "WORDS")]
     prompt: Option<String>,
-    /// What they do not show, in words.
+    /// Content that they must not show, in words.
     #[arg(long = "paint-negative", value_name = "WORDS")]
     negative: Option<String>,
     /// How public weights make a step: ddim, pndm, dpmpp2m, euler or unipc [default: as their folder has it].
@@ -68,8 +67,8 @@ impl Painting {
         Ok(())
     }
 
-    /// The networks that the arguments ask for. Errors in one line if they are missing, damaged or foreign, or of the program's
-    /// own kind and told what public ones alone take.
+    /// The networks that the arguments ask for. Errors in one line if they are missing, damaged or foreign, or if they
+    /// are of the program's own kind and get options of public ones.
     pub fn open(&self) -> anyhow::Result<PaintWith> {
         let wish = self.wish();
         let with = wish.open()?;
@@ -82,7 +81,7 @@ impl Painting {
         Ok(with)
     }
 
-    /// One that public weights alone take.
+    /// An option that is given and that public weights alone take.
     fn public(&self) -> Option<&'static str> {
         let given = [
             ("--paint-prompt", self.prompt.is_some()),
@@ -94,7 +93,7 @@ impl Painting {
         given.into_iter().find_map(|(name, given)| given.then_some(name))
     }
 
-    /// What the arguments ask for.
+    /// The options that the arguments ask for.
     fn wish(&self) -> PaintWish {
         PaintWish {
             weights: self.weights.clone(),

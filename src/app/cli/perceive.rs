@@ -1,5 +1,5 @@
-//! `sceneloom perceive`: what small networks see of a scene in the cameras, in the LiDAR and in both; and a search for a change after
-//! which one misses an object.
+//! `sceneloom perceive`: predictions of small networks for a scene, from the cameras, the LiDAR and both; and a search
+//! for a change after which one misses an object.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -25,10 +25,10 @@ pub struct Perceive {
     /// Number of the box that is to be missed.
     #[arg(long = "box", value_name = "ID", requires = "vary")]
     of: Option<u32>,
-    /// What is varied until the box is missed.
+    /// Property that is varied until the box is missed.
     #[arg(long, requires = "of")]
     vary: Option<Vary>,
-    /// Whose network is to miss it: that of the cameras if left out. Without a search all look.
+    /// Sensor whose network is to miss it: the cameras if left out. Without a search all networks look.
     #[arg(long)]
     by: Option<Sensor>,
     /// Scene to write in which it is missed.
@@ -215,7 +215,7 @@ impl Perceive {
     }
 }
 
-/// What the LiDAR's network sees.
+/// The predictions of the LiDAR's network, as JSON.
 fn of_sweep(scene: &Scene, swept: &perceived_sweep::SweepReport) -> serde_json::Value {
     let class = |id| scene.frame().boxes.get(&id).map(|b| b.class.name());
     let boxes = swept.boxes.iter().map(|b| {
@@ -243,7 +243,7 @@ fn of_sweep(scene: &Scene, swept: &perceived_sweep::SweepReport) -> serde_json::
     })
 }
 
-/// What the network of both sensors tells, and how well it does with one of them.
+/// The predictions of the network of both sensors, and its scores with one of them, as JSON.
 fn of_voxels(scene: &Scene, both: &VoxelReport, [lidar, cameras]: &[VoxelReport; 2]) -> serde_json::Value {
     let class = |id| scene.frame().boxes.get(&id).map(|b| b.class.name());
     let boxes = both.boxes.iter().map(|b| {
@@ -272,7 +272,7 @@ fn of_voxels(scene: &Scene, both: &VoxelReport, [lidar, cameras]: &[VoxelReport;
     })
 }
 
-/// What the report calls that of which there must be enough.
+/// The name in the report of the count that must be large enough for a sensor.
 fn visible(by: Sensor) -> &'static str {
     match by {
         Sensor::Cameras => "visible_px",

@@ -26,7 +26,7 @@ pub struct Place {
     /// Box of the scene that gets the shape and the size, in place of a new one.
     #[arg(long, value_name = "ID", conflicts_with_all = ["at", "heading"])]
     to: Option<u32>,
-    /// Where it stands, world frame, m; without it ahead of the ego vehicle. The nearest free place is taken.
+    /// Position, world frame, m; without it ahead of the ego vehicle. The nearest free place is taken.
     #[arg(long, value_name = "X,Y", value_parser = super::import::point, allow_hyphen_values = true)]
     at: Option<DVec2>,
     /// Heading, degrees counter-clockwise from x; without it as the lane there.

@@ -29,7 +29,7 @@ use words::stage::Candidate;
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Prompt {
-    /// What the scene should hold, or what should change in it. {car|bus} and {2-5} are wildcards: the seed draws one.
+    /// Content of the new scene, or changes of the given one. {car|bus} and {2-5} are wildcards: the seed draws one.
     #[arg(required_unless_present = "schema", default_value = "")]
     text: String,
     /// Scene to edit; without one a new scene is made.
@@ -50,7 +50,7 @@ pub struct Prompt {
     /// Print the JSON Schema of readings, and read nothing.
     #[arg(long)]
     schema: bool,
-    /// Who places the objects.
+    /// Placer of the objects.
     #[arg(long, value_enum, default_value_t)]
     placer: Placer,
     /// Fill in what the prompt leaves open from remembered scenes.
@@ -97,7 +97,7 @@ impl Prompt {
         }
     }
 
-    /// What the language model reads in the text, if one is named; what the program reads stands beside it.
+    /// The language model's reading of the text, if one is named, with the program's own reading beside it.
     fn by_endpoint(
         &self,
         heard: Option<&Heard>,
@@ -289,7 +289,7 @@ impl Prompt {
             .map(|q| q.text.as_str())
             .chain(edited.things.questions.iter().map(|q| q.text.as_str()))
             .collect();
-        // With an open question nothing is written: the answer may change what the rest means.
+        // With an open question nothing is written: the answer may change the meaning of the rest.
         let write = asked.is_empty() && !edits.is_empty();
         let (mut scene, mut generated) = (document.scene().clone(), None);
         if self.generate && write {

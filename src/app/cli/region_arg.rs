@@ -5,14 +5,14 @@ use glam::DVec2;
 use job::inpaint::InpaintMask;
 use scene::Extent;
 
-/// What is regenerated.
+/// Region that is regenerated.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RegionArg {
-    /// What an edit touches.
+    /// The region that an edit touches.
     Auto,
-    /// Everything, from fresh noise.
+    /// The whole map, from fresh noise.
     Full,
-    /// What an edit touches, and the cells of a rectangle.
+    /// The region that an edit touches, and the cells of a rectangle.
     Rect(InpaintMask),
 }
 
@@ -42,7 +42,7 @@ impl std::str::FromStr for RegionArg {
     }
 }
 
-/// Where a rectangle may lie: as large as a square map can be.
+/// Area in which a rectangle may lie: as large as a square map can be.
 fn reach() -> Extent {
     Extent::new([-2048; 2], [4096; 2]).unwrap_or(Extent::WINDOW)
 }

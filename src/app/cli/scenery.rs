@@ -1,4 +1,4 @@
-//! `sceneloom scenery`: what stands beside the roads, regenerated.
+//! `sceneloom scenery`: the scenery beside the roads, regenerated.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ use formats::loom;
 use job::inpaint::InpaintMask;
 use world::scenery::Setting;
 
-/// What draws scenery.
+/// Generator of scenery.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum By {
     Rules,
@@ -29,10 +29,10 @@ pub struct Scenery {
     /// Scene to write.
     #[arg(short, long, value_name = "S.loom")]
     output: PathBuf,
-    /// What draws it: rules for a kind of place, or a network.
+    /// Generator of the scenery: rules for a kind of place, or a network.
     #[arg(long, value_enum, default_value_t = By::Rules)]
     by: By,
-    /// What kind of place the rules draw; one that suits the road if left out.
+    /// Kind of place that the rules draw; one that suits the road if left out.
     #[arg(long, value_enum, value_name = "NAME")]
     setting: Option<Setting>,
     /// Number of plants, 1 = usual there; 0 is none.
@@ -52,7 +52,7 @@ pub struct Scenery {
 }
 
 impl Scenery {
-    /// What is asked for; errors if a number is out of range.
+    /// The wish that the arguments ask for; errors if a number is out of range.
     fn wish(&self) -> anyhow::Result<SceneryWish> {
         for (name, value) in [("--green", self.green), ("--built", self.built)] {
             if !(0.0..=4.0).contains(&value) {

@@ -16,7 +16,7 @@ pub struct SchemaCommand {
 impl SchemaCommand {
     pub(super) fn run(self) -> Outcome {
         let document = schema::document();
-        // (whoever reads it may stop early)
+        // (the reader may stop early)
         let mut out = std::io::stdout();
         let _ = match self.compact {
             true => writeln!(out, "{document}"),

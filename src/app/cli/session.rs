@@ -18,7 +18,7 @@ pub struct Session {
     pub(super) on: On,
 }
 
-/// What a session works on; `mcp` takes the same.
+/// Scene, folder and weights of a session; `mcp` takes the same.
 #[derive(clap::Args, Clone)]
 pub struct On {
     /// Scene to begin with; the one that ships with the program if left out.
@@ -39,7 +39,7 @@ impl On {
             Some(path) => open::scene(path)?,
             None => open::bundled()?,
         };
-        // What is asked for by name is refused now, not at the first call that needs it.
+        // Weights that are asked for by name are refused now, not at the first call that needs them.
         if self.weights.is_some() {
             OccModels::of(self.weights.as_deref()).context("--weights")?;
         }

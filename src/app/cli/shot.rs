@@ -1,5 +1,5 @@
-//! `sceneloom shot`: a picture for people of any size: the 3D view, the map, all cameras on a sheet, LiDAR. The dialog of
-//! pictures makes the same.
+//! `sceneloom shot`: a picture of any size for people: the 3D view, the map, all cameras on a sheet, LiDAR. The dialog
+//! of pictures makes the same.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -20,10 +20,10 @@ use sensors::cameras::{self, bounds};
 pub struct Shot {
     /// Scene to read.
     scene: PathBuf,
-    /// What is shown: view (the 3D view), map, occupancy, cameras (all on one sheet) or lidar.
+    /// Picture to make: view (the 3D view), map, occupancy, cameras (all on one sheet) or lidar.
     #[arg(long, value_name = "WHAT", default_value = "view")]
     what: String,
-    /// What cameras show: semantic, depth, appearance, learned, perceived, normals and so on.
+    /// Camera pictures to make: semantic, depth, appearance, learned, perceived, normals and so on.
     #[arg(long, value_name = "VIEW", default_value = "semantic")]
     show: String,
     /// With names, a legend and a scale.
@@ -58,7 +58,7 @@ impl Shot {
         let options = self.options(&scene)?;
         let start = Instant::now();
         let (shot, adapter) = match options.subject {
-            // (also without a legend the adapter is told)
+            // (also without a legend, the report names the adapter)
             Subject::View if !options.legend => {
                 let mut view = picture::View3d::new()?;
                 (view.shot(&scene, &options.shot)?, Some(view.adapter))

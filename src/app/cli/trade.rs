@@ -1,4 +1,4 @@
-//! `sceneloom trade`: what each knob costs and what it buys, measured on this machine.
+//! `sceneloom trade`: cost and benefit of each knob, measured on this machine.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ pub struct Trade {
     /// How thorough: `quick` (minutes; reference of 200 steps) or `full` (hours; 1000 steps).
     #[arg(long, default_value = "quick", value_parser = ["quick", "full"])]
     suite: String,
-    /// What is measured, comma-separated: edit, scene, lidar, splat, vae.
+    /// Parts that are measured, comma-separated: edit, scene, lidar, splat, vae.
     #[arg(long, value_delimiter = ',', default_value = "edit,scene,lidar,splat,vae")]
     parts: Vec<String>,
     /// Number of held-out worlds [default: 3, full: 20].
@@ -62,7 +62,7 @@ pub struct Trade {
     /// Write the presets of the quality slider that this run found.
     #[arg(long, alias = "stops", value_name = "PRESETS.json")]
     presets: Option<PathBuf>,
-    /// Of a process of a larger run: write raw outcomes.
+    /// For a process of a larger run: write raw outcomes.
     #[arg(long, hide = true)]
     raw: bool,
     /// Which process of a larger run this is: its turns are its own.

@@ -1,4 +1,4 @@
-//! `sceneloom versions`: what a scene's file keeps beside it: listed, taken out as a scene of its own, added to.
+//! `sceneloom versions`: the versions that a scene's file keeps: listed, taken out as a scene of their own, added.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -86,7 +86,7 @@ impl VersionsCommand {
     }
 }
 
-/// Adds the scene to what it keeps; a version of that name goes.
+/// Adds the scene to the versions; a version of that name is replaced.
 fn keep(scene: &mut Scene, name: &str) -> anyhow::Result<()> {
     let name = name.trim();
     if name.is_empty() || name.chars().count() > 80 || name.contains(char::is_control) {

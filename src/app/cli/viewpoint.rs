@@ -1,4 +1,4 @@
-//! From where the 3D view is seen: by a name, or from anywhere.
+//! Viewpoint of the 3D view: by a name, or anywhere.
 
 use anyhow::{Context, bail};
 use glam::DVec3;
@@ -31,7 +31,8 @@ pub(super) struct Viewpoint {
 }
 
 impl Viewpoint {
-    /// The camera for the moment that a scene shows. Errors: a viewpoint of that name is not there, or eye and look are one place.
+    /// The camera for the moment that a scene shows. Errors if there is no viewpoint of that name, or if eye and look
+    /// are less than 0.2 m apart.
     pub(super) fn camera(&self, scene: &Scene) -> anyhow::Result<ViewCamera> {
         let mut camera = match (self.eye, self.look) {
             (Some(eye), Some(look)) => {
@@ -50,7 +51,7 @@ impl Viewpoint {
         Ok(camera)
     }
 
-    /// Errors: a place to see from is named, but what is shown is no 3D view.
+    /// Errors if `--eye` is given and the output is no 3D view.
     pub(super) fn is_for(&self, view_3d: bool, what: &str) -> anyhow::Result<()> {
         match self.eye {
             Some(_) if !view_3d => bail!("--eye is of the 3D view alone, but --what is {what}"),
@@ -63,13 +64,13 @@ impl Viewpoint {
         !self.no_boxes
     }
 
-    /// What it is called.
+    /// Name of the viewpoint.
     pub(super) fn name(&self) -> &str {
         if self.eye.is_some() { "view" } else { &self.view }
     }
 }
 
-/// A place as `12,-3.5,2`.
+/// Reads a place such as `12,-3.5,2`.
 fn point(text: &str) -> anyhow::Result<[f64; 3]> {
     const LIMIT_M: f64 = 5000.0;
     let expected = || format!("{text:?}, expected three numbers in metres such as 12,-3.5,2");
@@ -85,7 +86,7 @@ fn point(text: &str) -> anyhow::Result<[f64; 3]> {
     }
 }
 
-/// An angle that a view can open by.
+/// Reads an opening angle of a view.
 fn degrees(text: &str) -> anyhow::Result<f64> {
     let value = text.parse::<f64>().ok().filter(|v| (3.0..=140.0).contains(v));
     value.with_context(|| format!("{text:?}, expected 3 to 140 degrees"))

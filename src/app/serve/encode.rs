@@ -7,7 +7,7 @@ use tonic::Status;
 
 use crate::wire::ImageFormat;
 
-/// Quality of JPEG where a request tells none.
+/// Quality of JPEG where a request gives none.
 const JPEG_QUALITY: u8 = 95;
 
 /// How a picture is packed.
@@ -22,8 +22,8 @@ pub enum Packing {
 }
 
 impl Packing {
-    /// Of a request. Quality is a percentage, or a share up to 1; 0 stands for 95. Errors in one line if the format is not served
-    /// or the quality is beyond 100.
+    /// Reads the packing of a request. Quality is a percentage, or a share up to 1; 0 stands for 95. Errors in one line
+    /// if the format is not served or the quality is beyond 100.
     pub fn of(image_format: i32, quality: f32) -> Result<Self, Status> {
         const SERVED: &str = "expected PNG (1), JPEG (2) or RGB_UINT8_PLANAR (4)";
         match ImageFormat::try_from(image_format) {

@@ -20,7 +20,7 @@ pub fn still() -> Scene {
     Scene::single("junction", frame, Arc::new(SensorRig::default()), 4)
 }
 
-/// The same, where the own vehicle and a car drive for two seconds.
+/// The junction of [`still`], where the own vehicle and a car drive for two seconds.
 pub fn clip() -> Scene {
     let mut scene = still();
     let car = *scene

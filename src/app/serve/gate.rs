@@ -1,4 +1,4 @@
-//! How many requests are inside, and how many of them are worked on.
+//! Gate that bounds the number of requests inside, and of those that are worked on.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// For so many jobs at a time, while so many more requests wait.
+    /// Makes a gate for so many jobs at a time, while so many more requests wait.
     pub fn new(jobs: usize, waiting: usize) -> Self {
         Self {
             places: Arc::new(Semaphore::new(jobs + waiting)),
@@ -35,14 +35,15 @@ impl Gate {
         })
     }
 
-    /// Works on a thread that may block, once it is its turn. A panic becomes an error, and the next may come.
+    /// Runs the work on a thread that may block, once it is its turn. A panic becomes an error, and the next request is
+    /// served.
     pub async fn run<T: Send + 'static>(
         &self,
         work: impl FnOnce() -> Result<T, Status> + Send + 'static,
     ) -> Result<T, Status> {
         let job = self.jobs.clone().acquire_owned().await;
         let job = job.map_err(|_| Status::unavailable("the server is ending"))?;
-        // The job is over when the work is, even if nobody waits for it any more.
+        // The job is over when the work is, even if the caller has gone.
         let worked = tokio::task::spawn_blocking(move || {
             let out = work();
             drop(job);
@@ -58,7 +59,7 @@ impl Gate {
     }
 }
 
-/// What a panic says, in one line.
+/// The message of a panic, in one line.
 fn said(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));

@@ -180,7 +180,7 @@ fn corner_px(center: [f64; 2], size: [u32; 2]) -> f64 {
     side(0).hypot(side(1))
 }
 
-/// As much of a reach in the picture, px, as is within an angle; all of it if that is 0.
+/// The part of a reach in the picture that lies within an angle, px; all of it if `max_angle` is 0.
 fn seen_px(angle_of: impl Fn(f64) -> f64, reach_px: f64, max_angle: f64) -> f64 {
     const STEPS: usize = 1000;
     let at = |i: usize| reach_px * i as f64 / STEPS as f64;

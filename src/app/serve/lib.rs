@@ -1,10 +1,11 @@
-//! A renderer for simulators: scenes, poses and times in, camera pictures and LiDAR sweeps out, over gRPC. The protocol is that by
-//! which AlpaSim's runtime asks its sensor simulation; `docs/serve.md` says which of it is served, `docs/sensorsim.proto` what its
-//! fields mean.
+//! A renderer for simulators: scenes, poses and times in, camera pictures and LiDAR sweeps out, over gRPC. The protocol
+//! is the one by which AlpaSim's runtime asks its sensor simulation; `docs/serve.md` says which part of it is served,
+//! `docs/sensorsim.proto` what its fields mean.
 //!
-//! A request is read, let in by a gate, and rendered on a thread that may block. What is waited for (a first request, the rest of a
-//! body, a client that takes its answer) has a deadline and a bound of its own (`limits::CALLERS`), so that nobody who only waits
-//! takes the place of who asks. Nothing is remembered between requests but scenes and prepared moments: the same request gives the same bytes.
+//! A request is read, let in by a gate, and rendered on a thread that may block. Each wait (for a first request, for
+//! the rest of a body, for a client that takes its answer) has a deadline and a bound of its own (`limits::CALLERS`),
+//! so that idle clients take no place from those that ask. Only scenes and prepared moments are kept between requests:
+//! the same request gives the same bytes.
 
 mod encode;
 #[cfg(test)]

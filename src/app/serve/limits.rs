@@ -1,4 +1,4 @@
-//! What bounds the memory and the work of a server.
+//! Bounds on the memory and the work of a server.
 
 use std::time::Duration;
 

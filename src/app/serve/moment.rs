@@ -12,7 +12,7 @@ use crate::poses::{self, Pair};
 use crate::wire::DynamicObject;
 use scene::{BoxId, Edit, Frame, Key, Motion, Scene, SceneBox};
 
-/// So near to where the scene has it an object is left there, m and rad: the protocol's numbers have 24 bits.
+/// Tolerance within which an object is left where the scene has it, m and rad: the protocol's numbers have 24 bits.
 const NEAR: f64 = 1e-4;
 
 /// From when to when a frame or a spin lasts.
@@ -25,8 +25,8 @@ pub struct Span {
 }
 
 impl Span {
-    /// Of the times of a request. Errors in one line if they are not in order, too far apart, or beyond the end of the clip; a
-    /// scene that stands still has no end.
+    /// Reads the times of a request. Errors in one line if they are not in order, too far apart, or beyond the end of
+    /// the clip; a scene that stands still has no end.
     pub fn read(start_us: u64, end_us: u64, scene: &Scene) -> Result<Self, Status> {
         let Some(length_us) = end_us.checked_sub(start_us).filter(|l| *l <= LONGEST_FRAME_US) else {
             return Err(Status::invalid_argument(format!(
@@ -58,12 +58,12 @@ impl Span {
 pub struct Placed {
     /// The box or track.
     pub id: BoxId,
-    /// Where the middle of its box is.
+    /// Pose of the middle of its box.
     pub at: Pair,
 }
 
 impl Placed {
-    /// Where it is at a share of the frame, m, and its heading, rad.
+    /// Position on the ground at a share of the frame, m, and heading, rad.
     fn on_ground(&self, share: f64) -> (DVec2, f64) {
         let pose = self.at.at(share);
         (pose.translation_m.truncate(), poses::yaw_rad(&pose))
@@ -162,7 +162,7 @@ fn stands(scene: &Scene, placed: &Placed, share: f64) -> bool {
     scene.frame().boxes.get(&placed.id).is_some_and(there)
 }
 
-/// Moves what belongs to the canvas, with its voxels.
+/// Moves a box of the canvas, with its voxels.
 fn move_box(scene: &mut Scene, placed: &Placed, share: f64) -> Result<(), Status> {
     let Some(b) = scene.frame().boxes.get(&placed.id).copied() else {
         return Ok(());

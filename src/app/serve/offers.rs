@@ -1,4 +1,4 @@
-//! What a server has to offer: its version, the scenes, their cameras and the way of their vehicle.
+//! Answers about the server: its version, the scenes, their cameras and the trajectory of their vehicle.
 
 use tonic::Status;
 
@@ -55,8 +55,8 @@ pub fn cameras(
     })
 }
 
-/// The way of a scene's vehicle, one pose per frame of the clip; a single one if the scene stands still. Errors if there is no such
-/// scene.
+/// The trajectory of a scene's vehicle, one pose per frame of the clip; a single one if the scene stands still. Errors
+/// if there is no such scene.
 pub fn trajectories(
     renderer: &Renderer,
     request: &AvailableTrajectoriesRequest,

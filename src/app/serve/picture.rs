@@ -69,7 +69,7 @@ pub fn render(renderer: &Renderer, request: &RgbRenderRequest) -> Result<RgbRend
     Ok(RgbRenderReturn { image_bytes })
 }
 
-/// A request, read.
+/// A parsed request.
 struct Asked {
     span: Span,
     sensor: Pair,
@@ -77,20 +77,20 @@ struct Asked {
     placed: Vec<Placed>,
 }
 
-/// What is looked at, and from where.
+/// Camera and moment of one picture.
 struct View {
-    /// In the world.
+    /// Camera in the world frame.
     camera: Camera,
-    /// Decides how the frame is prepared.
+    /// Rig by which the frame is prepared.
     rig: Arc<SensorRig>,
-    /// At which share of the frame the picture is taken: in the middle with a rolling shutter, else at the start.
+    /// Share of the frame at which the picture is taken: in the middle with a rolling shutter, else at the start.
     share: f64,
     /// The moment of the scene, s.
     time_s: f64,
 }
 
 impl Asked {
-    /// All that decides the frame besides the scene.
+    /// All numbers that decide the frame besides the scene.
     fn moment(&self, view: &View) -> Vec<f64> {
         let mut numbers = vec![view.time_s];
         if !self.placed.is_empty() {
@@ -137,7 +137,7 @@ impl Asked {
             });
         }
         let mut camera = lens::camera_of(spec, size)?;
-        // (nothing is called by what a client calls it)
+        // (the name that a client gives is not used)
         camera.name = "CAM".into();
         let pose = self.sensor.at(share);
         let q = pose.rotation;
@@ -167,7 +167,7 @@ impl Asked {
         }
     }
 
-    /// True if a camera of the rig is asked for, where the scene has it.
+    /// True if the request is for a camera of the rig, where the scene has it.
     fn is_own(&self, scene: &Scene, own: &Camera, spec: &CameraSpec, shutter: Option<Shutter>) -> bool {
         let same_shutter = match (own.shutter, shutter) {
             (None, None) => true,

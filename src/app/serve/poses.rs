@@ -18,8 +18,8 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// What a message says; `what` names it in errors. An end that is missing is the start. Errors in one line if the start is
-    /// missing, a number is not finite, a quaternion is none, or a place is too far away.
+    /// Reads a message; `what` names it in errors. An end that is missing is the start. Errors in one line if the start
+    /// is missing, a number is not finite, a quaternion is none, or a place is too far away.
     pub fn read(pair: Option<&wire::PosePair>, what: &str) -> Result<Self, Status> {
         let pair = pair.ok_or_else(|| missing(what))?;
         let start = pair.start_pose.as_ref().ok_or_else(|| missing(what))?;
@@ -45,7 +45,7 @@ impl Pair {
         }
     }
 
-    /// The same with a pose of the inner frame on the right.
+    /// The pair with a pose of the inner frame multiplied on the right.
     pub fn then(&self, inner: &Pose) -> Self {
         Self {
             start: self.start * *inner,

@@ -10,7 +10,7 @@ pub struct Recent<K, V> {
 }
 
 impl<K: PartialEq, V: Clone> Recent<K, V> {
-    /// Keeps at most so many, at least one.
+    /// Keeps at most `most` values, at least one.
     pub fn new(most: usize) -> Self {
         Self {
             most: most.max(1),

@@ -1,4 +1,4 @@
-//! What all requests share: the scenes, what was prepared last, and the LiDAR network.
+//! State that all requests share: the scenes, the moments prepared last, and the LiDAR network.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub enum LidarModel {
     Exact,
 }
 
-/// Scenes, and what is kept of them.
+/// Scenes, and caches of them.
 pub struct Renderer {
     /// The scenes.
     pub scenes: Scenes,
@@ -30,7 +30,7 @@ pub struct Renderer {
     prepared: Recent<Prepared, Arc<Appearance>>,
 }
 
-/// All that an appearance depends on, with numbers by their bits.
+/// Key of an appearance: all inputs that it depends on, with numbers by their bits.
 #[derive(PartialEq)]
 struct Prepared {
     content: SceneRev,
@@ -38,7 +38,8 @@ struct Prepared {
 }
 
 impl Renderer {
-    /// Of files and folders; keeps at most so many scenes, and so many prepared moments. Errors in one line.
+    /// Lists scenes of files and folders; keeps at most so many scenes, and so many prepared moments. Errors in one
+    /// line.
     pub fn new(paths: &[PathBuf], scenes: usize, moments: usize, lidar: LidarModel) -> anyhow::Result<Self> {
         let net = match lidar {
             LidarModel::Learned => Some(LidarNet::bundled().context("the LiDAR network")?),

@@ -1,4 +1,4 @@
-//! The scenes that a server offers: files by their names, read when they are asked for first.
+//! The scenes that a server offers: files by their names, read when they are first asked for.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ pub struct Scenes {
 }
 
 impl Scenes {
-    /// Of files and of folders, whose `.loom` files are taken; at most `kept` scenes stay in memory. A scene's id is its file's
+    /// Lists files, and the `.loom` files of folders; at most `kept` scenes stay in memory. A scene's id is its file's
     /// name without the ending. Errors in one line if there is no such file, or two have the same id.
     pub fn list(paths: &[PathBuf], kept: usize) -> anyhow::Result<Self> {
         let mut files = BTreeMap::new();

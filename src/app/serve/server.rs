@@ -26,12 +26,12 @@ const PONG_WITHIN: Duration = Duration::from_secs(20);
 /// How long requests that are inside may take once the server ends.
 const END_WITHIN: Duration = Duration::from_secs(10);
 
-/// What is served, and how much of it at a time.
+/// Options of a server: the scenes, its address, and bounds.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Scenes, and folders of scenes.
     pub scenes: Vec<PathBuf>,
-    /// Where it listens; port 0 stands for any free one.
+    /// Address to listen on; port 0 stands for any free one.
     pub listen: SocketAddr,
     /// Requests that are rendered at a time, at least one.
     pub jobs: usize,
@@ -81,7 +81,7 @@ impl Server {
         })
     }
 
-    /// Where it listens. Errors if the system cannot tell.
+    /// The address on which it listens. Errors if the system cannot tell.
     pub fn address(&self) -> anyhow::Result<SocketAddr> {
         self.listener.local_addr().context("listen")
     }
@@ -110,7 +110,7 @@ impl Server {
     }
 }
 
-/// Ready when the process is told to end. Where the system tells no signals, never.
+/// Ready when the process is told to end; never where the system sends no signals.
 async fn signal() {
     #[cfg(unix)]
     {
@@ -149,13 +149,13 @@ async fn serve(listener: TcpListener, service: Service, end: impl Future<Output 
     }
     accepting.abort();
     let _ = ended.send(());
-    // Whoever takes longer is left.
+    // Requests that take longer are dropped.
     let _ = tokio::time::timeout(END_WITHIN, serving).await;
     deadlines.abort();
     Ok(())
 }
 
-/// Takes connections. Whoever is silent gives way to whoever comes.
+/// Takes connections. A silent one makes room for a new one.
 async fn accept(
     listener: tokio::net::TcpListener,
     callers: Callers,

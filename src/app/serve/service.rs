@@ -35,16 +35,16 @@ pub struct Service {
     gate: Gate,
 }
 
-/// What a method does, on a thread that may block.
+/// Work of a method, on a thread that may block.
 type Work<Q, A> = fn(&Renderer, &Q) -> Result<A, Status>;
 
-/// A method with what it needs.
+/// A method with its resources.
 struct Method<Q, A> {
     renderer: Arc<Renderer>,
-    /// Until the request is read.
+    /// Place that is held until the request is read.
     reading: Option<Place>,
     asking: Arc<Asking>,
-    /// None for what is answered at once.
+    /// Gate; `None` for methods that are answered at once.
     gate: Option<Gate>,
     work: Work<Q, A>,
 }
@@ -72,7 +72,7 @@ impl<Q: Send + Sync + 'static, A: Send + 'static> UnaryService<Q> for Method<Q, 
 }
 
 impl Service {
-    /// Of a renderer, behind a gate.
+    /// Makes a service of a renderer, behind a gate.
     pub fn new(renderer: Renderer, gate: Gate) -> Self {
         Self {
             renderer: Arc::new(renderer),

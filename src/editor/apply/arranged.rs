@@ -25,7 +25,7 @@ pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
     Ok(())
 }
 
-/// Forgets of the arrangement what is not there any more.
+/// Drops objects from the arrangement that no longer exist.
 pub(super) fn keep(scene: &mut Scene) {
     if !scene.arranged.is_empty() {
         let mut arranged = scene.arranged.as_ref().clone();

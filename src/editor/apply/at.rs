@@ -1,4 +1,4 @@
-//! Edits of another moment than the one that is shown, and what they mean for the other moments of a moving object.
+//! Edits of another moment than the one that is shown, and their effect on the other moments of a moving object.
 
 use scene::{BoxId, Edit, EditError, Frame, Key, Motion, Scene, Scope};
 
@@ -50,7 +50,7 @@ pub(super) fn apply_scoped(edit: &Edit, scene: &mut Scene, scope: Scope) -> Resu
         return Ok(());
     }
     let new = match (edit, scope) {
-        // What appears from here on is a track that stands still.
+        // An object that appears from here on is a track that stands still.
         (Edit::AddBox { .. }, Scope::FromHereOn) => frame
             .boxes
             .values()

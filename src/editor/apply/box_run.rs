@@ -9,7 +9,7 @@ pub(super) fn apply(run: &[Edit], scene: &mut Scene) -> Result<(), EditError> {
     let mut changed = false;
     let mut done = 0;
     while let Some(edit) = run.get(done) {
-        // The speed of what moves is its motion's.
+        // The speed of a moving object belongs to its motion.
         let stands = touched_id(edit).is_some_and(|id| !scene.clip().tracks.contains_key(&id));
         let next = run.get(done + 1).filter(|_| stands);
         if next.is_some_and(|next| boxes::respeed(edit, next, &mut frame)) {

@@ -9,15 +9,16 @@ use scene::{
     SourceFrame, draft,
 };
 
-/// How far from a lane's middle, along the edge, the ground goes on in its direction, m; elsewhere it goes straight out.
+/// Distance from a lane's middle, along the edge, within which the ground goes on in the lane's direction, m; elsewhere
+/// it goes straight out.
 const BESIDE_LANE_M: f64 = 18.0;
 /// Lanes that leave the map nearer to one another than this are those of one road, m.
 const ONE_ROAD_M: f64 = 8.0;
-/// A line that ends this near to the edge is one that reaches it, m.
+/// A line that ends within this distance of the edge counts as one that reaches it, m.
 const AT_EDGE_M: f64 = 2.5;
-/// Lines that go on end so far beyond the new edge, m.
+/// Length by which lines go on beyond the new edge, m.
 const BEYOND_M: f64 = 5.0;
-/// Flatter than this against the edge no line leaves the map.
+/// Least sine of the angle to the edge at which a line leaves the map.
 const STEEPEST: f64 = 0.35;
 
 /// Applies an [`Edit::ExtendMap`]. On error nothing has changed.
@@ -74,7 +75,7 @@ pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
 /// Farthest that a map grows on one side at once, m.
 const FARTHEST_M: f64 = 2000.0;
 
-/// A frame over a larger layout. What is new holds a draft of its ground and nothing of a source: it is to be generated.
+/// A frame over a larger layout. The new part holds a draft of its ground and no source: it is to be generated.
 fn over(frame: &Frame, layout: BevLayout) -> Frame {
     let (old, new) = (frame.extent(), layout.extent());
     let mut occupancy = draft::draft(&layout, frame.boxes.values());
@@ -118,7 +119,7 @@ const SIDES: [Side; 4] = [
     Side { axis: 1, upper: true },
 ];
 
-/// Where a lane leaves the map: the place along the edge, m, and how far along the edge it goes per metre outward.
+/// Exit of a lane from the map: its place along the edge, m, and its shift along the edge per metre outward.
 #[derive(Clone, Copy)]
 struct Leaving {
     along_m: f64,
@@ -135,7 +136,7 @@ impl Side {
         }
     }
 
-    /// How far a point lies outside of this edge, m; negative inside.
+    /// Distance of a point outside of this edge, m; negative inside.
     fn outside_m(self, extent: Extent, p: DVec2) -> f64 {
         let edge = if self.upper {
             extent.max_m()
@@ -159,7 +160,7 @@ impl Side {
         })
     }
 
-    /// Where lanes leave the map here, whichever way they are driven.
+    /// Exits of all lanes on this side, in either driving direction.
     fn leavings(self, layout: &BevLayout) -> Vec<Leaving> {
         let extent = layout.extent();
         let lanes = layout
@@ -183,7 +184,8 @@ impl Side {
             .filter(|l| (corners[0]..=corners[1]).contains(&l.along_m))
             .collect();
         found.sort_by(|a, b| a.along_m.total_cmp(&b.along_m));
-        // Lanes of one road, or of a junction that the edge cuts, go on side by side: as the straightest of them does.
+        // Lanes of one road, or of a junction that the edge cuts, go on side by side, in the direction of the
+        // straightest of them.
         let mut side_by_side = Vec::new();
         for road in found.chunk_by(|a, b| b.along_m - a.along_m < ONE_ROAD_M) {
             let straightest = road
@@ -196,7 +198,8 @@ impl Side {
         side_by_side
     }
 
-    /// The layout with so many columns more on this side, on which roads go on as they leave the map.
+    /// The layout with so many more columns on this side. Roads go on there in the direction in which they leave the
+    /// map.
     fn extended(
         self,
         layout: &BevLayout,
@@ -211,7 +214,7 @@ impl Side {
         }
         let new = Extent::new(from, size).map_err(EditError::BadMap)?;
         let last = [old.nx(), old.ny()].map(|n| n as i64 - 1);
-        // Each new column takes what lies where its road comes from, at the edge.
+        // Each new column copies the column at the edge from which its road comes.
         let cell = |[x, y]: [usize; 2]| {
             let p = new.center(x, y, 0).truncate();
             let outside_m = self.outside_m(old, p);
@@ -220,7 +223,7 @@ impl Side {
                 .map(|l| (l, (self.along_m(p) - outside_m * l.slope - l.along_m).abs()))
                 .min_by(|a, b| a.1.total_cmp(&b.1));
             let beside = nearest.filter(|(_, off_m)| *off_m <= BESIDE_LANE_M);
-            // Straight out of where a road left to the side there is none.
+            // Straight outward of an exit whose road turned aside there is no road.
             let left = |l: &Leaving| (self.along_m(p) - l.along_m).abs() <= BESIDE_LANE_M;
             if outside_m > 0.0 && beside.is_none() && leavings.iter().any(left) {
                 return 0;
@@ -266,7 +269,7 @@ impl Side {
         let inside = points_m.iter().rposition(|p| self.outside_m(old, *p) <= 0.0)?;
         let mut out = points_m[..=inside].to_vec();
         let last = out[inside];
-        // Where it crosses the edge, or where it ends just before it.
+        // The point where it crosses the edge, or its end just before it.
         let (end, way) = match points_m.get(inside + 1) {
             Some(next) => {
                 let (from_m, to_m) = (self.outside_m(old, last), self.outside_m(old, *next));

@@ -1,5 +1,5 @@
-//! How a scene goes on after its end: what moves keeps moving along its lane and behind whoever is ahead, the vehicle too, and
-//! the map grows to where it comes.
+//! Forecast of a scene after its end: moving objects keep moving along their lanes and behind the vehicle ahead, the
+//! ego vehicle too, and the map grows to where the ego vehicle comes.
 
 use std::collections::BTreeSet;
 
@@ -17,30 +17,31 @@ use crate::traffic::follow::{Body, Driver, follow};
 use crate::traffic::lane_path::lane_path;
 use crate::traffic::template;
 
-/// Slower than this nobody goes on, m/s.
+/// Objects slower than this do not go on, m/s.
 const MOVES_MPS: f64 = 0.3;
 /// Time between keyframes that are added, s.
 const STEP_S: f64 = 0.5;
-/// Who brakes makes the one behind brake, and that one the next: each round hears of one more.
+/// Rounds in which all objects adapt to each other: a vehicle that brakes makes the next one behind it brake, and each
+/// round reaches one vehicle more.
 const ROUNDS: usize = 4;
-/// Meetings that are told.
+/// Collisions that are listed in a message.
 const MOST_TOLD: usize = 4;
-/// A path is laid this much farther than it is driven, m.
+/// Length of a path beyond the distance driven on it, m.
 const BEYOND_M: f64 = 20.0;
 
-/// What a forecast does.
+/// Continuation of a scene: the edits, and the collisions that they bring.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Forecast {
     /// The edits, to be applied as one step.
     pub edits: Vec<Edit>,
     /// Objects that go on.
     pub objects: usize,
-    /// What comes into something in these seconds, as the checks say it.
+    /// New collisions in these seconds, as sentences of the checks.
     pub meets: Vec<String>,
 }
 
 impl Forecast {
-    /// What a person is told of what goes wrong, in one line; none if nothing does.
+    /// The new collisions in one line for the user; `None` if there are none.
     pub fn said(&self) -> Option<String> {
         let first: Vec<&str> = self.meets.iter().take(MOST_TOLD).map(String::as_str).collect();
         let more = self.meets.len().saturating_sub(MOST_TOLD);
@@ -58,7 +59,7 @@ impl Forecast {
     }
 }
 
-/// So many seconds more. Errors in one line.
+/// Continues the scene by `seconds`. Errors in one line.
 pub fn forecast(scene: &Scene, seconds: f64) -> Result<Forecast, String> {
     let from_s = scene.clip().length_s;
     let to_s = from_s + seconds;
@@ -90,7 +91,8 @@ pub fn forecast(scene: &Scene, seconds: f64) -> Result<Forecast, String> {
     })
 }
 
-/// Edits that let these move on from a time to another, each looking out for the others; and the scene after `first` and them.
+/// Edits that let these move on from a time to another, each with regard to the others; and the scene after `first` and
+/// these edits.
 pub(super) fn together(
     scene: &Scene,
     goers: &[Goer],
@@ -109,21 +111,21 @@ pub(super) fn together(
         let motion = |g: &Goer| set(g, g.goes_on(scene, everybody.as_ref(), (from_s, to_s)));
         goers.iter().map(motion).collect()
     };
-    // First everybody goes on as fast as they are, so that who follows then finds the others moving.
+    // First all go on at their present speed, so that the followers then find the others moving.
     let mut later = scene.clone();
     let mut found = motions(None);
     let all: Vec<Edit> = first.iter().chain(&found).cloned().collect();
     apply_all(&all, &mut later).map_err(|e| e.to_string())?;
     for _ in 1..ROUNDS {
         found = motions(Some(&later));
-        // (what moves by now only moves otherwise)
+        // (objects that already have a motion only get another one)
         apply_all(&found, &mut later).map_err(|e| e.to_string())?;
     }
     Ok((found, later))
 }
 
-/// The edit that makes the map reach where the ego vehicle comes after `from_s`, with as much around it as there was until then;
-/// none if it does. Others may leave the map.
+/// The edit that makes the map reach where the ego vehicle comes after `from_s`, with as much map around it as there
+/// was until then; `None` if it does already. Other objects may leave the map.
 pub(super) fn room_for_us(scene: &Scene, from_s: f64) -> Option<Edit> {
     let relief = &scene.canvas().layout.relief;
     let still = scene.canvas().world_from_ego;
@@ -137,7 +139,7 @@ pub(super) fn room_for_us(scene: &Scene, from_s: f64) -> Option<Edit> {
     reaching(extent, way(scene.clip().length_s).into_iter(), sights)
 }
 
-/// Something that moves at the end.
+/// An object that moves at the end of the clip, or the ego vehicle (no id).
 pub(super) struct Goer {
     pub(super) id: Option<BoxId>,
     now: Moving,
@@ -147,7 +149,7 @@ pub(super) struct Goer {
     pub(super) motion: Option<Motion>,
 }
 
-/// Everything that moves at a time, the ego vehicle first.
+/// All objects that move at a time, the ego vehicle first.
 pub(super) fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
     let (clip, end) = (scene.clip(), scene.at(from_s));
     let mut out = Vec::new();
@@ -187,7 +189,8 @@ pub(super) fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
 }
 
 impl Goer {
-    /// Its motion up to `to_s`; `everybody`: who is where from `from_s` on, none to keep its speed.
+    /// Its motion up to `to_s`; `everybody` gives the positions of all objects from `from_s` on, `None` keeps the
+    /// present speed.
     fn goes_on(
         &self,
         scene: &Scene,

@@ -1,5 +1,5 @@
-//! What a box that was fitted to voxels leaves behind when it is removed: one object in labels may have become several boxes, as a
-//! crane does, and the others stay.
+//! Voxels that stay behind when a box that was fitted to them is removed: one object in labels may have become several
+//! boxes, as a crane does, and the others stay.
 
 use std::collections::BTreeSet;
 
@@ -15,8 +15,8 @@ const LEAST_VOXELS: usize = 4;
 /// Boxes that are named.
 const MOST_NAMED: usize = 8;
 
-/// What a person should know of boxes that the edits remove, a line each: the voxels of their class that were one piece with theirs
-/// and stay, and in which boxes. Said of boxes alone that are guesses from voxels.
+/// Remarks on the boxes that the edits remove, a line each: the voxels of their class that were connected to theirs and
+/// stay, and the boxes that hold these voxels. Only boxes inferred from voxels get a remark.
 pub fn left_standing(scene: &Scene, edits: &[Edit]) -> Vec<String> {
     let frame = scene.frame();
     let removed = edits.iter().filter_map(|edit| match edit {

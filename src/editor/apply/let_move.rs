@@ -1,4 +1,4 @@
-//! Manoeuvres as edits: when they begin, and the motion that comes of them.
+//! Manoeuvres as edits: their time of begin, and the motions that they make.
 
 use scene::{BoxId, Edit, EditError, Scene, Template};
 
@@ -21,7 +21,7 @@ pub(super) fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditErro
     let bad = EditError::BadMotion;
     let class = id.and_then(|id| scene.frame().boxes.get(&id)).map(|b| b.class);
     let usual = Wish::usual(template, class);
-    // Who follows begins as fast as whoever is ahead, if they move.
+    // A follower begins as fast as the vehicle ahead, if that one moves.
     let leader = || leader_mps(scene, id).filter(|mps| template == Template::Follow && *mps > 0.5);
     let mut wish = Wish {
         mps: mps.or_else(leader).or(limit_mps(scene, id)).unwrap_or(usual.mps),
@@ -33,13 +33,13 @@ pub(super) fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditErro
     } else if let Some(gap_m) = gap_m {
         wish.at_s = approach_s(scene, id, &wish, gap_m).map_err(bad)?;
     }
-    // Who drives from a moment on stands until then.
+    // An object that is to drive from a later moment on stands until then.
     if template == Template::Drive && (from_s.is_some_and(|s| s > 0.0) || gap_m.is_some()) {
         wish.template = Template::PullOut;
     }
     let mut edits = motion_of(scene, id, &wish).map_err(bad)?;
     if id.is_none() {
-        // Where we drive there is a map.
+        // The map must reach where the ego vehicle drives.
         let mut moved = scene.clone();
         apply_all(&edits, &mut moved)?;
         edits.extend(room_for_us(&moved, 0.0));
@@ -47,7 +47,7 @@ pub(super) fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditErro
     Ok(edits)
 }
 
-/// The speed limit where a motor vehicle (the ego vehicle if none) stands, m/s; none where nobody set one.
+/// The speed limit where a motor vehicle (the ego vehicle if `None`) stands, m/s; `None` where no limit is set.
 fn limit_mps(scene: &Scene, id: Option<BoxId>) -> Option<f64> {
     let frame = scene.frame();
     let at_m = match id {
@@ -58,13 +58,13 @@ fn limit_mps(scene: &Scene, id: Option<BoxId>) -> Option<f64> {
     scene.roads.road(road)?.limit_kph.map(|v| v / 3.6)
 }
 
-/// When an object and the ego vehicle are so near to each other, s. Errors in one line.
+/// The time at which an object and the ego vehicle are `gap_m` apart, s. Errors in one line.
 fn approach_s(scene: &Scene, id: Option<BoxId>, wish: &Wish, gap_m: f64) -> Result<f64, String> {
     if !(0.0..=1000.0).contains(&gap_m) {
         return Err(format!("gap_m is {gap_m}, expected 0 to 1000 m"));
     }
     let id = id.ok_or("gap_m is between an object and the ego vehicle, which has none to itself")?;
-    // Until then it does what it does before its manoeuvre.
+    // Until then it moves as before its manoeuvre.
     let stands = matches!(
         wish.template,
         Template::Cross | Template::PullOut | Template::Drive

@@ -45,7 +45,7 @@ fn set_shape(scene: &mut Scene, id: BoxId, cells: &[[i32; 3]]) -> Result<(), Edi
             }
         });
         if stands {
-            // It needs no track to stand where it stands: a box of its class comes in its place.
+            // It needs no track to stand still: a plain box of its class replaces it.
             set(&mut next, Some(id), None, [None; 2])?;
             super::apply_all(&[Edit::RemoveBox { id }, b.into()], &mut next)?;
         }
@@ -71,7 +71,7 @@ fn set_shape(scene: &mut Scene, id: BoxId, cells: &[[i32; 3]]) -> Result<(), Edi
     Ok(())
 }
 
-/// The motion of what stands where a box is.
+/// The motion of a box that stands where it is.
 fn standing(b: &SceneBox) -> Motion {
     Motion::Keys(vec![Key {
         time_s: 0.0,
@@ -118,7 +118,7 @@ pub(super) fn set(
             }
         }
         (Some(id), None) if clip.tracks.get(&id).is_some_and(|t| t.own_shape) => {
-            // It stands as a track: its voxels are its own.
+            // It stands still as a track: its voxels are its own.
             let (from_s, relief) = (scene.clip().tracks[&id].there_s[0], &scene.canvas().layout.relief);
             let at_first = || scene.clip().box_at(id, from_s.unwrap_or(0.0), relief);
             let now = scene.frame().boxes.get(&id).copied().or_else(at_first);
@@ -146,7 +146,7 @@ pub(super) fn set(
         }
     }
     if clip.length_s == 0.0 {
-        // The first motion of a scene says how long it lasts.
+        // The first motion of a scene decides its length.
         let times = motion.map(Motion::times_s).unwrap_or_default();
         let last_s = times.into_iter().fold(0.0, f64::max);
         clip.length_s = last_s.clamp(0.0, Clip::MAX_LENGTH_S);

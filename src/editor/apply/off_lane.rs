@@ -1,4 +1,4 @@
-//! Whoever is to drive where no lane is.
+//! Remark on vehicles that are to drive where there is no lane.
 
 use scene::{Edit, Scene, Template};
 
@@ -7,8 +7,8 @@ use crate::traffic::lane_path::REACH_M;
 use crate::traffic::template::shown;
 use language::tf;
 
-/// What is to be said of an [`Edit::LetMove`] of a vehicle (the ego vehicle too) that has no lane under it, in one line; none of
-/// other edits.
+/// The remark on an [`Edit::LetMove`] of a vehicle (the ego vehicle too) without a lane under it, in one line; `None`
+/// for [`Template::Cross`] and for any other edit.
 pub fn off_lane(scene: &Scene, edit: &Edit) -> Option<String> {
     let &Edit::LetMove { id, template, .. } = edit else {
         return None;

@@ -1,5 +1,5 @@
-//! Lets traffic drive: everything that says how fast it is but stands goes on along its lane, but for what would come into
-//! something; that stays where it is, and is told.
+//! Lets traffic drive: every object that stands but has a velocity goes on along its lane. Objects that would collide
+//! stay where they are and are reported.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,24 +12,24 @@ use language::tf;
 
 /// Length of a clip that traffic begins, s.
 const USUAL_LENGTH_S: f64 = 8.0;
-/// After so many looks whoever meets anybody stays, both of two.
+/// After so many rounds, both objects of a pair that collide stay.
 const PATIENCE: usize = 12;
-/// Reasons that are told.
+/// Reasons that are listed in a message.
 const MOST_REASONS: usize = 4;
 
-/// Who drives off, and who does not.
+/// Result of letting traffic drive: the objects that drive off, and those that stay.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Start {
     /// The edits, to be applied as one step.
     pub edits: Vec<Edit>,
     /// Objects that drive off.
     pub starts: usize,
-    /// Objects that stay where they are, each with what would happen otherwise.
+    /// Objects that stay where they are, each with the collision that driving would bring.
     pub stays: BTreeMap<BoxId, String>,
 }
 
 impl Start {
-    /// What a person is told of those that stay, in one line; none if nobody does.
+    /// The objects that stay and the reasons, in one line for the user; `None` if none stays.
     pub fn said(&self) -> Option<String> {
         if self.stays.is_empty() {
             return None;
@@ -56,9 +56,9 @@ impl Start {
     }
 }
 
-/// Lets everything that is labelled as moving, but has no motion, move from the beginning on, as far as that meets nothing: no
-/// wall, nothing that stands, nobody else and not the ego vehicle, over the whole clip, by the checks of the editor. A scene of
-/// one moment becomes a clip. Errors in one line.
+/// Lets every object that has a velocity, but no motion, move from the beginning on, unless it collides with a wall, a
+/// standing object, another moving one or the ego vehicle at any time of the clip, by the checks of the editor. A scene
+/// of one moment becomes a clip. Errors in one line.
 pub fn traffic_drives(scene: &Scene) -> Result<Start, String> {
     let mut waiting = goers(scene, 0.0);
     waiting.retain(|g| g.id.is_some() && g.motion.is_none());
@@ -91,8 +91,8 @@ pub fn traffic_drives(scene: &Scene) -> Result<Start, String> {
     Ok(start)
 }
 
-/// Those of whoever is about to drive off that had better stay, with the reasons; nobody if all is well. `both`: of two that meet
-/// neither goes.
+/// The objects among `waiting` that should stay, each with the reason; empty if none collides. With `both`, both
+/// objects of a colliding pair stay, otherwise one of them.
 fn who_stays(waiting: &[Goer], met: &[Met], both: bool) -> BTreeMap<BoxId, String> {
     let goes: BTreeSet<BoxId> = waiting.iter().filter_map(|g| g.id).collect();
     let mut out: BTreeMap<BoxId, String> = BTreeMap::new();
@@ -109,11 +109,11 @@ fn who_stays(waiting: &[Goer], met: &[Met], both: bool) -> BTreeMap<BoxId, Strin
             (None, None) => {}
         }
     }
-    // (who stays for another reason may be no trouble any more)
+    // (an object that stays for another reason may be no obstacle any more)
     pairs.retain(|(a, b, _)| both || !(out.contains_key(a) || out.contains_key(b)));
     while let Some(&(a, b, text)) = pairs.first() {
         let count = |id: BoxId| pairs.iter().filter(|(a, b, _)| *a == id || *b == id).count();
-        // Who meets most of the others stays; of two alike the later one.
+        // The object with the most collisions stays; of two with as many the one of the larger id.
         let worst = pairs
             .iter()
             .flat_map(|(a, b, _)| [*a, *b])
@@ -135,8 +135,9 @@ fn who_stays(waiting: &[Goer], met: &[Met], both: bool) -> BTreeMap<BoxId, Strin
     out
 }
 
-/// What a person should know of edits that are about to be applied, a line each: who stays where traffic is let drive, what comes
-/// into something where a scene is let go on, who drives where no lane is, and what a removed guess leaves standing.
+/// Remarks for the user on edits that are about to be applied, a line each: the objects that stay where traffic is let
+/// drive, the collisions of a forecast, the vehicles that drive where no lane is, and the voxels that stay behind when
+/// an inferred box is removed.
 pub fn remarks(scene: &Scene, edits: &[Edit]) -> Vec<String> {
     let mut out = super::left_standing::left_standing(scene, edits);
     for (i, edit) in edits.iter().enumerate() {

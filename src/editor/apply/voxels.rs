@@ -27,7 +27,7 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
     Ok(true)
 }
 
-/// Makes a generated occupancy the frame's own and its source. Painted voxels keep what was painted. Refused if it covers
+/// Makes a generated occupancy the frame's own and its source. Painted voxels keep their label. Errors if it covers
 /// another part of the ground than the frame.
 pub(crate) fn adopt(frame: &mut Frame, mut occupancy: VoxelGrid) -> Result<(), EditError> {
     let (found, expected) = (occupancy.extent(), frame.extent());

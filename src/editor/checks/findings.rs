@@ -1,5 +1,5 @@
-//! What the checks found, with a bound for each of them: a scene of noise has more findings than anybody reads. All of
-//! them are counted.
+//! Collected findings, with a bound on the list of each check: a scene of noise has more findings than anybody reads.
+//! All of them are counted.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +13,7 @@ use scene::{BoxId, Recorded, Scene, VoxelPaint};
 /// Findings of one check that are listed; the others are counted in one more.
 pub const MOST: usize = 200;
 
-/// What kind of finding it is: how bad, of which check, about which box.
+/// Kind of a finding: severity, name of the check, box.
 pub(crate) type Kind = (Severity, &'static str, Option<BoxId>);
 
 /// How many findings there are of each kind, whether they are listed or not.
@@ -51,18 +51,18 @@ pub(super) struct Findings {
     tally: Tally,
     /// Findings of each check that are listed at most.
     most: usize,
-    /// Boxes that are as a recording has them: what is odd about them is worth knowing and nobody's mistake.
+    /// Boxes that are as a recording has them: findings about them are worth knowing and no mistakes.
     recorded: BTreeSet<BoxId>,
-    /// Where somebody painted voxels of a recording: findings about all others of its voxels are nobody's mistake either.
+    /// Painted voxels of a recording: findings about all its other voxels are no mistakes either.
     painted: Option<VoxelPaint>,
-    /// Where the findings of the check that runs begin.
+    /// Index of the first finding of the check that runs.
     from: usize,
     /// Findings of that check beyond those that are listed: how many, the worst of them, and where the first is.
     more: Option<(usize, Severity, DVec3)>,
 }
 
 impl Findings {
-    /// Lists so many of each check and counts the others.
+    /// Lists so many findings of each check and counts the others.
     pub fn listing(most: usize) -> Self {
         Self {
             list: Vec::new(),
@@ -75,7 +75,8 @@ impl Findings {
         }
     }
 
-    /// The same of a scene: what its recording shows is worth knowing, and no more.
+    /// Like [`Self::listing`], with the recorded parts of the scene: findings about them are listed as
+    /// [`Severity::Info`].
     pub fn of(scene: &Scene, most: usize) -> Self {
         Self {
             recorded: Recorded::boxes_in(scene),
@@ -94,7 +95,7 @@ impl Findings {
         self.push_all(finding, 1);
     }
 
-    /// Takes one finding in that stands for so many, or counts them.
+    /// Takes in one finding that stands for `n`, or counts them.
     pub fn push_all(&mut self, mut finding: Finding, n: usize) {
         let is_measured = |painted: &VoxelPaint| {
             let mut cells = finding.cells.iter();
@@ -110,7 +111,7 @@ impl Findings {
         self.take(finding, n);
     }
 
-    /// Takes a finding in about a recorded box and something that somebody made: it is as bad as it is.
+    /// Takes in a finding about a recorded box and something that a user made; its severity stays.
     pub fn push_made(&mut self, finding: Finding) {
         self.take(finding, 1);
     }
@@ -146,7 +147,7 @@ impl Findings {
         self.recorded.contains(&id)
     }
 
-    /// Ends a check: what was only counted becomes its last finding.
+    /// Ends a check: its findings that were only counted become its last finding.
     pub fn end(&mut self, check: &'static str) {
         if let Some((n, severity, where_m)) = self.more.take() {
             self.list.push(Finding {
@@ -163,7 +164,7 @@ impl Findings {
         self.from = self.list.len();
     }
 
-    /// Those that are listed, errors first, and how many there are of all.
+    /// The listed findings, errors first, and the number of all findings of each kind.
     pub fn done(mut self) -> (Vec<Finding>, Tally) {
         self.list.sort_by_key(|f| std::cmp::Reverse(f.severity));
         (self.list, self.tally)

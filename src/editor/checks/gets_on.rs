@@ -1,19 +1,19 @@
-//! What a class does when it changes its place, for the texts of findings.
+//! The way a class moves (drives, walks), for the texts of findings.
 
 use scene::Class;
 
-/// How something gets on.
+/// Way of moving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GetsOn {
     /// On its own wheels, with an engine.
     Drives,
     /// On foot.
     Walks,
-    /// Neither, or it is ridden: what can be said of everything.
+    /// Neither of the two, or it is ridden: a word that fits every class.
     Moves,
 }
 
-/// How things of a class get on.
+/// The way things of a class move.
 pub fn gets_on(class: Class) -> GetsOn {
     match class {
         Class::Pedestrian => GetsOn::Walks,

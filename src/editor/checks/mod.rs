@@ -1,5 +1,5 @@
-//! Quality checks of a scene: what is probably a mistake, where, and how to repair it. One check per file; each looks
-//! at the frame being edited and never panics, whatever the frame holds.
+//! Quality checks of a scene: probable mistakes, their places, and repairs. One check per file; each looks at the frame
+//! being edited and never panics, whatever the frame holds.
 
 mod against_lane;
 mod box_without_occupancy;
@@ -32,7 +32,7 @@ pub(crate) use over_time::{Met, meetings};
 use scene::draft::{ground_bin, ground_class};
 use scene::{BoxId, Class, Extent, Frame, Scene, SceneBox, support};
 
-/// How bad a finding is.
+/// Worth knowing and no mistake: for example objects that no sensor sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Worth knowing and no mistake: what no sensor sees.
@@ -47,7 +47,7 @@ impl Severity {
     /// Every one, the worst first.
     pub const ALL: [Severity; 3] = [Severity::Error, Severity::Warning, Severity::Info];
 
-    /// As in reports: `info`, `warning`, `error`.
+    /// Name in reports: `info`, `warning`, `error`.
     pub fn name(self) -> &'static str {
         match self {
             Severity::Info => "info",
@@ -60,29 +60,29 @@ impl Severity {
 /// One way to repair a finding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fix {
-    /// What it does, for a button and for the history: `Drop to the ground`.
+    /// Name of the repair, for a button and for the history: `Drop to the ground`.
     pub label: &'static str,
     /// The edits, to be applied as one undo step.
     pub edits: Vec<Edit>,
 }
 
 impl Fix {
-    /// True if it makes the map larger: that is done only where it is asked for by name, never together with others.
+    /// True if it makes the map larger: such a repair runs only if it is asked for by name, never together with others.
     pub fn enlarges_the_map(&self) -> bool {
         self.edits.iter().any(|e| matches!(e, Edit::ExtendMap { .. }))
     }
 }
 
-/// Something that a check found.
+/// One finding of a check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// Name of the check, as in reports: `overlapping_boxes`.
     pub check: &'static str,
     /// How bad it is.
     pub severity: Severity,
-    /// Where, in the world frame, m; always finite.
+    /// Position in the world frame, m; always finite.
     pub where_m: DVec3,
-    /// When in the clip, s; none if it is about the moment that is shown.
+    /// Time in the clip, s; `None` if it is about the moment that is shown.
     pub time_s: Option<f64>,
     /// The box it is about, if it is about one.
     pub box_id: Option<BoxId>,
@@ -95,8 +95,8 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// The repair that is tried where all are asked for: the best, unless that has to be asked for by name. None of what is
-    /// worth knowing and no mistake.
+    /// The repair that is tried where all are asked for: the best one. `None` for [`Severity::Info`], and if that
+    /// repair has to be asked for by name.
     pub fn first_fix(&self) -> Option<&Fix> {
         let fix = self.fixes.first()?;
         (self.severity > Severity::Info && !fix.enlarges_the_map()).then_some(fix)
@@ -115,7 +115,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Of these findings.
+    /// Counts these findings.
     pub fn of<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> Self {
         let mut out = Self::default();
         for finding in findings {
@@ -132,7 +132,7 @@ impl Counts {
         }
     }
 
-    /// Of one severity.
+    /// The number of findings of one severity.
     pub fn count(&self, severity: Severity) -> usize {
         match severity {
             Severity::Error => self.errors,
@@ -142,7 +142,7 @@ impl Counts {
     }
 }
 
-/// What the sensors return of each box; a box that is missing counts as 0.
+/// Pixels and returns of each box in the sensors; a box that is missing counts as 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Seen {
     /// Pixels of all cameras together; `None` if no camera was rendered.
@@ -151,14 +151,14 @@ pub struct Seen {
     pub lidar_returns: Option<BTreeMap<BoxId, u32>>,
 }
 
-/// What the checks share.
+/// Input and caches that the checks share.
 struct Context<'a> {
     scene: &'a Scene,
     frame: &'a Frame,
     /// Boxes whose numbers can be relied on, by id.
     boxes: Vec<SceneBox>,
     seen: Option<&'a Seen>,
-    /// What moves in the course of the clip, made when the first check asks for it.
+    /// Moving objects over the course of the clip, made when the first check asks for them.
     over_time: std::cell::OnceCell<over_time::OverTime>,
     /// The frame's occupancy as bits, made when the first check asks for it.
     bits: std::cell::OnceCell<Bits>,
@@ -170,11 +170,11 @@ struct Context<'a> {
 struct Bits {
     /// By class id; empty for a class that does not occur.
     by_class: Vec<Vec<u16>>,
-    /// Not free.
+    /// Voxels that are not free.
     occupied: Vec<u16>,
-    /// Of a ground class.
+    /// Voxels of a ground class.
     ground: Vec<u16>,
-    /// What of the occupied stands on the ground, by itself or by what it touches.
+    /// Occupied voxels that are supported by the ground, directly or through the voxels they touch.
     supported: Vec<u16>,
 }
 
@@ -202,7 +202,7 @@ const CHECKS: [(&str, Check); 18] = [
     (unseen::NO_LIDAR, unseen::by_lidar),
 ];
 
-/// What a check is called for a person: `Boxes overlap`. The name itself for one that there is not.
+/// Title of a check for the user: `Boxes overlap`. The name itself for an unknown check.
 pub fn title(check: &str) -> &str {
     match check {
         unsound::NAME => "Numbers that cannot be",
@@ -244,12 +244,13 @@ pub(crate) fn overlaps(scene: &Scene) -> Vec<Finding> {
     run(scene, None, &[overlapping], MOST).0
 }
 
-/// What every check finds that needs no sensor, and how much of each kind there is.
+/// Findings of all checks that need no sensor, and the number of each kind.
 pub(crate) fn run_counted(scene: &Scene) -> (Vec<Finding>, Tally) {
     run(scene, None, &CHECKS, MOST)
 }
 
-/// How much the checks find that need no sensor, without a list of it: several times faster where there is much.
+/// The number of findings of each kind by the checks that need no sensor, without a list: several times faster where
+/// there are many.
 pub(crate) fn tally(scene: &Scene) -> Tally {
     run(scene, None, &CHECKS, 0).1
 }

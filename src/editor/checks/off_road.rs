@@ -15,7 +15,7 @@ pub const NAME: &str = "off_road";
 const ON_ROAD: f64 = 0.5;
 /// How far away a lane may be that a vehicle is put on, m.
 const REACH_M: f64 = 12.0;
-/// Bits of what vehicles stand on.
+/// Bits of the layers that vehicles stand on.
 const ROAD: u32 =
     1 << BevLayer::DrivableArea as u32 | 1 << BevLayer::CarparkArea as u32 | 1 << BevLayer::RoadBlock as u32;
 
@@ -32,7 +32,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
                 (text, onto_lane(context, b))
             }
             Class::ConstructionVehicle | Class::Barrier | Class::TrafficCone => {
-                // What was fitted to voxels stands where the data set saw it.
+                // Boxes that were fitted to voxels stand where the data set saw them.
                 if context.frame.inferred.boxes.contains(&b.id) || !is_off_paved(layout, b) {
                     continue;
                 }
@@ -57,7 +57,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     }
 }
 
-/// What is wrong with a vehicle's place, if anything is.
+/// The problem with a vehicle's place; `None` if there is none.
 fn vehicle(layout: &BevLayout, b: &SceneBox) -> Option<String> {
     let (mut cells, mut on) = (0usize, 0usize);
     box_cells(layout.extent(), b, 0.0, |x, y| {

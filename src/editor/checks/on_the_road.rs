@@ -6,8 +6,8 @@ use scene::support::{bins_set, groups, main_class, supported};
 use scene::{BevLayer, BevLayout, Class, Extent};
 
 pub const NAME: &str = "on_the_road";
-/// What reaches down to so many bins above the ground stands in the way. In labels, whose voxels reach two bins further
-/// down than things do, that is an underside lower than 1.8 m.
+/// Voxels at most this many bins above the ground count as low and stand in the way. In labels, whose voxels reach two
+/// bins further down than things do, that is an underside lower than 1.8 m.
 const LOW_BINS: usize = 4;
 /// Fewer low voxels are noise of labels.
 const LEAST_VOXELS: usize = 3;
@@ -39,7 +39,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     if low.iter().all(|bits| *bits == 0) {
         return;
     }
-    // With them goes what they alone carry, such as a crown.
+    // The voxels that only these runs support, such as a crown, go with them.
     let without: Vec<u16> = bits
         .occupied
         .iter()

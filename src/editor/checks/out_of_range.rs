@@ -6,7 +6,7 @@ use language::tf;
 use scene::{Extent, SceneBox};
 
 pub const NAME: &str = "out_of_range";
-/// How far a bottom may lie from the ground, m: it is known by the column, and boxes are level.
+/// Allowed distance of a bottom from the ground, m: the ground is known by the column, and boxes are level.
 const TOLERANCE_M: f64 = 0.6;
 
 pub fn check(context: &Context<'_>, out: &mut Findings) {
@@ -38,7 +38,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     }
 }
 
-/// What is wrong with a box's place on ground of this height, and whether putting it on the ground helps.
+/// The problem of a box's place on ground of this height, and whether putting it on the ground helps.
 fn problem(extent: Extent, b: &SceneBox, ground_m: f64) -> Option<(Severity, String, bool)> {
     let half_m = b.size_m.z / 2.0;
     let (bottom_m, top_m) = (b.center_m.z - half_m, b.center_m.z + half_m);

@@ -1,5 +1,5 @@
-//! What moving objects do in the course of a clip: too fast, too sudden, backwards, into each other, through walls, off the
-//! map.
+//! Checks of moving objects over the course of a clip: too fast, too sudden, backwards, into each other, through walls,
+//! off the map.
 
 use std::collections::BTreeMap;
 
@@ -47,21 +47,21 @@ fn limits(class: Class) -> (f64, f64) {
     }
 }
 
-/// Something that moves, at every moment that is looked at; `None` while it is not there. The ego vehicle has no id.
+/// The boxes of one moving object at all sampled moments; `None` while it is not there. The ego vehicle has no id.
 pub(super) struct Trace {
     id: Option<BoxId>,
     at: Vec<Option<SceneBox>>,
-    /// It does not move by itself.
+    /// The box that carries it, if it does not move by itself.
     attached: Option<BoxId>,
-    /// It moves as a recording has it.
+    /// True if it moves as in a recording.
     recorded: bool,
 }
 
-/// The moments that are looked at, and everything that moves at each.
+/// The sampled moments, and every moving object at each of them.
 pub(super) struct OverTime {
     times_s: Vec<f64>,
     traces: Vec<Trace>,
-    /// The ego vehicle is where a recording has it.
+    /// True if the ego vehicle is where a recording has it.
     ego_recorded: bool,
 }
 
@@ -224,25 +224,26 @@ pub fn backwards(context: &Context<'_>, out: &mut Findings) {
     }
 }
 
-/// Something that moves, and what it comes into in the course of a clip.
+/// A collision: a moving object, and the box or wall that it meets in the course of a clip.
 pub(crate) struct Met {
     /// Index of its trace.
     trace: usize,
-    /// What moves; the ego vehicle if none.
+    /// Box that moves; `None` for the ego vehicle.
     pub(crate) id: Option<BoxId>,
-    /// What it meets: a box or the ego vehicle (none); `Err` with the class of what stands there.
+    /// Other side: a box, or the ego vehicle (`None`); `Err` with the class of the voxels that stand there.
     pub(crate) other: Result<Option<BoxId>, Class>,
-    /// As a person is told: `car 1 and car 2 meet at 2.6 s`.
+    /// Sentence for the user: `car 1 and car 2 meet at 2.6 s`.
     pub(crate) text: String,
     /// Index of the first moment.
     at: usize,
     /// The largest share of the smaller footprint that two boxes share.
     share: f64,
-    /// What stands there was painted by somebody.
+    /// True if the voxels that are met were painted by a user.
     painted: bool,
 }
 
-/// All that meet in the course of a clip: boxes that move and any others first, then boxes and walls.
+/// All collisions in the course of a clip: first those of moving boxes with any other boxes, then those of boxes with
+/// walls.
 pub(crate) fn meetings(scene: &scene::Scene) -> Vec<Met> {
     let over_time = OverTime::of_scene(scene);
     let mut out = boxes_that_meet(scene, &over_time);
@@ -262,7 +263,7 @@ fn boxes_that_meet(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
     }
     let mut out = Vec::new();
     for (i, trace) in over_time.traces.iter().enumerate() {
-        // When each other one is met first, and the largest share of area while they do.
+        // The first moment at which each other object is met, and the largest share of area while they overlap.
         let mut met: BTreeMap<Option<BoxId>, Met> = BTreeMap::new();
         for (at, time_s) in over_time.times_s.iter().enumerate() {
             let Some(b) = &trace.at[at] else { continue };
@@ -316,7 +317,7 @@ fn walls_that_are_met(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
         let mut met = None;
         box_cells(extent, &core, 0.0, |x, y| {
             let ground_m = relief.column_m(x, y);
-            // What a bumper meets, and not what hangs over the road.
+            // Heights of a bumper: voxels that hang over the road are not met.
             for up in [0.9, 1.3] {
                 let p = extent.center(x, y, 0).with_z(ground_m + up);
                 let Some([x, y, z]) = extent.voxel_at(p) else {

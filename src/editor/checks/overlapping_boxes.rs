@@ -78,7 +78,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
                     second = name_of(b),
                     percent = format!("{:.0}", 100.0 * share.min(1.0))
                 ),
-                // What takes a box away is never what is done without asking for it by name.
+                // A repair that removes a box is never the first: it is done only if asked for by name.
                 fixes: vec![apart, remove],
             };
             match is_made {

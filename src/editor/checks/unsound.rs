@@ -1,5 +1,5 @@
-//! What must not be in a scene at all: numbers that are not finite, labels outside the palette, boxes under a wrong
-//! id, the same object twice.
+//! Check of contents that no scene may have: numbers that are not finite, labels outside the palette, boxes under a
+//! wrong id, the same object twice.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use language::{t, tf};
 use scene::{BoxId, Class, SceneBox};
 
 pub const NAME: &str = "unsound";
-/// Boxes of one class whose centres, edges and headings differ by less are the same object.
+/// Boxes of one class whose centres, sizes and headings differ by less than this are the same object.
 const SAME_M: f64 = 0.15;
 const SAME_RAD: f64 = 0.1;
 

@@ -1,5 +1,5 @@
-//! Parts of one class that rest on nothing although something else touches them: a crown that only leans on a wall, a wall
-//! that hangs in a hedge. What touches nothing at all is `floating_voxels`.
+//! Check of parts of one class that stand on nothing although they touch another class: a crown that only leans on a
+//! wall, a wall that hangs in a hedge. Parts that touch nothing at all are found by `floating_voxels`.
 
 use super::floating_voxels::lowest_m;
 use super::{Context, Finding, Findings, Fix, Severity, middle};
@@ -18,7 +18,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     let frame = context.frame;
     let (extent, bits) = (frame.extent(), context.bits());
     let mut parts: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
-    // What stands takes the place of the ground's own voxel, in whatever bin the ground lies beside it.
+    // Standing voxels replace the ground's own voxel, in whatever bin the ground lies beside them.
     let ground = ground(extent, &bits.by_class);
     let beside: Vec<u16> = (0..extent.columns())
         .map(|c| neighbours(extent, c).fold(0, |word, n| word | ground[n]))

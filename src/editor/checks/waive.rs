@@ -23,7 +23,7 @@ pub fn of<'a>(frame: &'a Frame, finding: &Finding) -> Option<&'a Waiver> {
     frame.waivers.iter().find(|w| covers(w, finding))
 }
 
-/// Findings that nobody waived.
+/// Findings without a waiver.
 pub fn open<'a>(frame: &'a Frame, findings: &'a [Finding]) -> impl Iterator<Item = &'a Finding> {
     findings.iter().filter(move |f| of(frame, f).is_none())
 }

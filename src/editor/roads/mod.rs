@@ -1,4 +1,4 @@
-//! The road network of a scene: how changes of it come into the layout, and how what is painted becomes a network.
+//! The road network of a scene: its changes are drawn into the layout, and painted roads are recognised as a network.
 
 mod add;
 mod change;
@@ -17,7 +17,7 @@ use scene::{EditError, RoadNetwork, Scene};
 pub use recognise::recognise;
 pub use street::Street;
 
-/// The network of a scene: its own or, if it has none, what is recognised in its layout.
+/// The network of a scene: its own or, if it has none, the one recognised in its layout.
 pub fn network_of(scene: &Scene) -> Arc<RoadNetwork> {
     match scene.roads.is_empty() {
         true => Arc::new(recognise(&scene.canvas().layout, &RoadNetwork::default())),

@@ -1,4 +1,4 @@
-//! From one network to the next in the layout: what both draw alike stays as it is, whatever was painted there.
+//! Draws a changed network into the layout: cells that both networks draw alike keep whatever was painted there.
 
 use std::collections::BTreeSet;
 
@@ -10,9 +10,9 @@ use scene::{BevLayout, Extent, Frame, Polyline, RoadId, RoadNetwork};
 use crate::immediate;
 use crate::junction::Area;
 
-/// What was painted a little beside a road goes with it: so many columns.
+/// Columns beside a road within which painted cells change together with it.
 const RIM: usize = 3;
-/// A line of which more than this lies on a road that changed is that road's.
+/// A line with a larger share than this on a changed road belongs to that road.
 const OWN: f64 = 0.75;
 /// Places on a line are looked at in steps of this length, m.
 const STEP_M: f64 = 0.5;
@@ -29,7 +29,7 @@ pub(super) fn redraw(frame: &mut Frame, before: &RoadNetwork, after: &RoadNetwor
     for at in extent.all_columns().filter(|at| differs(*at)) {
         due[extent.index(at[0], at[1])] = true;
     }
-    // What lies beside a change and is no road by now is what was left of a road painted a little wider.
+    // Cells beside a change that are no road any more are remains of a road that was painted a little wider.
     let edge = grown(extent, &due);
     let junctions = changed_junctions(before, after);
     let mut cells = Vec::new();
@@ -37,7 +37,7 @@ pub(super) fn redraw(frame: &mut Frame, before: &RoadNetwork, after: &RoadNetwor
         let i = extent.index(at[0], at[1]);
         let is_rest = edge[i] && drawn(&new, at) == 0 && drawn(&old, at) == 0;
         let is_forced = forced.as_ref().is_some_and(|f| f[i]);
-        // A junction that changed is drawn whole: what was painted otherwise there fits no more.
+        // A junction that changed is drawn whole: older paint there does not fit any more.
         let p = extent.center(at[0], at[1], 0).truncate();
         let at_junction =
             || (drawn(&new, at) | drawn(&old, at)) != 0 && junctions.iter().any(|(m, r)| p.distance(*m) < *r);
@@ -81,7 +81,7 @@ fn grown(extent: Extent, cells: &[bool]) -> Vec<bool> {
     out
 }
 
-/// Takes the lines of what changed out of a layout, and puts the new ones in.
+/// Takes the lines of changed roads out of a layout, and puts the new ones in.
 fn swap_lines(layout: &mut BevLayout, nets: [&RoadNetwork; 2], drawn: [&Drawn; 2], anew: Option<RoadId>) {
     let extent = layout.extent();
     let [old, new] = drawn.map(|d| &d.owners);
@@ -103,7 +103,7 @@ fn swap_lines(layout: &mut BevLayout, nets: [&RoadNetwork; 2], drawn: [&Drawn; 2
     };
     let own: Vec<bool> = surface.iter().zip(&beside).map(|(a, b)| *a && !*b).collect();
     let (whole, own) = (Area::new(extent, &on(&surface)), Area::new(extent, &on(&own)));
-    // What lies under a new road belongs to nobody any more, but for what other roads have there.
+    // Lines under a new road are removed, except those of other roads.
     let under = Area::new(extent, &on(&nets[1].surface_of(extent, &due, 0.0)));
     let of_others: Vec<&Polyline> = others.iter().filter_map(|o| new.get(o)).flatten().collect();
     let mut lines: Vec<Polyline> = Vec::new();
@@ -133,7 +133,7 @@ fn swap_lines(layout: &mut BevLayout, nets: [&RoadNetwork; 2], drawn: [&Drawn; 2
     layout.polylines = lines.into();
 }
 
-/// How much of a line lies on an area, 0 to 1; what lies beyond the map does not count.
+/// Share of a line that lies on an area, 0 to 1; its part beyond the map does not count.
 fn share(area: &Area, points_m: &[DVec2]) -> f64 {
     let (mut all, mut on) = (0usize, 0usize);
     for [a, b] in points_m.array_windows::<2>() {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use scene::roads::{LaneKind, RoadChange, RoadLane, curve};
 
-/// What a street has.
+/// Lanes and widths of a street.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Street {
     /// Lanes in the direction in which it is drawn, right of the line that parts the directions.

@@ -1,4 +1,4 @@
-//! What a person asks of a street, carried out on the roads it is made of.
+//! Road wishes: requests of a user about a street, carried out on the roads it is made of.
 
 use glam::DVec2;
 
@@ -7,11 +7,11 @@ use scene::{Road, RoadId, RoadNetwork};
 
 use super::change::split_at;
 
-/// Farther away no road is meant, m.
+/// Roads farther away than this are not meant, m.
 const REACH_M: f64 = 60.0;
-/// The next junction is looked for so far ahead, m.
+/// Distance ahead within which the next junction is looked for, m.
 const AHEAD_M: f64 = 120.0;
-/// A roundabout where there is no junction is made so far ahead, m.
+/// Distance ahead at which a roundabout is made where there is no junction, m.
 const NEW_M: f64 = 25.0;
 /// Limits of the width of a lane for cars, m.
 const DRIVE_M: [f64; 2] = [2.4, 5.0];
@@ -23,7 +23,7 @@ const ROUND: NodeKind = NodeKind::Roundabout {
     ring_m: 6.5,
 };
 
-/// Changes the street nearest to a place; errors say what cannot be.
+/// Changes the street nearest to a place; errors say why a wish cannot be granted.
 pub(super) fn grant(
     net: &mut RoadNetwork,
     at_m: DVec2,

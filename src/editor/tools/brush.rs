@@ -77,11 +77,11 @@ const APART_M: f64 = 0.05;
 /// Points of a stroke are this far apart, m.
 const STEP_M: f64 = 0.1;
 
-/// What the button held paints.
+/// Stroke or shape in progress, while the button is held.
 #[derive(Clone, Debug, PartialEq)]
 struct Drag {
     what: What,
-    /// Way so far; for shapes where it began. Ego frame, m.
+    /// Points so far; a shape begins at the first. Ego frame, m.
     points_m: Vec<DVec2>,
     layer: BevLayer,
     width_m: f64,
@@ -231,7 +231,7 @@ impl Tool for Brush {
     }
 }
 
-/// What bounds a fill.
+/// Borders of a fill, each with name and hint.
 const FILLS: [(FillBounds, &str, &str); 2] = [
     (
         FillBounds::AnyLayer,
@@ -245,7 +245,7 @@ const FILLS: [(FillBounds, &str, &str); 2] = [
     ),
 ];
 
-/// Paint or erase, for every brush.
+/// Choices between painting and erasing, for every brush.
 pub(super) const ERASE: [(bool, &str, &str); 2] = [(false, "Paint", ""), (true, "Erase", "E, or hold Shift")];
 
 impl Drag {
@@ -281,7 +281,7 @@ impl Drag {
     }
 }
 
-/// What says that a layer is locked.
+/// The note that a layer is locked.
 pub(super) fn locked(layer: BevLayer) -> Response {
     let text = tf!(
         "Layer \"{layer}\" is locked: its lock is in the list of layers",
@@ -290,8 +290,7 @@ pub(super) fn locked(layer: BevLayer) -> Response {
     Response::act(Act::Note(text))
 }
 
-/// Shows the shape painted; shapes beside the map paint nothing, which is no error to show.
-/// Ground that is locked is painted around.
+/// Shows the painted shape. A shape beside the map paints nothing and shows no error. Locked ground is left out.
 pub(super) fn show(cx: &Context<'_>, layer: BevLayer, shape: Shape, value: bool) -> Response {
     let layout = &cx.settled.frame().layout;
     let Ok(mut cells) = shape.cells(layout.extent()) else {
@@ -332,7 +331,7 @@ fn layer_at(frame: &Frame, hand: &Hand, at_m: DVec2) -> Option<BevLayer> {
     DRAW_ORDER.iter().rev().find(there).copied()
 }
 
-/// The highest voxel of each column in a disc: what a brush on the ground would cover.
+/// The highest voxel of each column in a disc: the voxels that a brush on the ground would cover.
 fn tops_in_disc(frame: &Frame, center_m: DVec2, radius_m: f64) -> Vec<[usize; 3]> {
     let mut cells = Vec::new();
     disc_cells(frame.extent(), center_m, radius_m, |x, y| {
@@ -435,7 +434,7 @@ impl Brush {
                 .map(|change| Edit::ChangeRoads { change })
                 .into_iter()
                 .collect();
-            // What was drawn stays until the layer is unlocked.
+            // The drawing stays until the layer is unlocked.
             if cx.hand.locked_layer(&cx.frame().layout, &edits).is_none() {
                 self.points_m.clear();
             }

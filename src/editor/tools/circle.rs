@@ -44,7 +44,7 @@ struct Disc {
     radius_m: f64,
     layer: BevLayer,
     erase: bool,
-    /// It is large enough, and some of it lies on the map.
+    /// True if it is large enough, and some of it lies on the map.
     shown: bool,
 }
 

@@ -1,4 +1,4 @@
-//! An outline that is set corner by corner, to choose what lies in it.
+//! Outline that is set corner by corner, to choose the objects in it.
 
 use glam::DVec2;
 
@@ -10,22 +10,22 @@ const CORNER: f64 = 8.0;
 /// The corners set so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Corners {
-    /// From above points of the ego frame, m; in space points of the screen.
+    /// Points of the ego frame, m, in the view from above; points of the screen in the 3D view.
     points: Vec<DVec2>,
     /// The view in which they were set.
     view: Option<ViewKind>,
-    /// What was held at the first one.
+    /// Modifier keys held when the first corner was set.
     held: Modifiers,
 }
 
-/// What an event does to them.
+/// Effect of an event on the corners.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Set {
-    /// Nothing: it is for somebody else.
+    /// None: the event is not for the outline.
     Not,
-    /// A corner came or went.
+    /// A corner was added or removed.
     Taken,
-    /// The outline is closed, and this was held when it was begun.
+    /// The outline is closed; the modifier keys are those held when it was begun.
     Closed(Vec<DVec2>, Modifiers),
 }
 

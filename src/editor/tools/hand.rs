@@ -1,4 +1,4 @@
-//! What the user holds: the tool in hand, what is chosen, and the options that tools share. Nothing here is saved.
+//! State of the user's hand: the current tool, the selection, and the options that tools share. Nothing here is saved.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -41,17 +41,17 @@ pub const DRAW_ORDER: [BevLayer; 8] = [
 /// How boxes join the selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choose {
-    /// They alone.
+    /// Replaces the selection by them.
     Only,
-    /// They too.
+    /// Adds them to the selection.
     Add,
     /// Each changes sides.
     Toggle,
-    /// They are chosen no more.
+    /// Takes them out of the selection.
     Remove,
 }
 
-/// What the user holds.
+/// The current tool, the selection, and the options that tools share.
 #[derive(Clone, Debug)]
 pub struct Hand {
     /// Tool in hand.
@@ -68,7 +68,7 @@ pub struct Hand {
     pub erase: bool,
     /// Class of the next box.
     pub box_class: Class,
-    /// What the voxel brush does.
+    /// Verb of the voxel brush.
     pub verb: VoxelVerb,
     /// Class that the voxel brush paints.
     pub voxel_class: Class,
@@ -76,15 +76,15 @@ pub struct Hand {
     pub voxel_size: usize,
     /// Bit per map layer that is drawn.
     pub layers_shown: u32,
-    /// What was copied.
+    /// Copied boxes.
     pub clipboard: Clipboard,
     /// How several things are chosen at once.
     pub choose_by: ChooseBy,
-    /// What dragging a chosen box changes.
+    /// Transform that dragging a chosen box makes.
     pub gizmo: TransformKind,
-    /// Whose axes gizmo and number fields use.
+    /// Axes that gizmo and number fields use.
     pub orientation: Orientation,
-    /// About what several boxes turn.
+    /// Point about which several boxes turn.
     pub pivot: Pivot,
     /// Moves snap to the grid without Ctrl, too.
     pub snap_grid: bool,
@@ -96,17 +96,17 @@ pub struct Hand {
     pub snap_ground: bool,
     /// A mirrored box that changes sides is turned.
     pub mirror_keeps_direction: bool,
-    /// What the brush draws.
+    /// Shape that the brush draws.
     pub shape: PaintShape,
-    /// What a street has.
+    /// Lanes and widths of the next street.
     pub street: Street,
-    /// What the road tool holds.
+    /// Selection of the road tool.
     pub road: RoadHand,
-    /// What bounds a fill.
+    /// Border of a fill.
     pub fill: FillBounds,
-    /// What the voxel tool does.
+    /// Mode of the voxel tool.
     pub voxel_mode: VoxelMode,
-    /// What the voxel brush covers.
+    /// Shape of the voxel brush.
     pub voxel_tip: VoxelTip,
     /// Height of the voxel brush and of a new block, voxels.
     pub voxel_height: usize,
@@ -122,23 +122,23 @@ pub struct Hand {
     pub voxels_through: bool,
     /// How a region is marked.
     pub region_shape: RegionShape,
-    /// How far what is inpainted leaves what is there, 0 to 1.
+    /// How strongly inpainting replaces the old content, 0 to 1.
     pub region_strength: f64,
-    /// What is marked to be inpainted, m²; the window counts it.
+    /// Area marked for inpainting, m²; the window counts it.
     pub region_m2: f64,
     /// Kind of the next box of each class, by index among its kinds; none means the typical size.
     pub variants: BTreeMap<Class, usize>,
     /// Bit per map layer that is not painted.
     pub layers_locked: u32,
-    /// What was chosen in states of the scene, by their revision: undo brings it back.
+    /// Selections by the revision of the scene, so that undo restores them.
     pub selections: BTreeMap<SceneRev, (Vec<BoxId>, Vec<ThingId>)>,
     /// The dialog of rows, if it is open.
     pub row_open: bool,
-    /// Its numbers.
+    /// Numbers of that dialog.
     pub row: Row,
-    /// What the tools for things hold.
+    /// Options, selection and clipboard of the scenery tools.
     pub things: ThingState,
-    /// What was painted with before.
+    /// Layer and class that were painted with before.
     pub painted_before: PaintsBefore,
 }
 
@@ -222,7 +222,7 @@ impl Hand {
         };
     }
 
-    /// The brush in hand so many times as large. The voxel brush has few sizes: each takes about a notch of the wheel.
+    /// Scales the brush in hand by a factor. The voxel brush has few sizes: each takes about a notch of the wheel.
     pub fn scale_brush(&mut self, factor: f64) {
         const NOTCH: f64 = 0.18;
         // Written so that NaN fails too.
@@ -252,7 +252,7 @@ impl Hand {
         self.layers_locked & layer.bit() != 0
     }
 
-    /// What a move snaps to now; `ctrl` held means the grid.
+    /// The snaps of a move now; `ctrl` held means the grid.
     pub fn snap(&self, ctrl: bool) -> Snap {
         Snap {
             grid_m: (self.snap_grid || ctrl).then_some(self.grid_m),
@@ -287,14 +287,14 @@ impl Hand {
             return Vec::new();
         };
         let others = self.selection.iter().copied().filter(|id| *id != first);
-        // Who sets `selected` alone means that box alone.
+        // A caller that sets `selected` alone means that box alone.
         match self.selection.contains(&first) {
             true => std::iter::once(first).chain(others).collect(),
             false => vec![first],
         }
     }
 
-    /// True if an outline chooses: where it begins nothing is taken hold of.
+    /// True if an outline chooses: a press that begins one drags nothing.
     pub fn outlines(&self) -> bool {
         self.choose_by != ChooseBy::Rectangle
     }
@@ -347,7 +347,7 @@ impl Hand {
         self.selection = left.into_iter().collect();
     }
 
-    /// Keeps what is chosen in a state of the scene, for when an undo comes back to it.
+    /// Keeps the selection of a state of the scene, for an undo that comes back to it.
     pub fn remember_selection(&mut self, rev: SceneRev) {
         let kept = &mut self.selections;
         kept.insert(rev, Default::default());
@@ -359,7 +359,7 @@ impl Hand {
         self.selections.insert(rev, chosen);
     }
 
-    /// Chooses what was chosen last in a state of the scene; all stays if that was nothing.
+    /// Restores the last selection of a state of the scene; without one the present selection stays.
     pub fn recall_selection(&mut self, rev: SceneRev, scene: &Scene) {
         let (mut ids, mut things) = self.selections.get(&rev).cloned().unwrap_or_default();
         ids.retain(|id| scene.frame().boxes.contains_key(id));

@@ -1,22 +1,22 @@
-//! What a tool draws over a view, as plain data: lines, areas and texts, each with the part that it plays.
+//! Marks that a tool draws over a view, as plain data: lines, areas and texts, each with its role.
 
 use glam::{DVec2, DVec3};
 
 use crate::voxel_ops::Cell;
 use scene::{BevLayer, Form, SceneBox};
 
-/// What something drawn is; the window chooses the colour.
+/// Role of a mark; the window chooses its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Comes into this layer.
+    /// Painted into this layer.
     Paint(BevLayer),
-    /// Goes away.
+    /// Erased.
     Erase,
-    /// Chooses or marks.
+    /// Selection or marking.
     Choose,
-    /// Is measured.
+    /// Measurement.
     Measure,
-    /// Is on its way.
+    /// Drawn at the moment, or under the pointer.
     Hand,
     /// Axis x, y or z.
     Axis(usize),

@@ -1,5 +1,5 @@
-//! The measure tool: points on the ground or, in the 3D view, on what lies under the pointer; the distances between them and the
-//! angle at the middle one.
+//! The measure tool: points on the ground or, in the 3D view, on the surface under the pointer; the distances between
+//! them and the angle at the middle one.
 
 use glam::{DVec2, DVec3};
 
@@ -41,7 +41,8 @@ pub struct Ruler {
     measure: Measure,
 }
 
-/// The point under one of the screen: from above on the ground, caught by the boxes near to it; in space on what is met.
+/// The point under a point of the screen: in the view from above on the ground, snapped to the boxes near it; in the 3D
+/// view on the surface that is hit.
 fn point(frame: &Frame, view: &dyn View, at: DVec2) -> Option<DVec3> {
     let ray = view.ray(at)?;
     match view.kind() {

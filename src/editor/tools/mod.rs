@@ -1,5 +1,5 @@
-//! The tools: each is one file with a state machine that knows no window. Plain events go in, edits come out; what a
-//! tool shows and offers is data. Adding one takes its file and its line in [`all`].
+//! The tools: each is one file with a state machine that knows no window. Plain events go in, edits come out; marks and
+//! options are data. A new tool takes its file and its line in [`all`].
 
 pub mod add_box;
 pub mod beside;
@@ -64,7 +64,7 @@ pub fn all() -> &'static [&'static ToolDef] {
 }
 
 impl ToolId {
-    /// What the table says of it; the first tool for a name that is not there.
+    /// The table's row of this tool; the first tool for an unknown name.
     pub fn def(self) -> &'static ToolDef {
         let tools = all();
         tools.iter().find(|t| t.id == self).unwrap_or(&tools[0])

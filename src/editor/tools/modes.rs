@@ -1,8 +1,8 @@
-//! What brushes and the voxel tool do with a drag: shapes, verbs, modes, each with its name and hint.
+//! Modes of the brushes and of the voxel tool: shapes, verbs, modes, each with its name and hint.
 
 use serde::{Deserialize, Serialize};
 
-/// What the voxel brush does.
+/// Verb of the voxel brush.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VoxelVerb {
@@ -36,7 +36,7 @@ pub enum ChooseBy {
     Polygon,
 }
 
-/// What the voxel brush covers.
+/// Shape of the voxel brush.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VoxelTip {
@@ -67,11 +67,11 @@ impl VoxelTip {
     }
 }
 
-/// What a drag of the brush draws.
+/// Shape that a drag of the brush draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PaintShape {
-    /// A stroke along the way; straight with Ctrl.
+    /// A stroke along the pointer's way; straight with Ctrl.
     #[default]
     Stroke,
     /// An upright rectangle from corner to corner.
@@ -82,7 +82,7 @@ pub enum PaintShape {
     Polygon,
     /// A street along points.
     Street,
-    /// What is connected and alike.
+    /// Fills connected cells that are alike.
     Fill,
     /// Takes over the layer under the pointer.
     Pick,
@@ -94,11 +94,11 @@ pub enum RegionShape {
     /// From corner to corner.
     #[default]
     Rectangle,
-    /// What an outline goes around.
+    /// Inside of a drawn outline.
     Lasso,
-    /// The same, set corner by corner.
+    /// Inside of an outline that is set corner by corner.
     Polygon,
-    /// Along the way.
+    /// Brush stroke along the pointer's way.
     Brush,
 }
 
@@ -120,7 +120,7 @@ impl PaintShape {
     ];
 }
 
-/// What a drag of the voxel tool does.
+/// Mode of the voxel tool.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VoxelMode {
@@ -131,17 +131,17 @@ pub enum VoxelMode {
     Block,
     /// A straight line.
     Row,
-    /// What is connected and of one class.
+    /// Fills connected voxels of one class.
     Fill,
-    /// Chooses what is connected and of one class.
+    /// Chooses connected voxels of one class.
     Wand,
-    /// Chooses in a box on the ground, its height by the wheel.
+    /// Chooses in a box on the ground; the wheel sets its height.
     ChooseBlock,
     /// Chooses in a sphere.
     ChooseSphere,
     /// Chooses in an outline on the screen.
     ChooseLasso,
-    /// The same, set corner by corner.
+    /// Chooses in an outline on the screen that is set corner by corner.
     ChoosePolygon,
     /// Pulls a face out or pushes it in.
     Extrude,

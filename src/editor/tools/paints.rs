@@ -1,10 +1,11 @@
-//! Layers and classes by their place in the list of the tool in hand, and the one before: what the keys 1 to 0 and X take.
+//! Layers and classes by their place in the list of the current tool, for the keys 1 to 0; and the one before, for the
+//! key X.
 
 use scene::{BevLayer, Class};
 
 use super::{Hand, ToolId};
 
-/// What a hand painted with before what it paints with now.
+/// Layers and classes that were painted with last.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PaintsBefore {
     layer: Trail<BevLayer>,
@@ -62,7 +63,7 @@ impl Hand {
         self.note_paint();
     }
 
-    /// Notes what is painted with, however it was chosen.
+    /// Notes the current layer and class, however they were chosen.
     pub fn note_paint(&mut self) {
         self.painted_before.layer.see(self.layer);
         self.painted_before.class.see(self.voxel_class);

@@ -46,7 +46,7 @@ const STANDS_MPS: f64 = 0.3;
 /// The path tool.
 #[derive(Clone, Debug, Default)]
 pub struct Course {
-    /// Where it goes, m; without the place where it is.
+    /// Points of the path, m, without the start, which is the current position.
     points_m: Vec<DVec2>,
 }
 

@@ -1,4 +1,4 @@
-//! Where rays come near to axes and meet planes: how far a pointer pulls along them.
+//! Rays near axes and through planes: the distances by which a pointer pulls along them.
 
 use glam::DVec3;
 
@@ -11,7 +11,7 @@ use super::farthest_m;
 /// Rays this near to parallel with an axis say nothing about it.
 const PARALLEL: f64 = 1e-6;
 
-/// Where along a line through `point` the ray comes nearest, m; `None` for a ray that runs along it.
+/// Place along a line through `point` at which the ray comes nearest, m; `None` for a ray that runs along it.
 pub(super) fn along_axis(ray: &Ray, point_m: DVec3, axis: DVec3) -> Option<f64> {
     let (d, w) = (ray.direction_in_ego, point_m - ray.origin_in_ego);
     let b = axis.dot(d);
@@ -19,14 +19,14 @@ pub(super) fn along_axis(ray: &Ray, point_m: DVec3, axis: DVec3) -> Option<f64> 
     (denominator > PARALLEL).then(|| (b * d.dot(w) - axis.dot(w)) / denominator)
 }
 
-/// Where a ray meets the plane through a point across an axis of the grid.
+/// The place where a ray meets the plane through a point across an axis of the grid.
 pub(super) fn on_plane(extent: Extent, ray: &Ray, point_m: DVec3, axis: usize) -> Option<DVec3> {
     let d = ray.direction_in_ego[axis];
     if d.abs() < PARALLEL {
         return None;
     }
     let t = (point_m[axis] - ray.origin_in_ego[axis]) / d;
-    // Not by distance: the rays of an orthographic view begin far away.
+    // The limit is on the place, not on the distance along the ray: the rays of an orthographic view begin far away.
     let p = ray.at(t);
     (t >= 0.0 && p.abs().max_element() < farthest_m(extent)).then_some(p)
 }

@@ -1,4 +1,4 @@
-//! The region tool: marks what to inpaint, by rectangles, outlines or a brush.
+//! The region tool: marks areas to inpaint, by rectangles, outlines or a brush.
 
 use glam::DVec2;
 
@@ -50,7 +50,7 @@ const WAYS: [(RegionShape, &str, &str); 4] = [
     ),
 ];
 
-/// What is being marked, ego frame, m.
+/// Mark that is being drawn, ego frame, m.
 #[derive(Clone, Debug, PartialEq)]
 enum Drag {
     Rectangle { from_m: DVec2, to_m: DVec2 },
@@ -61,7 +61,7 @@ enum Drag {
 /// The region tool.
 #[derive(Clone, Debug, Default)]
 pub struct Marker {
-    /// What is being marked, and whether it marks or takes the mark away.
+    /// Mark that is being drawn; true if it marks, false if it takes the mark away.
     drag: Option<(Drag, bool)>,
     /// Corners of an outline.
     corners: Corners,
@@ -107,7 +107,7 @@ impl Marker {
     }
 }
 
-/// True if what is drawn is marked; with Shift, and with Ctrl as where boxes are chosen, the mark is taken away.
+/// True if the drawn area is marked. With Shift or Ctrl (as in the selection of boxes) the mark is taken away.
 fn marks(held: Modifiers) -> bool {
     !(held.shift || held.ctrl)
 }

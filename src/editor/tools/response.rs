@@ -1,4 +1,4 @@
-//! What a tool answers: what becomes of the document, and whether it goes on.
+//! Response of a tool to an event: changes of the document, and whether the drag goes on.
 
 use glam::DVec2;
 
@@ -6,12 +6,12 @@ use crate::Edit;
 use crate::document::Label;
 use scene::Form;
 
-/// One thing that should happen, in order.
+/// One act for the caller to carry out, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Act {
     /// Shows edits on top of the state in which the drag began.
     Preview(Vec<Edit>),
-    /// The same; what cannot be is not shown, and is said when the button comes up.
+    /// Like `Preview`; edits that fail show nothing, and the error is reported when the button comes up.
     Try(Vec<Edit>),
     /// Ends the drag as one undo step of this name.
     Commit(Label),
@@ -36,20 +36,20 @@ pub enum Act {
 pub enum Area {
     /// From corner to corner.
     Rect(DVec2, DVec2),
-    /// What an outline goes around.
+    /// Inside of an outline.
     Outline(Vec<DVec2>),
-    /// What a brush of that width passes on its way.
+    /// Stroke of a brush from the first point to the second, of that width.
     Stroke(DVec2, DVec2, f64),
     /// All of the map.
     All,
 }
 
-/// What comes of an event.
+/// Response of a tool to an event.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Response {
-    /// What should happen.
+    /// Acts to carry out.
     pub acts: Vec<Act>,
-    /// A key or turn of the wheel was meant for the tool, and is nobody else's.
+    /// True if a key or turn of the wheel was meant for the tool, so that no other handler gets it.
     pub taken: bool,
     /// After a press: the tool follows the pointer until the button comes up.
     pub holds: bool,
@@ -58,7 +58,7 @@ pub struct Response {
 }
 
 impl Response {
-    /// Nothing.
+    /// No response.
     pub fn none() -> Self {
         Self::default()
     }
@@ -71,7 +71,7 @@ impl Response {
         }
     }
 
-    /// The key was the tool's.
+    /// Tells that the tool took the key.
     pub fn taken() -> Self {
         Self {
             taken: true,
@@ -84,13 +84,13 @@ impl Response {
         Self::default().and(act)
     }
 
-    /// One act more.
+    /// Adds one act.
     pub fn and(mut self, act: Act) -> Self {
         self.acts.push(act);
         self
     }
 
-    /// Acts more.
+    /// Adds several acts.
     pub fn with(mut self, acts: impl IntoIterator<Item = Act>) -> Self {
         self.acts.extend(acts);
         self

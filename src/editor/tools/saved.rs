@@ -1,4 +1,4 @@
-//! Brushes that the user keeps: what a brush draws and how, under a name; voxels kept as a stamp among them.
+//! Saved brushes: the settings of a brush under a name; voxels kept as a stamp among them.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use scene::{BevLayer, Class, Frame};
 use super::{Hand, PaintShape, ToolId, VoxelMode, VoxelTip, VoxelVerb};
 use crate::voxel_ops::Cell;
 
-/// Voxels that are set down together: where, from the middle of their underside, and of what class.
+/// Voxels that are set down together: their places from the middle of their underside, and their classes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Stamp {
@@ -18,7 +18,7 @@ impl Stamp {
     /// Most voxels of one.
     pub const MOST: usize = 50_000;
 
-    /// Of voxels of a frame; what is free there is left out. None if nothing is left, or too much.
+    /// Makes a stamp of the voxels of a frame that are not free. `None` if none are left, or more than [`Self::MOST`].
     pub fn of(frame: &Frame, cells: &[Cell]) -> Option<Self> {
         let label =
             |[x, y, z]: Cell| Class::from_id(frame.occupancy.get(x, y, z)).filter(|c| *c != Class::Free);
@@ -72,26 +72,26 @@ impl Stamp {
     }
 }
 
-/// What a brush draws and how.
+/// Saved settings of a brush.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Held {
     /// The brush of the map.
     Map {
-        /// What it paints.
+        /// Layer that it paints.
         layer: BevLayer,
-        /// What a drag draws.
+        /// Shape that a drag draws.
         shape: PaintShape,
         /// Its diameter, m.
         size_m: f64,
-        /// It clears.
+        /// True if it clears.
         erase: bool,
     },
     /// The voxel brush.
     Voxels {
-        /// What a drag does.
+        /// Mode of a drag.
         mode: VoxelMode,
-        /// What becomes of the voxels.
+        /// Verb that a drag applies to the voxels.
         verb: VoxelVerb,
         /// Their class.
         class: Class,
@@ -99,7 +99,7 @@ pub enum Held {
         size: usize,
         /// Height, voxels.
         height: usize,
-        /// What it covers.
+        /// Shape of the brush.
         #[serde(default)]
         tip: VoxelTip,
     },
@@ -112,7 +112,7 @@ pub enum Held {
 pub struct SavedBrush {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Settings of the brush.
     pub held: Held,
 }
 

@@ -1,4 +1,5 @@
-//! Options of a tool as a list: what the panel shows, and what comes back when the user changes one.
+//! Options of a tool as a list: the controls that the panel shows, and the values that come back when the user changes
+//! one.
 
 use scene::Class;
 
@@ -7,7 +8,7 @@ use scene::Class;
 pub struct Setting {
     /// Its name, for the tool.
     pub id: &'static str,
-    /// What it looks like, and what it is now.
+    /// Control that shows it, with its current value.
     pub control: Control,
 }
 
@@ -38,20 +39,20 @@ pub enum Control {
     List {
         /// Beside it; empty if there is none.
         title: &'static str,
-        /// What a screen reader calls it.
+        /// Name for a screen reader.
         label: &'static str,
         /// The one chosen.
         chosen: usize,
         /// Name and hint of each.
         choices: Vec<(String, &'static str)>,
     },
-    /// One of several, each in a row; what a row does is called `verb name`.
+    /// One of several, each in a row; the action of a row is named `verb name`.
     Rows {
         /// The one chosen.
         chosen: usize,
         /// Their names.
         names: Vec<&'static str>,
-        /// What taking one does.
+        /// Verb for the name of a row.
         verb: &'static str,
     },
     /// On or off.
@@ -63,18 +64,18 @@ pub enum Control {
         /// More about it.
         hint: &'static str,
     },
-    /// A class, in two columns; what a row does is called `verb class`.
+    /// A class, in two columns; the action of a row is named `verb class`.
     Class {
         /// The one chosen.
         chosen: Class,
-        /// Which there are.
+        /// Classes to choose from.
         classes: Vec<Class>,
-        /// What taking one does.
+        /// Verb for the name of a row.
         verb: &'static str,
     },
     /// Does something at once.
     Button {
-        /// What is written on it.
+        /// Text on the button.
         title: &'static str,
         /// More about it.
         hint: &'static str,
@@ -94,7 +95,7 @@ pub enum Control {
 pub struct Number {
     /// Beside the slider.
     pub title: &'static str,
-    /// What a screen reader calls it.
+    /// Name for a screen reader.
     pub label: &'static str,
     /// More about it.
     pub hint: &'static str,
@@ -112,18 +113,18 @@ pub struct Number {
     pub wide: bool,
 }
 
-/// What the user set an option to.
+/// Value that the user set an option to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// Of a number.
+    /// Value of a number.
     Number(f64),
-    /// Of segments, lists and rows.
+    /// Index in segments, lists and rows.
     Index(usize),
-    /// Of a toggle.
+    /// State of a toggle.
     On(bool),
-    /// Of a class.
+    /// Class of a class list.
     Class(Class),
-    /// A button.
+    /// Press of a button.
     Pressed,
 }
 
@@ -236,7 +237,7 @@ impl Setting {
     }
 }
 
-/// Where a value stands among those to choose from; the first if it is none of them.
+/// Index of a value among those to choose from; the first if it is none of them.
 pub fn index_in<T: Copy + PartialEq>(chosen: T, all: &[(T, &'static str, &'static str)]) -> usize {
     all.iter().position(|c| c.0 == chosen).unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! What a tool is: its name, its row of the table, and the state machine that each of them is.
+//! Tools: their names, their rows of the table, and the state machine that each of them is.
 
 use std::borrow::Cow;
 use std::fmt::Debug;
@@ -9,7 +9,7 @@ use scene::Frame;
 
 use super::{Act, Context, Event, Hand, Mark, Response, Setting, Sight, Value, ViewKind};
 
-/// The name of a tool: that of the action that takes it, too.
+/// Name of a tool; the action that takes the tool has the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ToolId(pub &'static str);
 
@@ -18,7 +18,7 @@ impl ToolId {
     pub const SELECT: Self = Self("select_tool");
     /// The one that paints the map.
     pub const BRUSH: Self = Self("brush_tool");
-    /// The one whose brush is as wide as so many voxels.
+    /// The one whose brush has a size in voxels.
     pub const VOXEL: Self = Self("voxel_brush");
 }
 
@@ -35,9 +35,9 @@ pub struct ToolDef {
     pub icon: &'static str,
     /// Its part of the tool bar.
     pub group: Group,
-    /// It is a brush: the keys for size change the brush, not the height of things.
+    /// True for a brush: the keys for size change the brush, not the height of things.
     pub is_brush: bool,
-    /// It paints the map or voxels: its letter keys work even if something is chosen.
+    /// True if it paints the map or voxels: its letter keys work even if objects are chosen.
     pub paints: bool,
     /// Actions that take it, one for each way of using it.
     pub shortcuts: &'static [Shortcut],
@@ -63,24 +63,24 @@ pub struct Shortcut {
     pub title: &'static str,
     /// Default chords, separated by blanks.
     pub keys: &'static str,
-    /// When its chords count.
+    /// Condition under which its chords count.
     pub when: When,
-    /// What it changes: mostly it takes the tool.
+    /// Change of the hand: mostly it takes the tool.
     pub set: fn(&mut Hand),
 }
 
-/// When the chords of a shortcut count.
+/// Condition under which the chords of a shortcut count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// Always.
     Always,
     /// With the pointer over the 3D view.
     OverSpace,
-    /// While something is chosen and no brush is in hand.
+    /// While objects are chosen and no brush is in hand.
     Chosen,
 }
 
-/// What the pointer looks like.
+/// Shape of the pointer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cursor {
     /// An arrow.
@@ -88,19 +88,19 @@ pub enum Cursor {
     Default,
     /// A cross.
     Crosshair,
-    /// Not at all: what is drawn shows where it is.
+    /// Hidden: the drawn marks show where it is.
     Hidden,
-    /// Nothing can be done here.
+    /// No action is possible here.
     Forbidden,
-    /// Something is chosen here.
+    /// A click chooses an object here.
     Pointing,
-    /// Something is moved here.
+    /// A drag moves an object here.
     Move,
-    /// Something is turned here.
+    /// A drag turns an object here.
     Turn,
 }
 
-/// What the mouse buttons do, in a few parts.
+/// Hint for the mouse buttons, in a few parts.
 pub type Hint = Vec<Cow<'static, str>>;
 
 /// Parts of a hint that do not change.
@@ -108,15 +108,15 @@ pub fn hint_of(parts: &[&'static str]) -> Hint {
     parts.iter().map(|p| Cow::Borrowed(*p)).collect()
 }
 
-/// A state machine: what the pointer does with a tool in hand.
+/// State machine of a tool, driven by pointer and keys.
 pub trait Tool: Debug + Send {
     /// Handles an event.
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response;
 
-    /// What buttons and held keys do, as they count in the view under the pointer.
+    /// The hint for buttons and held keys, as they count in the view under the pointer.
     fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint;
 
-    /// What the pointer looks like over a view.
+    /// The cursor over a view.
     fn cursor(&self, sight: &Sight<'_>) -> Cursor;
 
     /// Marks to draw over a view.
@@ -137,12 +137,12 @@ pub trait Tool: Debug + Send {
         Vec::new()
     }
 
-    /// Points set so far, ego frame, m, of what is drawn or measured point by point.
+    /// Points set so far of a form that is drawn or measured point by point, ego frame, m.
     fn points_m(&self) -> &[DVec2] {
         &[]
     }
 
-    /// The view in which it is used point by point, if that is one alone: keys for points are told there.
+    /// The view in which the tool draws point by point, if it is only one: keys for points are sent there.
     fn draws_in(&self) -> Option<ViewKind> {
         None
     }
@@ -162,10 +162,10 @@ pub trait Tool: Debug + Send {
     fn restart(&mut self) {}
 }
 
-/// Which keys a tool wants beside the pointer.
+/// Keys that a tool wants beside the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wants {
-    /// Nothing.
+    /// No key.
     Nothing,
     /// Escape alone.
     Escape,

@@ -1,4 +1,4 @@
-//! All tools, each with what it holds; one of them is in hand.
+//! All tools with their states; one of them is in hand.
 
 use glam::DVec2;
 
@@ -19,7 +19,7 @@ impl Default for Toolbox {
 }
 
 impl Clone for Toolbox {
-    /// Tools with nothing in the middle: a drag belongs to one window.
+    /// Makes tools in their initial state: a drag belongs to one window.
     fn clone(&self) -> Self {
         Self::default()
     }
@@ -51,14 +51,14 @@ impl Toolbox {
         hand.tool = id;
     }
 
-    /// What is drawn with tools for which it matters is dropped.
+    /// Drops unfinished drawings of tools that are put down.
     pub fn put_down(&mut self) {
         for tool in &mut self.tools {
             tool.put_down();
         }
     }
 
-    /// Does what the action of a tool says: mostly it takes the tool. False if there is no such action.
+    /// Runs the action of a tool: mostly it takes the tool. False if there is no such action.
     pub fn shortcut(&mut self, hand: &mut Hand, id: &str) -> bool {
         let Some((def, shortcut)) = super::shortcut(id) else {
             return false;

@@ -1,4 +1,4 @@
-//! What a tool is told and what it sees: the view under the pointer, the scene, and plain events of pointer and keys.
+//! Input of the tools: the view under the pointer, the scene, and plain events of pointer and keys.
 
 use glam::{DVec2, DVec3};
 
@@ -12,7 +12,7 @@ pub const CLICK_SLACK: f64 = 4.0;
 /// Size of handles under the pointer, points.
 pub const HANDLE_REACH: f64 = 8.0;
 
-/// Which of the large views.
+/// Kind of a large view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewKind {
     /// From above.
@@ -21,11 +21,11 @@ pub enum ViewKind {
     Space,
 }
 
-/// Where ego frame and screen meet. Points of the screen are in the window's points, y down.
+/// Projection between ego frame and screen. Points of the screen are in the window's points, y down.
 pub trait View {
-    /// Which view it is.
+    /// Kind of the view.
     fn kind(&self) -> ViewKind;
-    /// Where a point of the ego frame (m) appears; `None` behind the eye.
+    /// Point of the screen at which a point of the ego frame (m) appears; `None` behind the eye.
     fn project(&self, p_m: DVec3) -> Option<DVec2>;
     /// The ray under a point of the screen; from above it falls straight down.
     fn ray(&self, at: DVec2) -> Option<Ray>;
@@ -42,19 +42,19 @@ pub fn farthest_m(extent: Extent) -> f64 {
     corner.truncate().length().max(LEAST_M)
 }
 
-/// What a tool reads, and the options and selection that it changes.
+/// Input of a tool, and the options and selection that it changes.
 pub struct Context<'a> {
     /// The scene shown, a drag in progress included.
     pub scene: &'a Scene,
-    /// The scene without the drag in progress: what a stroke picks against.
+    /// The scene without the drag in progress: strokes pick against it.
     pub settled: &'a Scene,
     /// The view under the pointer.
     pub view: &'a dyn View,
-    /// What the user holds.
+    /// Options and selection of the user.
     pub hand: &'a mut Hand,
 }
 
-/// The same to look at only, for what is drawn.
+/// Read-only form of [`Context`], for marks, cursors and hints.
 #[derive(Clone, Copy)]
 pub struct Sight<'a> {
     /// The scene shown, a drag in progress included.
@@ -63,7 +63,7 @@ pub struct Sight<'a> {
     pub settled: &'a Scene,
     /// The view that is drawn.
     pub view: &'a dyn View,
-    /// What the user holds.
+    /// Options and selection of the user.
     pub hand: &'a Hand,
     /// The pointer, if it is over the view.
     pub pointer: Option<Pointer>,
@@ -98,7 +98,7 @@ impl Sight<'_> {
     }
 }
 
-/// Where the ray under a point of the screen meets ground, voxels or boxes, ego frame, m.
+/// The point where the ray under a point of the screen meets ground, voxels or boxes, ego frame, m.
 fn ground_m(view: &dyn View, scene: &Scene, at: DVec2) -> Option<DVec2> {
     let ray = view.ray(at)?;
     if view.kind() == ViewKind::Bev {
@@ -131,7 +131,7 @@ pub struct Modifiers {
 /// The pointer over a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pointer {
-    /// Where, points of the window.
+    /// Position, points of the window.
     pub at: DVec2,
     /// Keys that are held.
     pub held: Modifiers,
@@ -140,9 +140,9 @@ pub struct Pointer {
 /// Keys that a tool may ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// Drops what is drawn point by point.
+    /// Drops a form that is drawn point by point.
     Escape,
-    /// That is it.
+    /// Finishes what is drawn or typed.
     Enter,
     /// Takes the last point or digit back.
     Backspace,
@@ -152,18 +152,19 @@ pub enum Key {
     Digit(char),
 }
 
-/// What the user did.
+/// Event of pointer, keys or wheel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
     /// The primary button went down.
     Press(Pointer),
-    /// It went down in space with Alt held, which turns the camera: what is there can be taken over.
+    /// The primary button went down in the 3D view with Alt held, which turns the camera: options can be picked up from
+    /// the object there.
     Pick(Pointer),
     /// The pointer moved with the button down.
     Drag(Pointer),
     /// The button came up.
     Release(Pointer),
-    /// The drag is off: what was pressed or shown is forgotten.
+    /// The drag is cancelled: the press and its preview are dropped.
     Cancel,
     /// A key went down; true for the repetition of one that is held.
     Key(Key, bool, Modifiers),

@@ -1,14 +1,14 @@
-//! Who is where at the moments that those look at who follow, worked out once for all of them.
+//! Positions of all objects at the moments that followers look at, worked out once for all followers.
 
 use scene::{BoxId, Scene};
 
 use super::follow::{Other, STEP_S};
 use super::template::everybody_at;
 
-/// Most places that are kept; in a larger scene they are worked out whenever they are asked for.
+/// Most positions that are kept; in a larger scene they are worked out on each call.
 const MOST: usize = 500_000;
 
-/// Who is where, from a moment of a scene on.
+/// Positions of all objects from a moment of a scene on.
 pub(crate) struct Everybody<'s> {
     scene: &'s Scene,
     from_s: f64,
@@ -16,7 +16,7 @@ pub(crate) struct Everybody<'s> {
 }
 
 impl<'s> Everybody<'s> {
-    /// Over `length_s` from `from_s` on.
+    /// Works the positions out over `length_s` from `from_s` on.
     pub(crate) fn of(scene: &'s Scene, from_s: f64, length_s: f64) -> Self {
         let moments = (length_s / STEP_S).ceil().clamp(1.0, 6000.0) as usize + 2;
         let bodies = scene.canvas().boxes.len() + scene.clip().tracks.len() + 1;
@@ -29,7 +29,7 @@ impl<'s> Everybody<'s> {
         }
     }
 
-    /// All but one, so long after the first moment.
+    /// The objects without `own`, so long after the first moment.
     pub(crate) fn others(&self, own: Option<BoxId>, after_s: f64) -> Vec<Other> {
         let mut all = match self.table.get((after_s / STEP_S).round() as usize) {
             Some(all) => all.clone(),

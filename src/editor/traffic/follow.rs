@@ -7,14 +7,14 @@ use scene::clip::Speed;
 use scene::road_map::project;
 use scene::{BoxId, Class, SceneBox};
 
-/// How somebody drives.
+/// Parameters of a driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Driver {
-    /// Speed on a free road, m/s.
+    /// Speed behind a vehicle that is faster than `desired_mps`, m/s: a follower goes as fast as it takes to keep up.
     pub desired_mps: f64,
-    /// Speed behind somebody who is faster than that, m/s: who follows goes as fast as it takes.
+    /// Speed behind a vehicle that is faster than `desired_mps`, m/s: a follower goes as fast as it takes to keep up.
     pub catching_up_mps: f64,
-    /// Time kept to the vehicle ahead, s.
+    /// Free distance kept at every speed, m, instead of `headway_s` and `gap_m`.
     pub headway_s: f64,
     /// Distance kept while standing, m.
     pub gap_m: f64,
@@ -40,8 +40,8 @@ impl Driver {
         }
     }
 
-    /// Acceleration at a speed, with somebody `ahead` (free distance, m; their speed, m/s), m/s². At least -9: tyres do no
-    /// more.
+    /// Acceleration at a speed, m/s², with a vehicle `ahead` (free distance, m; its speed, m/s). At least -9: tyres do
+    /// no more.
     pub fn acceleration(&self, mps: f64, ahead: Option<(f64, f64)>) -> f64 {
         let desired_mps = ahead.map_or(self.desired_mps, |_| self.desired_mps.max(self.catching_up_mps));
         let free = 1.0 - (mps / desired_mps.max(0.1)).powi(4);
@@ -53,7 +53,8 @@ impl Driver {
         (self.acceleration * (free - near)).max(HARDEST)
     }
 
-    /// Acceleration that keeps a distance to somebody ahead (free distance, m; speed, m/s; acceleration, m/s²), m/s².
+    /// Acceleration that keeps a distance to the vehicle ahead (free distance, m; speed, m/s; acceleration, m/s²),
+    /// m/s².
     fn keeping(&self, keeps_m: f64, mps: f64, (gap_m, other_mps, other_mps2): (f64, f64, f64)) -> f64 {
         let off_m = (gap_m - keeps_m).min(FAR_M);
         let wanted = other_mps2 + PULL * off_m + DAMPING * (other_mps - mps);
@@ -63,12 +64,12 @@ impl Driver {
 
 /// Braking that tyres allow, m/s².
 const HARDEST: f64 = -9.0;
-/// Of a distance that is kept: how strongly it is pulled back, 1/s², and damped, 1/s; from here on no more strongly, m.
+/// Spring of a kept distance, 1/s²; its damping, 1/s; and the deviation from which the pull grows no more, m.
 const PULL: f64 = 1.0;
 const DAMPING: f64 = 2.0;
 const FAR_M: f64 = 8.0;
 
-/// What a class can do on its way: top speed, m/s, and acceleration of somebody in a hurry, m/s².
+/// Limits of a class: top speed, m/s, and acceleration of a driver in a hurry, m/s².
 pub fn can(class: Option<Class>) -> (f64, f64) {
     match class {
         Some(Class::Pedestrian) => (6.0, 2.0),
@@ -79,12 +80,12 @@ pub fn can(class: Option<Class>) -> (f64, f64) {
     }
 }
 
-/// Somebody else on the road at a moment.
+/// Another road user at a moment.
 #[derive(Clone, Copy, Debug)]
 pub struct Other {
-    /// Which box; the ego vehicle if none.
+    /// The box; `None` for the ego vehicle.
     pub id: Option<BoxId>,
-    /// Where, how large, how fast.
+    /// Position, size and velocity.
     pub body: SceneBox,
 }
 
@@ -96,7 +97,7 @@ impl Other {
     }
 }
 
-/// The body of who drives, seen from the point of it that its path leads: a box's middle, the ego vehicle's rear axle.
+/// Body of a driving vehicle, measured from the point that its path leads: a box's middle, the ego vehicle's rear axle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// From there to its front, m.
@@ -105,28 +106,29 @@ pub struct Body {
     pub half_width_m: f64,
 }
 
-/// How somebody followed: speeds, and how it went.
+/// Result of following: speeds, and the gap.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Followed {
     /// Speeds at times.
     pub speeds: Vec<Speed>,
-    /// Free distance to whoever was ahead first, m: as it was, and at the end; none if nobody was.
+    /// Free distance to the first vehicle ahead, m: at the start, and at the end; `None` if none was ahead.
     pub gap_m: Option<[f64; 2]>,
 }
 
 /// Time between two speeds, s.
 pub(crate) const STEP_S: f64 = 0.1;
-/// Who is farther from the path than this, and than both are wide, is not on it, m.
+/// Distance from the path beyond which a vehicle is not on it, m, if it is also farther away than the half-widths of
+/// both bodies together.
 const BESIDE_M: f64 = 1.7;
 
-/// Who is ahead on a path, nearest first by free distance: who, and how far, m.
+/// The nearest road user ahead on a path, by free distance: the user, the distance, m, and the path's direction there.
 pub fn ahead_of(
     points_m: &[DVec2],
     along_m: f64,
     body: &Body,
     others: &[Other],
 ) -> Option<(Other, f64, DVec2)> {
-    // Who is not even near the path's rectangle needs no projection.
+    // Objects that are not even near the path's rectangle need no projection.
     let inf = DVec2::splat(f64::INFINITY);
     let (low, high) = points_m
         .iter()
@@ -139,7 +141,7 @@ pub fn ahead_of(
         }
         let on_path = project(points_m, at_m)?;
         let way = on_path.direction;
-        // Who is beside or behind counts for nothing.
+        // Objects beside or behind do not count.
         let beside_m = BESIDE_M.max(body.half_width_m + other.half_m(way.perp()));
         let is_ahead = on_path.along_m > along_m && on_path.distance_m <= beside_m;
         let gap_m = on_path.along_m - along_m - body.front_m - other.half_m(way);
@@ -148,7 +150,8 @@ pub fn ahead_of(
     found.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Speeds along a path over `length_s`, starting `start_m` along it at `start_mps`. `others` says who is where at a time.
+/// Speeds along a path over `length_s`, starting `start_m` along it at `start_mps`. `others` gives the road users at a
+/// time.
 pub fn follow(
     driver: &Driver,
     points_m: &[DVec2],
@@ -195,7 +198,7 @@ pub fn follow(
         now = then;
     }
     Followed {
-        // (what is kept to the decimetre is told as exactly)
+        // (a gap that is kept to the decimetre needs speeds as exact)
         speeds: thinned(
             &out,
             if driver.keeps_m.is_some() {

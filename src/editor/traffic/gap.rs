@@ -2,12 +2,13 @@
 
 use scene::{BoxId, Class, Clip, Frame, Moving, Scene, SceneBox, SensorRig};
 
-/// The ego vehicle as a box at a time of the clip, world frame; where it stands if it does not move. Its id means nothing.
+/// The ego vehicle as a box at a time of the clip, world frame; its standing place if it does not move. The box's id
+/// has no meaning.
 pub(crate) fn ego_box(scene: &Scene, time_s: f64) -> SceneBox {
     ego_box_of(scene.clip(), scene.canvas(), &scene.rig, time_s)
 }
 
-/// The same of the parts of a scene.
+/// Like [`ego_box`], from the parts of a scene.
 pub(crate) fn ego_box_of(clip: &Clip, canvas: &Frame, rig: &SensorRig, time_s: f64) -> SceneBox {
     let pose = clip.ego_at(time_s, &canvas.world_from_ego, &canvas.layout.relief);
     let ahead = (pose.rotation * glam::DVec3::X).truncate();

@@ -1,4 +1,4 @@
-//! The table of templates: what a motion is called, what it asks for, and how it is made.
+//! The table of templates: names, parameters, and how each motion is made.
 
 use glam::DVec2;
 
@@ -14,33 +14,33 @@ use crate::lanes::nearest_lane;
 
 /// Length of a clip that gets its first motion, s.
 const USUAL_LENGTH_S: f64 = 8.0;
-/// Braking and starting that nobody minds, m/s².
+/// Comfortable braking and starting, m/s².
 const EASY: f64 = 2.0;
-/// How fast somebody on foot starts, m/s².
+/// Acceleration of a pedestrian, m/s².
 const STRIDE: f64 = 3.0;
 /// Width of a lane where none is known, m.
 const LANE_M: f64 = 3.5;
 /// Farthest that a street to turn into is looked for, m.
 const TURN_WITHIN_M: f64 = 150.0;
-/// Whoever is ahead is looked for so far, m.
+/// Distance within which a vehicle ahead is looked for, m.
 const LEADER_WITHIN_M: f64 = 300.0;
-/// Farthest that somebody walks across a road, m.
+/// Farthest way of a pedestrian across a road, m.
 const WIDEST_M: f64 = 60.0;
 
-/// What is asked of a template.
+/// Parameters of a template.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wish {
-    /// Which one.
+    /// The template.
     pub template: Template,
     /// Speed, m/s.
     pub mps: f64,
-    /// When what the template is about begins, s.
+    /// Time at which the template's manoeuvre begins, s.
     pub at_s: f64,
     /// How long a change of lanes takes, s.
     pub over_s: f64,
-    /// Who follows keeps so much to the one ahead, bumper to bumper, m; as much as their speed needs if none.
+    /// Gap that a follower keeps to the vehicle ahead, bumper to bumper, m; `None` for as much as its speed needs.
     pub gap_m: Option<f64>,
-    /// Who follows goes faster than `mps` where the one ahead does.
+    /// True if a follower goes faster than `mps` where the vehicle ahead does.
     pub keeps_up: bool,
 }
 
@@ -106,7 +106,7 @@ pub fn motion_of(scene: &Scene, id: Option<BoxId>, wish: &Wish) -> Result<Vec<Ed
     Ok(edits)
 }
 
-/// Where it is now, and its body.
+/// The current place and the body of a box, or of the ego vehicle.
 fn place(scene: &Scene, id: Option<BoxId>) -> Option<(Moving, Body)> {
     match id {
         Some(id) => {
@@ -133,7 +133,7 @@ pub(crate) fn body_of_ego(scene: &Scene) -> Body {
     }
 }
 
-/// How fast whoever is ahead of something on its lane goes at the moment that is shown, m/s; none if nobody is.
+/// Speed of the vehicle ahead on an object's lane at the moment that is shown, m/s; `None` if none is ahead.
 pub(crate) fn leader_mps(scene: &Scene, id: Option<BoxId>) -> Option<f64> {
     let (from, body) = place(scene, id)?;
     let points_m = lane_path(&scene.frame().layout, &from, LEADER_WITHIN_M);
@@ -141,7 +141,7 @@ pub(crate) fn leader_mps(scene: &Scene, id: Option<BoxId>) -> Option<f64> {
     Some(leader.body.velocity_mps.dot(way))
 }
 
-/// Speeds of somebody who follows along a path. Errors in one line, where whoever is ahead gets away.
+/// Speeds of a follower along a path. Errors in one line if the vehicle ahead gets away.
 fn following(
     scene: &Scene,
     id: Option<BoxId>,
@@ -166,7 +166,7 @@ fn following(
         };
         let steps = (length_s / 0.5).ceil().clamp(1.0, 1200.0) as usize;
         fastest_mps = (0..=steps).map(|i| speed(i as f64 * 0.5)).fold(0.0, f64::max);
-        // (faster than them, or what opened up would never close)
+        // (faster than them, or a gap that opened would never close)
         driver.catching_up_mps = (fastest_mps * 1.3 + 1.0).min(top_mps);
         driver.acceleration = acceleration;
     }
@@ -286,7 +286,7 @@ fn path_of(
 fn around_the_corner(turning: &Turning, mps: f64) -> Vec<Speed> {
     let [begin_m, end_m] = turning.corner_m;
     let slow = turning.mps.min(mps).max(0.1);
-    // Who is too near to brake in comfort is slower from the start.
+    // A vehicle that is too near to brake in comfort is slower from the start.
     let first = mps.min((slow * slow + 2.0 * EASY * begin_m).sqrt());
     let braked_m = (first * first - slow * slow) / (2.0 * EASY);
     let brake_s = (begin_m - braked_m) / first.max(0.1);
@@ -315,14 +315,14 @@ fn easing(list: &[(f64, f64)]) -> Vec<Speed> {
     out
 }
 
-/// Who else is on the road at a time.
+/// The other road users at a time.
 pub(crate) fn others(scene: &Scene, own: Option<BoxId>, time_s: f64) -> Vec<Other> {
     let mut all = everybody_at(scene, time_s);
     all.retain(|o| o.id != own);
     all
 }
 
-/// Everybody on the road at a time, the ego vehicle too.
+/// All road users at a time, the ego vehicle too.
 pub(crate) fn everybody_at(scene: &Scene, time_s: f64) -> Vec<Other> {
     let of = |b: &SceneBox| Other {
         id: Some(b.id),
@@ -402,8 +402,8 @@ fn across(scene: &Scene, from: &Moving) -> Vec<DVec2> {
     vec![from.at_m, from.at_m + way * end_m]
 }
 
-/// When the ego vehicle and an object come as near as asked, s: the free distance between the two, bumper to bumper where one is
-/// behind the other. `None` if they never do.
+/// The time at which the ego vehicle and an object come as near as asked, s: the free distance between the two, bumper
+/// to bumper where one is behind the other. `None` if they never do.
 pub fn time_near(clip: &Clip, canvas: &scene::Frame, rig: &SensorRig, id: BoxId, gap_m: f64) -> Option<f64> {
     let relief = &canvas.layout.relief;
     let gap_at = |time_s: f64| {

@@ -21,7 +21,7 @@ const TIGHT_M: f64 = 6.5;
 const SHARPEST_RAD: f64 = 0.5;
 /// Distance between points, m.
 const STEP_M: f64 = 1.0;
-/// Sideways acceleration that nobody minds, m/s².
+/// Comfortable sideways acceleration, m/s².
 const ASIDE_MPS2: f64 = 2.0;
 
 /// A way with a corner.
@@ -29,7 +29,7 @@ const ASIDE_MPS2: f64 = 2.0;
 pub struct Turning {
     /// Points a metre or less apart.
     pub points_m: Vec<DVec2>,
-    /// Where the corner begins and ends, m along the way.
+    /// Begin and end of the corner, m along the way.
     pub corner_m: [f64; 2],
     /// Speed around it, m/s.
     pub mps: f64,
@@ -59,7 +59,7 @@ pub fn turning(layout: &BevLayout, own_m: &[DVec2], left: bool, length_m: f64) -
         let length = pair[0].distance(pair[1]);
         let meet = |(i, lane): &(usize, &Polyline)| meeting(pair, passed_m, (*i, lane), left);
         let here = lanes.iter().filter_map(meet);
-        // A corner begins ahead of what turns.
+        // A corner begins ahead of the turning vehicle.
         let possible = here.filter(|m| m.along_m > radius_m + 1.0 && goes_on(layout, &m.lane, radius_m));
         let mut possible: Vec<Meeting> = possible.collect();
         possible.sort_by(|a, b| a.along_m.total_cmp(&b.along_m));
@@ -74,7 +74,7 @@ pub fn turning(layout: &BevLayout, own_m: &[DVec2], left: bool, length_m: f64) -
     None
 }
 
-/// Where a piece of the own way meets a lane that leads to the side asked for.
+/// Place where a piece of the own way meets a lane that leads to the side asked for.
 fn meeting(pair: &[DVec2], passed_m: f64, (line, lane): (usize, &Polyline), left: bool) -> Option<Meeting> {
     let own = pair[1] - pair[0];
     let points = &lane.points_m;

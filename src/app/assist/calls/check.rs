@@ -32,7 +32,7 @@ fn yes() -> bool {
 /// Receipt of `check`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Checked {
-    /// What was found, errors first; at most 200.
+    /// Findings, errors first; at most 200.
     findings: Vec<Found>,
     /// Open findings that are errors.
     errors: usize,
@@ -42,27 +42,27 @@ pub struct Checked {
     infos: usize,
     /// Findings that were waived: they may stand.
     waived: usize,
-    /// What the repairs changed, if they were asked for.
+    /// Changes by the repairs, if they were asked for.
     fixed: Option<Done>,
     /// Number of the state that was checked.
     revision: u64,
 }
 
-/// Something that a check found.
+/// A finding of a check.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Found {
     /// Name of the check.
     check: String,
     /// `error`, `warning` or `info`.
     severity: String,
-    /// Where, world frame, m.
+    /// Position, world frame, m.
     where_m: [f64; 3],
-    /// When, s; none if it is about the moment that is shown.
+    /// Time, s; none if it is about the moment that is shown.
     time_s: Option<f64>,
     /// The box that it is about.
     #[serde(rename = "box")]
     box_id: Option<u32>,
-    /// What is wrong, in a line.
+    /// The problem, in a line.
     text: String,
     /// Why it may stand, if it was waived.
     waived: Option<String>,

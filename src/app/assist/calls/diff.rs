@@ -1,4 +1,4 @@
-//! `diff`: what differs between the scene and another state.
+//! `diff`: differences between the scene and another state.
 
 use anyhow::{Context, bail};
 use schemars::JsonSchema;
@@ -24,7 +24,7 @@ pub struct Diff {
 /// Receipt of `diff`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Difference {
-    /// What it was compared with.
+    /// Name of the version or file it was compared with.
     against: String,
     /// From there to the scene as it is now.
     changed: Change,

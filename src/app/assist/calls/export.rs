@@ -44,15 +44,15 @@ fn usual_size() -> [u32; 2] {
 pub struct Exported {
     /// The files.
     files: Vec<FileEntry>,
-    /// What they hold.
+    /// Content of the files.
     holds: String,
-    /// What of that does not come back when they are read again; empty if all of it does.
+    /// Content that is lost when they are read again; empty if none is.
     lost: String,
     /// Number of the state that was written.
     revision: u64,
 }
 
-/// What a name of one file must end in: `.npz`.
+/// The ending that the name of a file must have: `.npz`.
 fn ending(file_name: &str) -> &str {
     file_name.find('.').map_or("", |dot| &file_name[dot..])
 }

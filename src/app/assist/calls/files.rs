@@ -1,4 +1,4 @@
-//! `list_files`: what is in the folder.
+//! `list_files`: the files of the folder.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -40,7 +40,7 @@ pub struct Generate {
 /// Receipt of `generate`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Generated {
-    /// What changed.
+    /// Changes of the scene.
     #[serde(flatten)]
     done: Done,
     /// Columns that were generated.
@@ -51,7 +51,7 @@ pub struct Generated {
     network_calls: usize,
     /// Time by stage, s.
     wall_s: BTreeMap<String, f64>,
-    /// What is worth knowing.
+    /// Remarks on the generation.
     notes: Vec<String>,
 }
 

@@ -34,7 +34,7 @@ fn one() -> u32 {
 /// Receipt of `undo` and `redo`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Moved {
-    /// What changed.
+    /// Changes of the scene.
     #[serde(flatten)]
     done: Done,
     /// Names of the steps that were undone or redone, in that order.
@@ -61,7 +61,7 @@ fn travel(desk: &mut Desk, steps: u32, back: bool) -> anyhow::Result<Moved> {
         bail!("there is nothing to {verb}");
     }
     let mut done = desk.done(format!("{what} {}", names.join(", ")), &states);
-    // What came back was looked at when it was made.
+    // A state that comes back was checked when it was made.
     done.warnings.clear();
     if names.len() < steps as usize {
         let found = names.len();

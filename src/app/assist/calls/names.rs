@@ -1,4 +1,4 @@
-//! Arguments that are one of several names: their schemas list the names, and what is none of them is refused.
+//! Arguments that are one of several names: their schemas list the names, and other values are refused.
 
 use anyhow::bail;
 use schemars::{Schema, SchemaGenerator, json_schema};
@@ -30,7 +30,7 @@ pub fn presets() -> Vec<String> {
     Presets::bundled().all.into_iter().map(|p| p.name).collect()
 }
 
-/// The same as a schema; nothing is an answer too.
+/// Schema of [`presets`]; `null` is allowed too.
 pub fn preset(_: &mut SchemaGenerator) -> Schema {
     let names: Vec<Option<String>> = presets().into_iter().map(Some).chain([None]).collect();
     json_schema!({ "type": ["string", "null"], "enum": names })
@@ -42,20 +42,20 @@ pub fn format(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "string", "examples": ids })
 }
 
-/// What can be rendered: a list of names.
+/// Schema of the list of things to render.
 pub fn what(_: &mut SchemaGenerator) -> Schema {
     let kinds = crate::render::kinds();
     json_schema!({ "type": "array", "minItems": 1, "items": { "type": "string", "enum": kinds } })
 }
 
-/// What classes and depths are rendered from.
+/// Names of the sources that classes and depths are rendered from.
 pub fn sources() -> Vec<&'static str> {
     use sensors::cameras::{self, SourceId, ViewId};
     let ids = cameras::sources_of(ViewId::SEMANTIC).into_iter().map(|s| s.id());
     ids.map(SourceId::name).collect()
 }
 
-/// The same as a schema.
+/// Schema of [`sources`].
 pub fn source(_: &mut SchemaGenerator) -> Schema {
     one_of(&sources())
 }

@@ -22,7 +22,7 @@ pub struct New {
     /// Fixes every random draw: the same seed gives the same scene.
     #[serde(default)]
     seed: u64,
-    /// What kind of place; one that suits the road if left out.
+    /// Kind of place; one that suits the road if left out.
     #[serde(default)]
     setting: Option<Setting>,
     /// The lie of the land.
@@ -33,7 +33,7 @@ pub struct New {
 /// Receipt of `new`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Made {
-    /// What changed.
+    /// Changes of the scene.
     #[serde(flatten)]
     done: Done,
     /// Name of the scene.

@@ -19,17 +19,17 @@ pub struct Open {
     /// the program.
     #[serde(default)]
     file: Option<String>,
-    /// Of a road file: where the ego vehicle stands in the file's frame, m; a good place on a lane if left out.
+    /// For a road file: position of the ego vehicle in the file's frame, m; a good place on a lane if left out.
     #[serde(default)]
     at_m: Option<[f64; 2]>,
-    /// Of a road file: its heading, degrees counter-clockwise from x; along the lane if left out.
+    /// For a road file: heading of the ego vehicle, degrees counter-clockwise from x; along the lane if left out.
     #[serde(default)]
     heading_deg: Option<f64>,
-    /// Of a road file: length and width of the map, m; 80 x 80 if left out.
+    /// For a road file: length and width of the map, m; 80 x 80 if left out.
     #[serde(default)]
     size_m: Option<[f64; 2]>,
-    /// Of a point cloud: how far it is lifted, m, 0 for not at all; if left out, a sweep whose ground lies beside the map is lifted onto
-    /// it, and `notes` says by how much.
+    /// For a point cloud: height by which it is lifted, m, 0 for not at all; if left out, a sweep whose ground lies
+    /// beside the map is lifted onto it, and `notes` says by how much.
     #[serde(default)]
     lift_m: Option<f64>,
 }
@@ -37,7 +37,7 @@ pub struct Open {
 /// Receipt of `open`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Opened {
-    /// What changed.
+    /// Changes of the scene.
     #[serde(flatten)]
     done: Done,
     /// Name of the scene.
@@ -50,7 +50,7 @@ pub struct Opened {
     things: usize,
     /// How long it lasts, s; 0 for one moment.
     length_s: f64,
-    /// What was done with the file that nobody asked for.
+    /// Notes on adjustments of the content that were not asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
 }

@@ -24,7 +24,7 @@ pub struct PlaceModel {
     /// Box of the scene that gets the shape and the size, in place of a new one.
     #[serde(default)]
     to: Option<BoxId>,
-    /// Where it stands, world frame, m; ahead of the ego vehicle if left out. The nearest free place is taken.
+    /// Position, world frame, m; ahead of the ego vehicle if left out. The nearest free place is taken.
     #[serde(default)]
     at_m: Option<[f64; 2]>,
     /// Heading, degrees counter-clockwise from x; as the lane there if left out.
@@ -35,7 +35,7 @@ pub struct PlaceModel {
 /// Receipt of `place_model`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ModelPlaced {
-    /// What changed.
+    /// Changes of the scene.
     #[serde(flatten)]
     done: Done,
     /// Number of its box.
@@ -45,7 +45,7 @@ pub struct ModelPlaced {
     class: Class,
     /// Length, width, height, m.
     size_m: [f64; 3],
-    /// Where its middle is, world frame, m.
+    /// Its middle, world frame, m.
     center_m: [f64; 3],
     /// Its heading, degrees counter-clockwise from x.
     heading_deg: f64,

@@ -20,9 +20,9 @@ use words::notation;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Prompt {
-    /// What the scene should hold, or what should change in it; plain English.
+    /// Content of the new scene, or changes of this one; plain English.
     text: String,
-    /// What the words are for.
+    /// Purpose of the words.
     #[serde(default)]
     make: Make,
     /// Fixes every random draw.
@@ -30,7 +30,7 @@ pub struct Prompt {
     seed: u64,
 }
 
-/// What words are for.
+/// Purpose of the words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Make {
@@ -44,22 +44,23 @@ pub enum Make {
 /// Receipt of `prompt`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Prompted {
-    /// What changed.
+    /// Changes of the scene.
     #[serde(flatten)]
     done: Done,
-    /// What came of it, in a sentence.
+    /// The answer, in a sentence.
     answer: String,
-    /// What each phrase became.
+    /// Phrases, each with its effect.
     phrases: Vec<Phrase>,
-    /// What was said of things beside the road, as it was read.
+    /// Phrases about things beside the road, as they were read.
     beside_the_road: Vec<String>,
     /// Words that had no effect.
     not_understood: Vec<NotUnderstood>,
-    /// What must be answered first: while there is a question nothing changes. Say it again and name the box (`#12`).
+    /// Questions that must be answered first: while there is one nothing changes. Say it again and name the box
+    /// (`#12`).
     questions: Vec<Question>,
-    /// What was asked for and not met, in words.
+    /// Wishes that were not met, in words.
     shortfalls: Vec<String>,
-    /// What else is worth knowing.
+    /// Further remarks.
     notes: Vec<String>,
     /// The whole reading in a line of notation.
     notation: String,
@@ -70,7 +71,7 @@ pub struct Prompted {
 pub struct Phrase {
     /// The words, if the reader knows them.
     words: Option<String>,
-    /// What it does, in words.
+    /// Its effect, in words.
     became: String,
     /// How sure the reader is, 0 to 1.
     confidence: f64,
@@ -80,7 +81,7 @@ pub struct Phrase {
     removed: Vec<u32>,
     /// Ids of boxes that it changed.
     changed: Vec<u32>,
-    /// What could not be done as it was said.
+    /// Parts that could not be done as they were said.
     remarks: Vec<String>,
 }
 
@@ -93,25 +94,25 @@ pub struct NotUnderstood {
     why: String,
 }
 
-/// Something that must be answered first.
+/// A question that must be answered first.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Question {
     /// The question.
     text: String,
-    /// What fits.
+    /// Objects that fit.
     candidates: Vec<Fits>,
 }
 
-/// Something that fits where one was meant.
+/// An object that fits where one was meant.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Fits {
     /// How to name it: `#12`.
     name: String,
-    /// Where it is.
+    /// Its place, in words.
     place: String,
 }
 
-/// What every receipt says of how a text was heard.
+/// The receipt of a text as it was read: phrases, words that were not understood, shortfalls.
 fn heard(done: Done, text: &str, heard: &Heard, answer: String) -> Prompted {
     let phrases = heard.reading.acts.iter().map(|act| Phrase {
         words: act.span.map(|span| span.of(text).to_owned()),
@@ -170,7 +171,7 @@ fn questions(edited: &Edited) -> Vec<Question> {
     of_boxes.chain(of_things).collect()
 }
 
-/// What the history calls the step: the words.
+/// Name of the undo step: the words.
 fn step_name(text: &str) -> String {
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
     format!("\u{201c}{}\u{201d}", scene::message::quoted(&words, 60))

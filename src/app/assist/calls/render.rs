@@ -21,15 +21,15 @@ use sensors::cameras::{self, SourceId, ViewId};
 
 /// Longest side of the picture that goes with a receipt, pixels.
 const SMALL_SIDE: u32 = 640;
-/// Most pixels of all pictures of one call: a minute or so of two cores. Whoever waits for an answer gives up before long.
+/// Most pixels of all pictures of one call: a minute or so of two cores. Clients do not wait for an answer for long.
 const MOST_PIXELS: u64 = 40_000_000;
 
 /// Arguments of `render`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Render {
-    /// What is rendered: `bev` is the map and the voxels from above, `view` the 3D view (needs a graphics driver), `lidar` the
-    /// points of a sweep; the others are what cameras see, `appearance` as a photograph.
+    /// Kinds of output: `bev` is the map and the voxels from above, `view` the 3D view (needs a graphics driver),
+    /// `lidar` the points of a sweep; the others are what cameras see, `appearance` as a photograph.
     #[schemars(schema_with = "names::what")]
     what: Vec<String>,
     /// Names of cameras, as `state` lists them; all of them if left out.
@@ -39,7 +39,7 @@ pub struct Render {
     #[serde(default = "usual_size")]
     #[schemars(schema_with = "names::size")]
     size: [u32; 2],
-    /// What classes and depths are rendered from.
+    /// Source that classes and depths are rendered from.
     #[serde(default = "usual_source")]
     #[schemars(schema_with = "names::source")]
     source: String,
@@ -169,7 +169,7 @@ impl Operation for Render {
         check_what(&self.what, "what")?;
         names::check_size(self.size)?;
         names::check("source", &self.source, &names::sources())?;
-        // (told before anything is rendered; the other files are looked at once they are there)
+        // (the error comes before anything is rendered; the other files are looked at once they are there)
         for file in self.surely() {
             let file = format!("{}/{file}", self.folder);
             desk.folder.may_write(&file, self.replace)?;

@@ -1,4 +1,4 @@
-//! `state`: what is there.
+//! `state`: a description of the scene.
 
 use std::collections::BTreeMap;
 
@@ -126,7 +126,7 @@ pub struct BoxState {
     id: u32,
     /// Its class.
     class: Class,
-    /// What it is called and how it is painted.
+    /// Its name and its paint.
     label: BoxLabel,
     /// Its middle, world frame, m.
     center_m: [f64; 3],
@@ -136,7 +136,7 @@ pub struct BoxState {
     yaw_deg: f64,
     /// Velocity over ground, world frame, m/s.
     velocity_mps: [f64; 2],
-    /// Where it is, as the ego vehicle sees it.
+    /// Its place in words, as seen from the ego vehicle.
     place: String,
     /// True if it has a track.
     moves: bool,
@@ -162,7 +162,7 @@ fn tidy(v: f64) -> f64 {
     (v * 100.0).round() / 100.0 + 0.0
 }
 
-/// Where a box is, as the ego vehicle sees it: `12 m ahead, 3 m left`.
+/// Place of a box in words, as seen from the ego vehicle: `12 m ahead, 3 m left`.
 fn place(frame: &Frame, b: &SceneBox) -> String {
     let p = frame.world_from_ego.inverse().apply(b.center_m);
     let along = if p.x >= 0.0 { "ahead" } else { "behind" };

@@ -50,7 +50,7 @@ pub struct ListTracks {}
 /// Receipt of `add_track`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct TrackAdded {
-    /// What changed.
+    /// Changes of the scene.
     #[serde(flatten)]
     done: Done,
     /// The track.
@@ -70,7 +70,7 @@ pub struct TrackList {
     time_s: f64,
 }
 
-/// Something that moves.
+/// A moving object, or the moving ego vehicle.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct TrackState {
     /// The box; none for the ego vehicle.
@@ -82,7 +82,8 @@ pub struct TrackState {
     motion: String,
     /// When it is there, s: from the first up to the second; none: from the beginning, to the end.
     there_s: [Option<f64>; 2],
-    /// Where it is at the beginning, the middle and the end of the scene, world frame: time in s, x and y in m, speed in m/s.
+    /// Its place at the beginning, the middle and the end of the scene, world frame: time in s, x and y in m, speed in
+    /// m/s.
     passes: Vec<[f64; 4]>,
     /// True while its voxels are a draft that `generate` has not drawn yet.
     draft: bool,
@@ -131,7 +132,7 @@ fn track_state(scene: &Scene, id: Option<BoxId>) -> Option<TrackState> {
     })
 }
 
-/// Whoever a call names, in words.
+/// Name of the object of a call, in words.
 fn who(id: Option<BoxId>) -> String {
     id.map_or("the ego vehicle".to_owned(), |id| format!("box {}", id.0))
 }

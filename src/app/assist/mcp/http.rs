@@ -24,13 +24,14 @@ use super::server::Server;
 use crate::LONGEST_CALL;
 use crate::service::Service;
 
-/// Where clients ask.
+/// Path of the server's URL.
 const PATH: &str = "/mcp";
 /// Shortest token, bytes.
 const SHORTEST_TOKEN: usize = 16;
-/// Longest body, bytes: a call and what a message has around it.
+/// Longest body, bytes: a call and the message around it.
 const LONGEST_BODY: usize = LONGEST_CALL + 4096;
-/// Connections, bodies and answers: how many of each wait, and for how long. A stranger is who has not shown the token.
+/// Connections, bodies and answers: how many of each wait, and for how long. A stranger is a connection that has not
+/// shown the token.
 const CALLERS: Limits = Limits {
     strangers: Wait {
         most: 128,
@@ -52,14 +53,14 @@ const CALLERS: Limits = Limits {
 
 /// A running server. It ends when it is dropped.
 pub struct Http {
-    /// Where it listens.
+    /// Address on which the server listens.
     pub address: SocketAddr,
     stop: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Http {
-    /// What a client is told: `http://127.0.0.1:7333/mcp`.
+    /// The URL for clients: `http://127.0.0.1:7333/mcp`.
     pub fn url(&self) -> String {
         format!("http://{}{PATH}", self.address)
     }
@@ -83,7 +84,7 @@ impl Drop for Http {
     }
 }
 
-/// A token that nobody can guess: 32 hexadecimal digits.
+/// A random token that cannot be guessed: 32 hexadecimal digits.
 pub fn random_token() -> anyhow::Result<String> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).context("draw a token")?;
@@ -131,11 +132,11 @@ pub fn http(service: Service, listen: SocketAddr, token: String) -> anyhow::Resu
 type Mcp = StreamableHttpService<Server, LocalSessionManager>;
 type Answer = Response<Sending<BoxBody<Bytes, Infallible>>>;
 
-/// What connections share.
+/// State that connections share.
 #[derive(Clone)]
 struct Door {
     mcp: Mcp,
-    /// What the header says that shows the token.
+    /// Expected value of the `Authorization` header, with the token.
     expected: Arc<str>,
 }
 
@@ -169,7 +170,7 @@ async fn accept(listener: TcpListener, service: Service, token: &str) {
                 .header_read_timeout(CALLERS.strangers.within)
                 .serve_connection(TokioIo::new(connection), answer)
                 .await;
-            // (a connection that ends with an error has nobody left to be told)
+            // (if a connection ends with an error, no client is left to report it to)
             drop(served);
         });
     }
@@ -196,7 +197,7 @@ impl Door {
     }
 }
 
-/// A body, read whole before anything is done with it: one that does not come must not hold what others need.
+/// A body, read whole before it is handled: a body that does not come must not hold resources that others need.
 async fn read(body: Incoming, callers: &Callers) -> Result<Bytes, (StatusCode, &'static str)> {
     const TOO_LONG: &str = "the message is too long, expected at most 1 MiB";
     if body.size_hint().lower() > LONGEST_BODY as u64 {

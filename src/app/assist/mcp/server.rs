@@ -1,4 +1,4 @@
-//! What an MCP client is told and what it may call: one tool per call of the vocabulary.
+//! MCP server: its instructions, and one tool per call of the vocabulary.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use crate::schema;
 use crate::service::Service;
 use scene::message::quoted;
 
-/// What a client is told about all of it.
+/// Instructions for a client.
 const INSTRUCTIONS: &str = "Sceneloom edits driving scenes: a map from above (roads, walkways, crossings), boxes (vehicles, people), things beside the road, and voxels of 0.4 m. Lengths are in m, angles in degrees counter-clockwise from x, times in s. The ego vehicle starts at the origin: x ahead, y left, z up, the ground at z = 0. Begin with `new` or `prompt` (make \"new\"), look with `state` and `render` (what [\"bev\"]), change with `prompt` or `apply`, let things move with `add_track`, draw the voxels with `generate`, then `check` and `export`. Every call that changes the scene is one undo step. Files are read and written in one folder only.";
 
 /// Answers an MCP client.
@@ -30,7 +30,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// That asks a service.
+    /// Makes a server that asks a service.
     pub fn new(service: Service) -> Self {
         let tools = table().iter().map(tool).collect();
         Self {
@@ -58,7 +58,7 @@ fn tool(def: &CallDef) -> Tool {
         .with_annotations(annotations)
 }
 
-/// The formats that can be written, each with what it holds.
+/// The formats that can be written, each with its content.
 fn formats() -> String {
     let all = formats::export::all().iter();
     let all: Vec<String> = all.map(|f| format!("{} ({})", f.id, f.title)).collect();
@@ -114,7 +114,7 @@ impl ServerHandler for Server {
         let (answer, answered) = oneshot::channel();
         let cancelled = context.ct.clone();
         let stop: Stop = Arc::new(move || cancelled.is_cancelled());
-        // (nothing is awaited before this: calls are asked for in the order in which they came)
+        // (no `await` comes before this: calls are carried out in the order in which they came)
         let asked = self
             .service
             .ask(def.name.to_owned(), args, stop, |a| drop(answer.send(a)));

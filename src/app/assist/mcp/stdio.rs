@@ -20,7 +20,7 @@ use scene::message::one_line;
 
 /// Messages that are read ahead.
 const AHEAD: usize = 4;
-/// What a message may have around the arguments of its call, bytes.
+/// Size of a message without the arguments of its call, at most, bytes.
 const ENVELOPE: usize = 4096;
 /// How often it is asked whether all calls are answered, once the input has ended.
 const POLL: Duration = Duration::from_millis(10);
@@ -28,7 +28,7 @@ const POLL: Duration = Duration::from_millis(10);
 const PARSE_ERROR: i32 = -32700;
 const INVALID_REQUEST: i32 = -32600;
 
-/// Where replies go, each as a whole line.
+/// Output for replies, each as a whole line.
 type Output = Arc<Mutex<dyn Write + Send>>;
 
 /// Serves a client until the input ends and all calls are answered. Errors only if the system gives no thread.
@@ -62,7 +62,7 @@ pub fn stdio(
     })
 }
 
-/// Reads messages until the input ends or nobody wants them any more. What is no message is refused at once.
+/// Reads messages until the input ends or the receiver is gone. Input that is no message is refused at once.
 fn read(mut input: impl BufRead, ahead: &mpsc::Sender<ClientJsonRpcMessage>, output: &Output) {
     let refuse = |id: Value, code: i32, message: &str| {
         let error = json!({ "code": code, "message": one_line(message) });
@@ -133,7 +133,7 @@ impl Transport<RoleServer> for Lines {
     async fn receive(&mut self) -> Option<RxJsonRpcMessage<RoleServer>> {
         let message = self.messages.recv().await;
         if message.is_none() {
-            // The input has ended: what was asked for is still answered.
+            // The input has ended: calls that were made are still answered.
             while !self.service.is_idle() {
                 tokio::time::sleep(POLL).await;
             }

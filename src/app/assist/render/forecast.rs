@@ -1,4 +1,5 @@
-//! How long many pixels will take on this machine: told before they are rendered, from small pictures of the same camera.
+//! Forecast of the time that many pixels take on this machine: reported before they are rendered, from small pictures
+//! of the same camera.
 
 use std::time::Instant;
 
@@ -9,12 +10,12 @@ use scene::Scene;
 use sensors::appearance::Quality;
 use sensors::cameras::{Ready, RenderOptions};
 
-/// What a rendering tells while it works.
+/// Progress report of a rendering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Told {
     /// Before anything is written, where there are many: pixels of all pictures, and about how long they take, s.
     Takes {
-        /// Of all cameras and kinds together.
+        /// Pixels of all cameras and kinds together.
         pixels: u64,
         /// On this machine as it is now.
         seconds: f64,
@@ -23,17 +24,17 @@ pub enum Told {
     Made {
         /// How many so far.
         pictures: usize,
-        /// Of how many.
+        /// Number of pictures in all.
         of: usize,
     },
 }
 
-/// Hears what a rendering tells; an error ends it.
+/// Receives the reports of a rendering; an error ends the rendering.
 pub type Listen<'a> = dyn FnMut(Told) -> anyhow::Result<()> + 'a;
 
-/// So many pixels are rendered without a word.
+/// Up to so many pixels, no time is forecast.
 const FEW_PIXELS: u64 = 10_000_000;
-/// Each side of the two pictures that are tried is this part of a side that was asked for.
+/// Sizes of the two pictures that are tried, as divisors of each side that was asked for.
 const PARTS: [u32; 2] = [16, 8];
 
 impl Plan {
@@ -107,7 +108,8 @@ impl Rendering {
 /// Seconds of a picture of so many pixels, on the line through two smaller ones: part of their time does not grow with them.
 fn per_picture_s(pixels: u64, [(few, few_s), (more, more_s)]: [(u64, f64); 2]) -> f64 {
     let rate = (more_s - few_s).max(0.0) / more.saturating_sub(few).max(1) as f64;
-    // Where noise hides the growth, all of it counts: too long is told rather than too short.
+    // Where noise hides the growth, all of the time counts as growth: too long a forecast is better than too short a
+    // one.
     let rate = if rate > 0.0 {
         rate
     } else {

@@ -1,4 +1,4 @@
-//! Pictures and data of what the sensors see, as files of a folder: what `sceneloom render` and the call `render` share.
+//! Pictures and data of the sensors, as files of a folder: shared by `sceneloom render` and the call `render`.
 
 mod forecast;
 mod plan;
@@ -24,31 +24,31 @@ pub use forecast::{Listen, Told};
 use plan::{Cameras, Plan};
 use write::Writer;
 
-/// What can be rendered besides the views of cameras.
+/// Kinds of output besides the views of cameras.
 const OTHERS: [&str; 4] = ["truth", "lidar", "bev", "view"];
 
-/// What is rendered, and how.
+/// Options of a rendering.
 #[derive(Clone, Debug)]
 pub struct Rendering {
     /// Names from [`kinds`].
     pub what: Vec<String>,
     /// Size of camera pictures in pixels.
     pub size: [u32; 2],
-    /// What classes and depths are rendered from.
+    /// Source that classes and depths are rendered from.
     pub source: SourceId,
-    /// Weather of pictures; else the scene's.
+    /// Weather of pictures; `None` for the scene's.
     pub weather: Option<Weather>,
-    /// Time of day of pictures; else the scene's.
+    /// Time of day of pictures; `None` for the scene's.
     pub time: Option<TimeOfDay>,
     /// One sample per pixel for pictures.
     pub preview: bool,
     /// How the LiDAR sweep comes about.
     pub lidar: camera_views::LidarModel,
-    /// What paints learned pictures; the weights that ship if none.
+    /// Network that paints learned pictures; `None` for the bundled weights.
     pub paint: Option<PaintWith>,
 }
 
-/// What was rendered.
+/// Result of a rendering.
 #[derive(Debug, Default)]
 pub struct Rendered {
     /// The files, in the order in which they were written.
@@ -67,7 +67,7 @@ pub fn kinds() -> Vec<&'static str> {
     views.chain(OTHERS).collect()
 }
 
-/// Errors if nothing is asked for, or something unknown; `key` is the name of the list.
+/// Errors if the list is empty, or holds an unknown name; `key` is the name of the list.
 pub fn check_what(what: &[String], key: &str) -> anyhow::Result<()> {
     let kinds = kinds();
     if what.is_empty() {
@@ -91,7 +91,7 @@ impl Rendering {
         }
     }
 
-    /// How the pictures come to be: under the weather and time that were asked for.
+    /// Recipe of the pictures, under the weather and time that were asked for.
     fn recipe(&self, scene: &Scene) -> Recipe {
         Recipe {
             conditions: self.input(scene).conditions,
@@ -141,9 +141,9 @@ impl Rendering {
         Ok(())
     }
 
-    /// Renders the moment that a scene shows, and writes the files into a folder, which is made; `listen` hears how long it will
-    /// take and how far it is. Errors in one line, also what `listen` says; whatever cannot be had is told before anything is
-    /// written.
+    /// Renders the moment that a scene shows, and writes the files into a folder, which is made; `listen` gets the
+    /// forecast of the time and the progress. Errors in one line, also those of `listen`; a missing sensor or network
+    /// is reported before anything is written.
     pub fn write(&self, scene: &Scene, folder: &Path, listen: &mut Listen<'_>) -> anyhow::Result<Rendered> {
         let of_file = scene;
         let scene = &*of_file.with_rig_in_world();

@@ -1,4 +1,4 @@
-//! What one rendering will do, checked before anything is written.
+//! Plan of one rendering, checked before anything is written.
 
 use std::sync::Arc;
 
@@ -16,9 +16,9 @@ use sensors::rolling;
 
 /// Pictures of one source.
 pub struct Cameras {
-    /// Where they come from.
+    /// Source of the pictures.
     pub source: &'static dyn CameraSource,
-    /// What is written of each.
+    /// Views that are written of each camera.
     pub views: Vec<View>,
 }
 
@@ -30,7 +30,7 @@ pub enum LidarModel {
     Learned(Arc<LidarNet>),
 }
 
-/// Everything asked for, ready to be made.
+/// Plan of a rendering: all outputs, ready to be made.
 pub struct Plan {
     /// Camera pictures, in the order of the table.
     pub cameras: Vec<Cameras>,
@@ -45,8 +45,8 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Of what the arguments ask for. Errors in one line if the rig lacks a sensor for it, pictures are too large, the
-    /// network or a graphics adapter is missing.
+    /// Plans what the arguments ask for. Errors in one line if the rig lacks a sensor for it, pictures are too large,
+    /// the network or a graphics adapter is missing.
     pub fn new(wanted: &Rendering, scene: &Scene) -> anyhow::Result<Self> {
         let wants = |kind: &str| wanted.what.iter().any(|w| w == kind);
         let mut cameras: Vec<Cameras> = Vec::new();

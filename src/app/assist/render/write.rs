@@ -15,7 +15,7 @@ use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, View, ViewId};
 use sensors::color;
 
-/// A folder, and what was written into it.
+/// A folder, and the files written into it.
 pub struct Writer {
     folder: OutFolder,
     recipe: Recipe,
@@ -67,12 +67,12 @@ impl Writer {
         files.into_iter().try_for_each(|f| self.bytes(&f.name, &f.bytes))
     }
 
-    /// How the pictures come to be.
+    /// Recipe of the pictures.
     pub fn recipe(&self) -> &Recipe {
         &self.recipe
     }
 
-    /// Where the sensors look, and when.
+    /// Writes the calibration: where the sensors look, and when.
     pub fn calibration(
         &mut self,
         scene: &Scene,
@@ -152,7 +152,8 @@ impl Writer {
         self.bytes(&format!("{name}_maps.npz"), &npz::to_bytes(&arrays)?)
     }
 
-    /// The files of one camera's picture: what it shows of these views. `place` is the camera's number of how many.
+    /// Writes the files of one camera's picture in these views. `place` is the camera's number and the number of
+    /// cameras.
     pub fn camera(
         &mut self,
         picture: CameraPicture,

@@ -1,4 +1,4 @@
-//! What `render` can be asked for: views of the table of camera sources, and what is no camera's.
+//! Values of the arguments of `render`: views of the table of camera sources, and the other kinds of output.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 

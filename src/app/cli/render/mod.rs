@@ -1,4 +1,4 @@
-//! `sceneloom render`: what the sensors see, as pictures and as data.
+//! `sceneloom render`: the sensors' view of a scene, as pictures and as data.
 
 mod arguments;
 
@@ -32,8 +32,8 @@ pub struct Render {
     /// Size of camera pictures in pixels.
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "800x450")]
     size: [u32; 2],
-    /// What classes and depths are rendered from: Gaussians, exact rays to the voxels, those with boxes as shapes, or the
-    /// very surfaces of the pictures.
+    /// Source that classes and depths are rendered from: Gaussians, exact rays to the voxels, those with boxes as
+    /// shapes, or the very surfaces of the pictures.
     #[arg(long, value_name = "NAME", value_parser = source(), default_value = "truth")]
     source: SourceId,
     /// Weather of appearance: clear, overcast, rain, snow, fog, sandstorm; else the scene's.
@@ -59,7 +59,7 @@ pub struct Render {
     common: Common,
 }
 
-/// What takes longer is told beforehand, s.
+/// Renderings that take longer than this are announced beforehand, s.
 const LONG_S: f64 = 20.0;
 
 /// The six cameras' maps and the LiDAR sweep of a scene.

@@ -20,7 +20,7 @@ pub enum ShutterType {
     Global = 5,
 }
 
-/// Which polynomial of an f-theta lens is the given one; the other follows from it.
+/// Polynomial of an f-theta lens that is given; the other follows from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, prost::Enumeration)]
 #[repr(i32)]
 pub enum FthetaPolynomial {
@@ -32,7 +32,7 @@ pub enum FthetaPolynomial {
     AngleToPixeldist = 2,
 }
 
-/// What takes round distances of an f-theta lens to pixels: `x = c * x' + d * y'`, `y = e * x' + y'`.
+/// Linear map from round distances of an f-theta lens to pixels: `x = c * x' + d * y'`, `y = e * x' + y'`.
 #[derive(Clone, Copy, PartialEq, prost::Message)]
 pub struct LinearCde {
     /// c.
@@ -64,7 +64,7 @@ pub struct Ftheta {
     /// Distance, px, by powers of the angle in rad, the constant first.
     #[prost(double, repeated, tag = "5")]
     pub angle_to_pixeldist_poly: Vec<f64>,
-    /// Nothing is seen beyond this angle from the axis, rad; 0: not told.
+    /// Angle from the axis beyond which the lens sees nothing, rad; 0 if not told.
     #[prost(double, tag = "6")]
     pub max_angle: f64,
     /// Pixels that are not square.
@@ -116,12 +116,12 @@ pub struct Fisheye {
     /// k1 to k4.
     #[prost(double, repeated, tag = "5")]
     pub radial_coeffs: Vec<f64>,
-    /// Nothing is seen beyond this angle from the axis, rad; 0: not told.
+    /// Angle from the axis beyond which the lens sees nothing, rad; 0 if not told.
     #[prost(double, tag = "6")]
     pub max_angle: f64,
 }
 
-/// What a windshield in front of the camera bends.
+/// Distortion by a windshield in front of the camera.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct Windshield {
     /// 0 forward, 1 backward.
@@ -155,7 +155,7 @@ pub enum CameraParam {
     Fisheye(Fisheye),
 }
 
-/// What is in front of the lens.
+/// Distortion in front of the lens.
 #[derive(Clone, PartialEq, prost::Oneof)]
 pub enum WindshieldParam {
     /// A windshield.
@@ -181,12 +181,12 @@ pub struct CameraSpec {
     /// How the picture is read.
     #[prost(enumeration = "ShutterType", tag = "9")]
     pub shutter_type: i32,
-    /// What is in front of the lens.
+    /// Distortion in front of the lens.
     #[prost(oneof = "WindshieldParam", tags = "10")]
     pub external_distortion: Option<WindshieldParam>,
 }
 
-/// Whose cameras are asked for.
+/// Request for the cameras of a scene.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct AvailableCamerasRequest {
     /// The scene.
@@ -200,7 +200,7 @@ pub struct AvailableCamera {
     /// Lens, size and shutter.
     #[prost(message, optional, tag = "1")]
     pub intrinsics: Option<CameraSpec>,
-    /// Where the camera is in the rig: takes points of the camera to the rig.
+    /// Pose of the camera in the rig: takes points of the camera to the rig.
     #[prost(message, optional, tag = "2")]
     pub rig_to_camera: Option<Pose>,
     /// Its name in the rig.

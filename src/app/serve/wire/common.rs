@@ -1,6 +1,6 @@
 //! Poses, trajectories, versions: the package `common`.
 
-/// Nothing.
+/// Empty message.
 #[derive(Clone, Copy, PartialEq, prost::Message)]
 pub struct Empty {}
 
@@ -35,7 +35,7 @@ pub struct Vec3 {
     pub z: f32,
 }
 
-/// Where the inner frame is in the outer one: takes points of the inner frame to the outer one.
+/// Pose of an inner frame in an outer one: takes points of the inner frame to the outer one.
 #[derive(Clone, Copy, PartialEq, prost::Message)]
 pub struct Pose {
     /// Origin of the inner frame, m.
@@ -90,7 +90,7 @@ pub struct ApiVersion {
     pub patch: u32,
 }
 
-/// Which program answers.
+/// Name and version of the program that answers.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct VersionId {
     /// Name and version of the program.

@@ -1,4 +1,4 @@
-//! What is rendered, and what comes of it.
+//! Requests to render, and their answers.
 
 use super::camera::CameraSpec;
 use super::common::{PosePair, Trajectory};
@@ -9,7 +9,7 @@ pub struct DynamicObject {
     /// Number of the box or track in the scene.
     #[prost(string, tag = "1")]
     pub track_id: String,
-    /// Where the middle of its box is.
+    /// Pose of the middle of its box.
     #[prost(message, optional, tag = "2")]
     pub pose_pair: Option<PosePair>,
 }
@@ -82,7 +82,7 @@ pub struct RgbRenderRequest {
     /// End of the frame, us.
     #[prost(fixed64, tag = "6")]
     pub frame_end_us: u64,
-    /// Where the camera is in the world.
+    /// Pose of the camera in the world.
     #[prost(message, optional, tag = "7")]
     pub sensor_pose: Option<PosePair>,
     /// Objects that are elsewhere than the scene has them.
@@ -97,10 +97,10 @@ pub struct RgbRenderRequest {
     /// True if a mask of the own vehicle goes over the picture.
     #[prost(bool, tag = "11")]
     pub insert_ego_mask: bool,
-    /// Which mask.
+    /// Name of the mask.
     #[prost(message, optional, tag = "12")]
     pub ego_mask_id: Option<EgoMaskId>,
-    /// Where the own vehicle is in the world.
+    /// Pose of the own vehicle in the world.
     #[prost(message, optional, tag = "13")]
     pub ego_pose: Option<PosePair>,
 }
@@ -146,7 +146,7 @@ pub struct LidarRenderRequest {
     /// End of the spin, us.
     #[prost(fixed64, tag = "4")]
     pub frame_end_us: u64,
-    /// Where the LiDAR is in the world.
+    /// Pose of the LiDAR in the world.
     #[prost(message, optional, tag = "5")]
     pub sensor_pose: Option<PosePair>,
     /// Objects that are elsewhere than the scene has them.
@@ -185,7 +185,7 @@ pub struct AggregatedRenderRequest {
     pub lidar_requests: Vec<LidarRenderRequest>,
 }
 
-/// What several sensors see, in the order of the request.
+/// Pictures and sweeps of several sensors, in the order of the request.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct AggregatedRenderReturn {
     /// Pictures.
@@ -194,7 +194,7 @@ pub struct AggregatedRenderReturn {
     /// Sweeps.
     #[prost(message, repeated, tag = "2")]
     pub lidar_returns: Vec<LidarRenderReturn>,
-    /// What the driver is told besides; always empty.
+    /// Extra data for the driver; always empty.
     #[prost(bytes = "vec", tag = "3")]
     pub driver_data: Vec<u8>,
 }
@@ -218,10 +218,10 @@ pub struct BatchRgbRenderRequest {
     pub items: Vec<BatchRgbRenderRequestItem>,
 }
 
-/// What came of a picture of a batch.
+/// Result of one picture of a batch.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct BatchRgbRenderReturnItem {
-    /// As in the request.
+    /// Name from the request.
     #[prost(string, tag = "1")]
     pub camera_name: String,
     /// The picture, if there is one.
@@ -235,7 +235,7 @@ pub struct BatchRgbRenderReturnItem {
     pub error_message: String,
 }
 
-/// What came of a batch, in its order.
+/// Results of a batch, in its order.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct BatchRgbRenderReturn {
     /// One for each picture.
@@ -243,7 +243,7 @@ pub struct BatchRgbRenderReturn {
     pub items: Vec<BatchRgbRenderReturnItem>,
 }
 
-/// Whose ways are asked for.
+/// Request for the trajectories of a scene's own vehicle.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct AvailableTrajectoriesRequest {
     /// The scene.
@@ -251,7 +251,7 @@ pub struct AvailableTrajectoriesRequest {
     pub scene_id: String,
 }
 
-/// A way of the own vehicle.
+/// A trajectory of the own vehicle.
 #[derive(Clone, PartialEq, prost::Message)]
 pub struct AvailableTrajectory {
     /// Its poses in the world.

@@ -1,35 +1,35 @@
-//! What lies across a road: its lanes, read at many places along it.
+//! Cross-section of a road: its lanes, read at many places along it.
 
 use glam::DVec2;
 
 use scene::roads::{LaneKind, RoadLane, curve};
 use scene::{BevLayer, BevLayout, PolylineKind};
 
-/// Places along a road are so far apart, m.
+/// Spacing of the stations along a road, m.
 const STATION_M: f64 = 2.0;
-/// Across it so far apart, m.
+/// Spacing of the samples across it, m.
 const STEP_M: f64 = 0.2;
-/// So far to either side, m.
+/// Reach to either side, m.
 const REACH_M: f64 = 32.0;
-/// A lane without lines to tell is about so wide, m.
+/// Approximate width of a lane that no lines show, m.
 const LANE_M: f64 = 3.4;
-/// What is paved beyond lanes of their own width and more than this is a shoulder, m.
+/// A paved strip beyond lanes of their own width that is wider than this is a shoulder, m.
 const SHOULDER_M: f64 = 1.0;
 
 /// Lanes of a road whose middle is known.
 #[derive(Debug)]
 pub(super) struct Across {
-    /// The reference line lies so far to the left of the middle, m.
+    /// Offset of the reference line to the left of the middle, m.
     pub left_m: f64,
     /// Lanes left of it.
     pub left: Vec<RoadLane>,
     /// Lanes right of it.
     pub right: Vec<RoadLane>,
-    /// All lanes are driven against the middle line: the road is to be turned around.
+    /// True if all lanes are driven against the middle line: the road is to be turned around.
     pub against: bool,
 }
 
-/// What one place shows, as distances to the left of the middle, m.
+/// Cross-section at one place, as distances to the left of the middle, m.
 struct Section {
     paved: [f64; 2],         // right and left kerb
     park: [f64; 2],          // width of parking behind them
@@ -96,7 +96,7 @@ pub(super) fn read(layout: &BevLayout, middle_m: &[DVec2]) -> Option<Across> {
 
 fn lane(kind: LaneKind, width_m: f64) -> RoadLane {
     let (low, high) = (*scene::Road::LANE_M.start(), *scene::Road::LANE_M.end());
-    // A tenth of a metre is finer than what is painted.
+    // A tenth of a metre is finer than the painted cells.
     let width_m = ((width_m * 10.0).round() / 10.0).clamp(low, high);
     RoadLane { kind, width_m }
 }

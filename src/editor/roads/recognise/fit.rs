@@ -12,9 +12,9 @@ use super::skeleton::{Chain, Graph};
 
 /// A road's line keeps to the middle within this, m.
 const TOLERANCE_M: f64 = 0.3;
-/// The middle is averaged over so many columns on either side.
+/// Columns on either side over which the middle is averaged.
 const SMOOTH: usize = 8;
-/// Roads that leave the map end so far beyond it, m.
+/// Length by which roads that leave the map go on beyond it, m.
 const BEYOND_M: f64 = 5.0;
 /// Shorter roads are none, m.
 const SHORTEST_M: f64 = 4.0;
@@ -93,7 +93,7 @@ pub(super) fn network(graph: &Graph, rings: &[Ring], mask: &Mask, layout: &BevLa
 }
 
 impl Draft {
-    /// Where it begins at a knot and the way outward there, once for each end.
+    /// Starting point and outward direction of the draft at a knot, once for each of its ends that lies there.
     fn arms(&self, knot: usize) -> Vec<(DVec2, DVec2)> {
         const HEADING_M: f64 = 10.0;
         let mut out = Vec::new();
@@ -119,7 +119,7 @@ fn draft(graph: &Graph, rings: &[Ring], chain: &Chain, mask: &Mask, layout: &Bev
     let depth = |end: usize| graph.knots[chain.ends[end]].depth_m;
     let is_free =
         |end: usize| graph.degree(chain.ends[end]) == 1 && rings.iter().all(|r| r.knot != chain.ends[end]);
-    // The middle bends within a junction: what lies there is left out.
+    // The middle bends within a junction, so its part there is left out.
     let mut back = [0, 1].map(|end| if is_free(end) { 0.0 } else { depth(end) });
     if rings.iter().any(|r| chain.ends.contains(&r.knot)) {
         let of_ring = |end: usize| rings.iter().find(|r| r.knot == chain.ends[end]);
@@ -171,7 +171,8 @@ fn draft(graph: &Graph, rings: &[Ring], chain: &Chain, mask: &Mask, layout: &Bev
     })
 }
 
-/// The first end of a line, at the kerb: beyond the border for a road that leaves the map, else at the end of what is paved.
+/// Finishes the first end of a line, at the kerb: beyond the border for a road that leaves the map, else at the end of
+/// the paved area.
 fn finish_end(middle: &mut Vec<DVec2>, mask: &Mask) {
     let inside = middle.iter().position(|p| mask.is_on_map(*p));
     if let Some(first) = inside.filter(|i| *i > 0) {
@@ -218,7 +219,8 @@ fn spare(ends: [DVec2; 2], points: &[DVec2]) -> Vec<DVec2> {
         .to_vec()
 }
 
-/// Where lines meet: the point nearest to all of them; the place of the knot if they are parallel or meet far from it.
+/// Meeting point of lines: the point nearest to all of them; the place of the knot if they are parallel or meet far
+/// from it.
 fn meeting(arms: &[(DVec2, DVec2)], knot_m: DVec2, depth_m: f64) -> DVec2 {
     if let [(at, _)] = arms {
         return *at;

@@ -1,29 +1,29 @@
-//! What is paved, with a margin beyond the border of the map so that roads run on through it.
+//! Mask of the paved columns, with a margin beyond the border of the map so that roads run on through it.
 
 use glam::DVec2;
 
 use scene::distance::signed_distance_m;
 use scene::{BevLayer, BevLayout, Extent};
 
-/// Columns beyond the border.
+/// Width of the margin beyond the border, columns.
 const MARGIN: usize = 25;
-/// Fewer columns of road, or of a hole in it, are none.
+/// Smallest patch of road, or hole in it, that counts, columns.
 const FEWEST: usize = 45;
 
 /// Paved columns.
 pub(super) struct Mask {
-    /// The map and its margin.
+    /// Columns of the map and its margin.
     pub extent: Extent,
-    /// The map.
+    /// Columns of the map.
     pub map: Extent,
     /// `[x][y]` of `extent`.
     pub paved: Vec<bool>,
-    /// Distance to the kerb within what is paved, m.
+    /// Distance to the kerb within the paved columns, m.
     pub depth_m: Vec<f64>,
 }
 
 impl Mask {
-    /// Of what is paved in a layout but for `own` columns; `None` if nothing is.
+    /// Reads the paved columns of a layout without the `own` columns; `None` if no column is paved.
     pub fn of(layout: &BevLayout, own: &[bool]) -> Option<Self> {
         let map = layout.extent();
         let [x0, y0] = map.from();

@@ -1,5 +1,5 @@
-//! Roads recognised in a layout: the middle of what is paved becomes lines and nodes, and what lies across them their lanes.
-//! No cell changes.
+//! Roads recognised in a layout: the middle of the paved area becomes lines and nodes, and its cross-sections become
+//! lanes. No cell changes.
 //!
 //! The middle is found by thinning (Zhang and Suen 1984, "A Fast Parallel Algorithm for Thinning Digital Patterns"). Lane
 //! middles and dividers of the layout, where there are any, say which lanes there are; elsewhere the width does.
@@ -18,10 +18,10 @@ use scene::{BevLayout, RoadNetwork};
 use super::add::snap;
 use mask::Mask;
 
-/// Columns this near to the network's own roads are theirs, m.
+/// Columns within this distance of the network's own roads belong to them, m.
 const OWN_RIM_M: f64 = 1.2;
 
-/// The network with what is painted in a layout and not in it yet.
+/// The network, extended by the roads that are painted in a layout and not in it yet.
 pub fn recognise(layout: &BevLayout, known: &RoadNetwork) -> RoadNetwork {
     let owners: Vec<_> = known.owners();
     let own = match owners.is_empty() {
@@ -37,7 +37,7 @@ pub fn recognise(layout: &BevLayout, known: &RoadNetwork) -> RoadNetwork {
     join(known, found)
 }
 
-/// Both networks as one: free ends of what was found that come to a known road meet it there.
+/// Joins the two networks: free ends of `found` that come to a known road meet it there.
 fn join(known: &RoadNetwork, found: RoadNetwork) -> RoadNetwork {
     let mut net = known.clone();
     if net.is_empty() {
@@ -71,7 +71,8 @@ fn join(known: &RoadNetwork, found: RoadNetwork) -> RoadNetwork {
     net
 }
 
-/// The node of a known network that a free end leads to: straight on within so much, m.
+/// The node of a known network that a free end leads to, straight on within the longest of `AHEAD_M`; `None` if it
+/// leads to none.
 fn meeting(net: &mut RoadNetwork, found: &RoadNetwork, node: NodeId, at_m: DVec2) -> Option<NodeId> {
     const AHEAD_M: [f64; 5] = [0.0, 2.0, 4.0, 6.0, 9.0];
     let arm = *found.arms(node).first()?;

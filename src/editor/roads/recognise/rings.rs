@@ -1,4 +1,4 @@
-//! Roundabouts: holes in what is paved that are round and have a road all the way around.
+//! Roundabouts: round holes in the paved area that have a road all the way around.
 
 use glam::DVec2;
 
@@ -9,7 +9,7 @@ use super::skeleton::Graph;
 const ISLAND_M: std::ops::RangeInclusive<f64> = 2.0..=40.0;
 /// The border of a round island is so near to its middle radius, as a share of it.
 const ROUND: f64 = 0.22;
-/// A chain of which so much lies on the ring belongs to it.
+/// A chain with at least this share on the ring belongs to it.
 const ON_RING: f64 = 0.7;
 
 /// A roundabout.
@@ -38,7 +38,7 @@ pub(super) fn take(graph: &mut Graph, mask: &Mask) -> Vec<Ring> {
             continue;
         }
         widths.sort_by(f64::total_cmp);
-        // Where arms open the ring is wide: its own width is that of the rest.
+        // The ring is wider where arms open; its own width is that of the rest.
         let ring_m = widths[widths.len() / 4];
         let middle_m = island_m + ring_m / 2.0;
         let on_ring = |p: &DVec2| (p.distance(center) - middle_m).abs() < ring_m * 0.6 + 0.8;
@@ -93,7 +93,7 @@ fn round(mask: &Mask, hole: &[usize]) -> Option<(DVec2, f64)> {
     (farthest < radius_m * (1.0 + ROUND) + 0.4).then_some((center, radius_m))
 }
 
-/// How wide what is paved is from an island outward, m; `None` if it does not end soon.
+/// Width of the paved ring from an island outward, m; `None` if it does not end soon.
 fn width_m(mask: &Mask, center: DVec2, way: DVec2, island_m: f64) -> Option<f64> {
     const STEP_M: f64 = 0.2;
     const MOST: usize = 150;

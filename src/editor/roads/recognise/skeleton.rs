@@ -1,4 +1,4 @@
-//! The middle of what is paved as a graph: thinned to lines of one column, traced, and freed of spurs.
+//! The middle of the paved area as a graph: thinned to lines of one column, traced, and freed of spurs.
 
 use std::collections::BTreeMap;
 
@@ -9,20 +9,20 @@ use scene::roads::curve;
 
 use super::mask::Mask;
 
-/// A spur is shorter than so many times the road is deep where it begins, and this, m.
+/// A spur is shorter than this factor times the distance to the kerb where it begins, and this length, m.
 const SPUR: f64 = 1.35;
 const SPUR_M: f64 = 2.0;
-/// Wider than twice so many columns nothing is thinned to a line: that is a place.
+/// Rounds of thinning. A paved area wider than twice so many columns is not thinned to a line: it is a square.
 const ROUNDS: usize = 90;
 /// More lines than this are no roads.
 const MOST: usize = 5000;
-/// Junctions nearer than so many times the road is deep there are one.
+/// Junctions closer than this factor times the distance to the kerb there are one.
 const ONE: f64 = 1.25;
 
-/// Where lines end or meet.
+/// Point where lines end or meet.
 #[derive(Clone, Debug)]
 pub(super) struct Knot {
-    /// Where, m.
+    /// Position, m.
     pub at_m: DVec2,
     /// Distance to the kerb, m.
     pub depth_m: f64,
@@ -73,7 +73,7 @@ impl Graph {
 pub(super) fn trace(mask: &Mask) -> Graph {
     let thin = thinned(mask);
     let mut graph = walk(mask, &thin);
-    // What is strewn about is no network.
+    // Scattered patches are no network.
     if graph.chains.len() > MOST {
         return Graph::default();
     }
@@ -226,8 +226,8 @@ fn walk(mask: &Mask, thin: &[bool]) -> Graph {
     graph
 }
 
-/// Takes spurs away: lines to a free end that only lead to a corner of what is paved. At each knot the shortest goes first, and
-/// what is left is looked at again.
+/// Removes spurs: lines to a free end that only lead to a corner of the paved area. At each knot the shortest goes
+/// first, and the rest is looked at again.
 fn prune(graph: &mut Graph, mask: &Mask) {
     loop {
         let degrees = graph.degrees();

@@ -1,20 +1,20 @@
-//! The pointer on the ground goes in, forms come out: what the tools for things share. All in the ego frame, m.
+//! Common types of the scenery tools: pointer positions on the ground go in, forms come out. All in the ego frame, m.
 
 use glam::DVec2;
 
 use crate::kerb;
 use scene::{BevLayout, Form};
 
-/// What the pointer did.
+/// Phase of a press of the button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// The button went down.
     Press,
-    /// It is held, and the pointer has left the place where it went down.
+    /// The button is held, and the pointer has left the place where it went down.
     Drag,
-    /// It came up.
+    /// The button came up.
     Release {
-        /// Where it went down.
+        /// True if it came up where it went down.
         clicked: bool,
     },
 }
@@ -22,22 +22,22 @@ pub enum Phase {
 /// The pointer on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointer {
-    /// What it did.
+    /// Phase of the press.
     pub phase: Phase,
-    /// Where, ego frame, m.
+    /// Position, ego frame, m.
     pub at_m: DVec2,
     /// Nearer than this counts as the same place, m.
     pub reach_m: f64,
-    /// Snaps to nothing.
+    /// True if it snaps to nothing.
     pub free: bool,
 }
 
-/// What the tools know of the ground.
+/// Surroundings that the scenery tools read.
 #[derive(Clone, Copy, Debug)]
 pub struct Site<'a> {
     /// Roads and walkways.
     pub layout: &'a BevLayout,
-    /// Where trees stand already.
+    /// Places of the trees that are there.
     pub trees_m: &'a [DVec2],
     /// Outlines of buildings.
     pub houses_m: &'a [Vec<DVec2>],
@@ -56,15 +56,15 @@ impl Site<'_> {
     }
 }
 
-/// What comes of a move of the pointer.
+/// Result of a pointer event.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// Nothing that shows in the scene.
+    /// No change that shows in the scene.
     Nothing,
-    /// These would come; shown while the button is held.
+    /// Forms that would be added; shown while the button is held.
     Preview(Vec<Form>),
-    /// These come, as one undo step.
+    /// Forms that are added, as one undo step.
     Add(Vec<Form>),
-    /// Nothing comes, for that reason.
+    /// Refused, with the reason; no form is added.
     Refused(String),
 }

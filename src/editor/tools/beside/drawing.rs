@@ -16,18 +16,18 @@ use scene::{Form, Frame, Scene};
 
 use super::{Outcome, Phase, Pointer, Site, ThingState};
 
-/// What one tool draws.
+/// State machine of one scenery tool while it draws.
 pub(super) trait Draft: Clone + Debug + Default + Send + 'static {
     /// Takes the pointer.
     fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome;
 
-    /// Ends what is drawn point by point.
+    /// Finishes a form that is drawn point by point.
     fn finish(&mut self, options: &ThingState) -> Outcome {
         let _ = options;
         Outcome::Nothing
     }
 
-    /// Points set so far of what waits for more of them.
+    /// Points set so far of a form that waits for more of them.
     fn points_m(&self) -> &[DVec2] {
         &[]
     }
@@ -35,15 +35,15 @@ pub(super) trait Draft: Clone + Debug + Default + Send + 'static {
     /// Takes the last point back.
     fn drop_point(&mut self) {}
 
-    /// What the buttons do; `drawn`: points are set.
+    /// Hint for the mouse buttons; `drawn`: points are set.
     fn hint(drawn: bool) -> Vec<&'static str>;
 
-    /// What Alt does in the view from above.
+    /// Hint for Alt in the view from above.
     fn alt() -> Option<&'static str> {
         None
     }
 
-    /// What would come where the pointer is; `drawing`: something is begun.
+    /// The preview where the pointer is; `drawing`: a form has been begun.
     fn coming(&self, drawing: bool, p: Option<Pointer>, site: &Site<'_>, options: &ThingState) -> Coming;
 
     /// The options of the tool.
@@ -53,18 +53,18 @@ pub(super) trait Draft: Clone + Debug + Default + Send + 'static {
     fn set(hand: &mut Hand, id: &str, value: Value);
 }
 
-/// What would come of a tool where the pointer is, ego frame, m.
+/// Preview of a tool where the pointer is, ego frame, m.
 #[derive(Default)]
 pub(super) struct Coming {
-    /// Forms.
+    /// Forms that would be added.
     pub forms: Vec<Form>,
-    /// The way that is drawn.
+    /// Line that is being drawn.
     pub way_m: Vec<DVec2>,
-    /// What is said about it.
+    /// Text beside the pointer.
     pub text: Option<String>,
 }
 
-/// Length of the last piece, and of all of them.
+/// Lengths of the last piece and of all pieces together, as text; `None` without a piece.
 pub(super) fn length(points_m: &[DVec2]) -> Option<String> {
     let pieces: Vec<f64> = points_m.windows(2).map(|p| p[0].distance(p[1])).collect();
     let last = pieces.last()?;
@@ -106,7 +106,7 @@ pub(super) struct Drawing<D> {
     press: Option<Press>,
 }
 
-/// Where trees stand and houses are, ego frame, m.
+/// Places of the trees and outlines of the houses, ego frame, m.
 fn standing(scene: &Scene) -> (Vec<DVec2>, Vec<Vec<DVec2>>) {
     let (mut trees_m, mut houses_m) = (Vec::new(), Vec::new());
     for thing in scene.background.iter() {
@@ -189,7 +189,7 @@ impl<D: Draft> Drawing<D> {
         };
         let outcome = match &mut self.draft {
             Some(draft) => draft.pointer(&p, &site, &cx.hand.things),
-            // What was let go of elsewhere is not for this tool.
+            // A click that ends outside the ground is not for this tool.
             None => Outcome::Nothing,
         };
         self.answer(outcome)
@@ -205,7 +205,7 @@ impl<D: Draft> Drawing<D> {
         response
     }
 
-    /// Shows or adds what was drawn.
+    /// Shows or adds the drawn forms.
     fn answer(&mut self, outcome: Outcome) -> Response {
         match outcome {
             Outcome::Nothing => Response::none(),

@@ -145,7 +145,7 @@ impl Draft for LineDraft {
     }
 }
 
-/// Where the first point of a line would lie.
+/// Mark of the first point of a line.
 fn dot(at_m: DVec2) -> Form {
     Form::Tree(Tree {
         position_m: at_m,
@@ -155,7 +155,7 @@ fn dot(at_m: DVec2) -> Form {
     })
 }
 
-/// Where a point comes to lie: clear of the kerb by half the width of the line.
+/// Snapped place of a point: clear of the kerb by half the width of the line.
 fn snapped(p: &Pointer, site: &Site<'_>, options: &ThingState) -> DVec2 {
     match p.free {
         true => p.at_m,

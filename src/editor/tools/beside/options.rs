@@ -1,4 +1,4 @@
-//! What the tools for things hold in hand between two frames: options, selection, what is being drawn.
+//! State that the scenery tools share between two frames: options, selection, clipboard.
 
 use std::collections::BTreeSet;
 
@@ -18,16 +18,16 @@ pub enum ThingKind {
     Post(PostKind),
 }
 
-/// What the tools for things hold.
+/// Options, selection and clipboard of the scenery tools.
 #[derive(Clone, Debug)]
 pub struct ThingState {
     /// The chosen things.
     pub chosen: BTreeSet<ThingId>,
-    /// Their outlines are drawn, and they can be chosen.
+    /// Outlines of the things are drawn, and the things can be chosen.
     pub shown: bool,
-    /// They can neither be chosen nor changed.
+    /// Things can neither be chosen nor changed.
     pub locked: bool,
-    /// Moves of them snap to the kerb.
+    /// Things that are moved snap to the kerb.
     pub snap_kerb: bool,
     /// Storeys of the next building.
     pub storeys: u32,
@@ -49,7 +49,7 @@ pub struct ThingState {
     pub shrubs_m: f64,
     /// Kind of the next post.
     pub post: PostKind,
-    /// What was copied, world frame.
+    /// Copied forms, world frame.
     pub clipboard: Vec<Form>,
     /// Kinds whose things are listed one by one.
     pub unfolded: BTreeSet<&'static str>,

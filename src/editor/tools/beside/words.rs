@@ -1,9 +1,9 @@
-//! What things are called in undo steps and panels.
+//! Names of things in undo steps and panels.
 
 use language::{t, tf};
 use scene::Form;
 
-/// One of a kind: `tree`; several: `5 trees`; of several kinds: `5 things`.
+/// Name for a set of things. One thing: `tree`; several of a kind: `5 trees`; of several kinds: `5 things`.
 pub fn count(forms: &[&Form]) -> String {
     match forms {
         [] => t("nothing").to_owned(),
@@ -15,7 +15,7 @@ pub fn count(forms: &[&Form]) -> String {
     }
 }
 
-/// Several of a kind, without a number, in English.
+/// Plural of a kind, without a number, in English.
 pub fn plural(name: &str) -> String {
     match name {
         "shrubs" => "areas of shrubs".to_owned(),

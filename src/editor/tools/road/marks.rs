@@ -1,4 +1,4 @@
-//! What the road tool draws over the map.
+//! Marks that the road tool draws over the map.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ use super::options::summary;
 use super::part::{RoadPart, Seen};
 use crate::tools::{At, Mark, Role, Sight};
 
-/// Directions are shown every so many metres.
+/// Spacing of the direction arrows, m.
 const ARROW_M: f64 = 16.0;
 /// More roads are drawn as plain lines.
 const MOST_DASHED: usize = 40;
@@ -67,7 +67,7 @@ fn at(points: &[DVec2]) -> Vec<At> {
     points.iter().map(|p| (*p).into()).collect()
 }
 
-/// Both edges of a road.
+/// The two edges of a road.
 fn outline(road: &Road, line: &[DVec2]) -> [Vec<DVec2>; 2] {
     [
         curve::beside(line, road.reach_m(false)),
@@ -102,7 +102,7 @@ fn chosen_road(road: &Road, line: &[DVec2], sight: &Sight<'_>, out: &mut Vec<Mar
     }
 }
 
-/// Which way its lanes are driven.
+/// Arrows in the driving direction of its lanes.
 fn arrows(road: &Road, line: &[DVec2], point_m: f64, out: &mut Vec<Mark>) {
     let length_m = curve::length_m(line);
     let count = (length_m / ARROW_M).round().clamp(1.0, 50.0) as usize;

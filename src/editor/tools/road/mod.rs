@@ -1,5 +1,5 @@
-//! The road tool: chooses roads and the nodes where they meet, and reshapes them by their points and lanes. A scene whose
-//! roads were only painted shows what is recognised in them.
+//! The road tool: chooses roads and the nodes where they meet, and reshapes them by their points and lanes. A scene
+//! whose roads were only painted shows the roads recognised in them.
 
 mod marks;
 mod options;
@@ -45,16 +45,16 @@ pub static DEF: ToolDef = ToolDef {
     make: || Box::new(Roads::default()),
 };
 
-/// A node that is let go of so near to another one meets it, m.
+/// Distance from another node within which a released node joins it, m.
 const MEET_M: f64 = 3.0;
 
-/// What is being dragged.
+/// Part of the roads that is being dragged.
 #[derive(Clone, Debug)]
 enum Grip {
     Node(NodeId),
     /// A point of the road.
     Via(Road, usize),
-    /// The line itself: it gets a point there.
+    /// The line itself: it gets a new point there.
     Line(Road, usize),
 }
 
@@ -64,11 +64,11 @@ struct Drag {
     grip: Grip,
     from_m: DVec2,
     moved: bool,
-    /// The scene was asked to have a network.
+    /// True once the scene was asked to recognise its roads as a network.
     asked: bool,
 }
 
-/// What a network depends on, by the memory that it lies in.
+/// Inputs of a network; equality is decided by their shared memory.
 #[derive(Clone, Debug)]
 struct Known {
     roads: Arc<RoadNetwork>,
@@ -229,7 +229,7 @@ impl Roads {
         }
     }
 
-    /// The edits by which a node that is let go of at a place meets what is there.
+    /// The edits by which a node that is released at a place joins the node or road there.
     fn meeting(&self, net: &RoadNetwork, id: NodeId, at_m: DVec2) -> Option<Vec<Edit>> {
         let others = net
             .nodes
@@ -362,7 +362,7 @@ impl Tool for Roads {
     }
 }
 
-/// The edits by which what is chosen of the roads goes away; `None` if nothing is.
+/// The edits that delete a part of the roads; `None` for a point of a road that does not exist.
 pub fn deletion(scene: &Scene, part: RoadPart) -> Option<Vec<Edit>> {
     let change = match part {
         RoadPart::Road(id) => RoadChange::Remove { id },

@@ -1,4 +1,4 @@
-//! Options of what is chosen: lanes, limit and marks of a road, the kind of a junction.
+//! Options of the selected part: lanes, limit and marks of a road, the kind of a junction.
 
 use glam::DVec2;
 

@@ -8,14 +8,14 @@ use glam::DVec2;
 use scene::roads::{NodeId, curve};
 use scene::{Road, RoadId, RoadNetwork};
 
-/// What is chosen of the roads.
+/// Selected part of the roads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RoadPart {
     /// A road.
     Road(RoadId),
     /// A point of a road between its ends.
     Via(RoadId, usize),
-    /// Where roads end or meet.
+    /// A node, where roads end or meet.
     Node(NodeId),
 }
 
@@ -29,12 +29,12 @@ impl RoadPart {
     }
 }
 
-/// What the road tool holds.
+/// Selection of the road tool.
 #[derive(Clone, Debug, Default)]
 pub struct RoadHand {
-    /// What is chosen.
+    /// Selected part.
     pub chosen: Option<RoadPart>,
-    /// Where it was chosen, m: what is added to a road is added there.
+    /// Point of that click, m; additions to a road are made there.
     pub at_m: DVec2,
     /// The lane that was clicked: true right of the line, and its place from the line outward.
     pub lane: Option<(bool, usize)>,
@@ -54,7 +54,7 @@ impl Seen {
     }
 }
 
-/// What lies at a point: points of the chosen road before nodes, nodes before roads.
+/// The part at a point: points of the chosen road come before nodes, nodes before roads.
 pub(super) fn at(seen: &Seen, p_m: DVec2, reach_m: f64, chosen: Option<RoadPart>) -> Option<RoadPart> {
     let net = &*seen.net;
     let near = |q: DVec2| q.distance(p_m) <= reach_m;
@@ -69,7 +69,7 @@ pub(super) fn at(seen: &Seen, p_m: DVec2, reach_m: f64, chosen: Option<RoadPart>
         .or_else(|| net.road_among(&seen.lines, p_m, 0.0).map(RoadPart::Road))
 }
 
-/// Where among the points of a road's line a place on it lies; `None` beside the line.
+/// Index among the points of a road's line at which a place on it lies; `None` beside the line.
 pub(super) fn on_line(seen: &Seen, id: RoadId, p_m: DVec2, reach_m: f64) -> Option<usize> {
     let (road, line) = (seen.net.road(id)?, seen.lines.get(&id)?);
     let (along_m, left_m) = curve::project(line, p_m)?;

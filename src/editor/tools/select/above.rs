@@ -16,7 +16,7 @@ use super::gizmo::{Gizmo, Part};
 use super::motion::{self, MotionDrag};
 use super::things::{self, Pull as ThingPull, ThingDrag, thing_under};
 
-/// What the button held does. All points are of the ego frame, m.
+/// Drag in progress in the view from above. All points are of the ego frame, m.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Drag {
     /// Moves, turns or scales boxes.
@@ -74,7 +74,7 @@ fn is_over_knob(frame: &Frame, hand: &Hand, at_m: DVec2, reach_m: f64) -> bool {
     !hand.outlines() && b.is_some_and(|b| pick::handle_at(b, at_m, reach_m) == Some(Handle::Rotate))
 }
 
-/// What a press takes hold of.
+/// The drag that a press starts.
 pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     let at_m = cx.ground_m(pointer.at)?;
     let frame = cx.settled.frame();
@@ -110,7 +110,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
             _ => {}
         }
         let over_box = pick::box_at(frame, at_m);
-        // Where the thing itself is, it is dragged, and with it its way.
+        // Over the object itself, a press drags the object, and its motion with it.
         if over_box.is_none_or(|id| !cx.hand.is_chosen(id))
             && let Some(drag) = MotionDrag::held(cx.settled, cx.hand, at_m, reach_m)
         {
@@ -123,7 +123,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
         if let Some(id) = over_box {
             if shift && !(chosen.len() == 1 && cx.hand.is_chosen(id)) {
                 cx.hand.choose(&[id], Choose::Toggle);
-                // Letting go elsewhere than pressed moves nothing: the selection is what was meant.
+                // A release elsewhere than the press moves nothing: the press meant the selection.
                 return Some(Drag::Marquee {
                     from_m: at_m,
                     to_m: at_m,
@@ -159,7 +159,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     }
 }
 
-/// What a move of the pointer changes.
+/// Continues a drag to the place of the pointer.
 pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Response {
     let Some(at_m) = cx.ground_m(pointer.at) else {
         return Response::none();
@@ -293,7 +293,7 @@ pub(super) fn key(drag: &mut Drag, cx: &Context<'_>, key: Key, repeat: bool, hel
     response
 }
 
-/// What letting go does.
+/// Ends a drag when the button comes up.
 pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
     let (scene, scale) = (cx.settled, cx.view.scale());
     let frame = scene.frame();
@@ -358,14 +358,14 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
     Response::none()
 }
 
-/// Chooses what lies in an outline, ego frame, m.
+/// Chooses the objects in an outline, ego frame, m.
 pub(super) fn outline(cx: &mut Context<'_>, points_m: &[DVec2], how: Choose) {
     let scene = cx.settled;
     cx.hand.choose(&choose::in_outline(scene.frame(), points_m), how);
     things::choose_in(scene, cx.hand, how, |p| choose::is_inside(points_m, p));
 }
 
-/// How what a rectangle or outline took joins the selection, by the keys that are held.
+/// The way in which the objects of a rectangle or outline join the selection, by the held keys.
 pub(super) fn how(held: Modifiers) -> Choose {
     match (held.shift, held.ctrl) {
         (true, _) => Choose::Add,
@@ -374,7 +374,7 @@ pub(super) fn how(held: Modifiers) -> Choose {
     }
 }
 
-/// What the pointer looks like where it could take hold of something.
+/// The cursor at the place of the pointer.
 pub(super) fn cursor(sight: &Sight<'_>) -> Cursor {
     let Some(at_m) = sight.ground_m() else {
         return Cursor::Default;
@@ -396,7 +396,7 @@ pub(super) fn cursor(sight: &Sight<'_>) -> Cursor {
     }
 }
 
-/// What is drawn over the map.
+/// The marks over the map.
 pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
     let mut out = Vec::new();
     if let None | Some(Drag::Corner { .. }) = drag

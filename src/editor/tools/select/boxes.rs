@@ -1,4 +1,4 @@
-//! Chosen boxes that are dragged: what a drag holds, the keys that steer it, the step that it makes.
+//! Dragging of chosen boxes: the state of a drag, the keys that steer it, its undo step.
 
 use crate::Edit;
 use crate::arrange::{Pivot, boxes_of};
@@ -16,7 +16,7 @@ pub(super) fn transform(frame: &Frame, hand: &Hand, ids: &[BoxId], kind: Transfo
         axis: None,
         orientation: hand.orientation,
         pivot: match kind {
-            // The ring goes about the middle of what it is drawn around.
+            // The ring turns the boxes about the middle of the ring.
             TransformKind::Turn => Pivot::Middle,
             _ => hand.pivot,
         },
@@ -44,16 +44,16 @@ pub(super) fn step_name(transform: &Transform) -> &'static str {
     }
 }
 
-/// What a key does to a drag of boxes.
+/// Effect of a key on a drag of boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Steered {
-    /// It is not for the drag.
+    /// None: the key is not for the drag.
     Not,
-    /// It is, and changes nothing.
+    /// The key is for the drag and changes nothing.
     Same,
-    /// Something changed: show it.
+    /// The drag changed and has to be shown.
     Changed,
-    /// That is it.
+    /// The drag is finished.
     Done,
 }
 
@@ -85,7 +85,7 @@ pub(super) fn take(scene: &Scene, hand: &mut Hand, id: BoxId) {
     choose_groups(scene, hand);
 }
 
-/// Chooses the whole groups of what is chosen, too; the box chosen last stays the first.
+/// Extends the selection to whole groups; the box chosen last stays the first.
 pub(super) fn choose_groups(scene: &Scene, hand: &mut Hand) {
     let chosen = members(hand);
     let whole = scene.arranged.with_groups(&chosen);
@@ -104,7 +104,7 @@ pub(super) fn choose_groups(scene: &Scene, hand: &mut Hand) {
     hand.choose_things(&things, Choose::Add);
 }
 
-/// What is chosen.
+/// The chosen boxes and things.
 pub(super) fn members(hand: &Hand) -> Members {
     Members::of(hand.chosen(), hand.things.chosen.iter().copied())
 }

@@ -1,4 +1,4 @@
-//! The gizmo of the chosen boxes: arrows, a ring or knobs, on either view; what of it lies under the pointer.
+//! The gizmo of the chosen boxes: arrows, a ring or knobs, on either view; finds its part under the pointer.
 
 use glam::{DVec2, DVec3};
 
@@ -12,7 +12,7 @@ use crate::tools::{At, Hand, Mark, Role, View, ViewKind};
 
 /// Length of an arrow, radius of the ring, points.
 const LENGTH: f64 = 62.0;
-/// Where an arrow begins to be one, points: nearer to the middle the box itself is taken hold of.
+/// Distance from the middle at which an arrow begins, points: nearer to the middle the box itself is dragged.
 const HOLLOW: f64 = 26.0;
 /// How near the pointer has to be, points.
 const REACH: f64 = 7.0;
@@ -101,7 +101,7 @@ impl<'a> Gizmo<'a> {
         self.axes().iter().find(near).map(|a| Part::Axis(*a))
     }
 
-    /// What is drawn of it; `hot` is under the pointer or held.
+    /// The marks of the gizmo; `hot` is under the pointer or held.
     pub fn marks(&self, hot: Option<Part>) -> Vec<Mark> {
         let screen = |p: DVec2| At::Screen(p);
         if self.transform.kind == TransformKind::Turn {

@@ -91,7 +91,7 @@ pub static DEF: ToolDef = ToolDef {
     make: || Box::new(Select::default()),
 };
 
-/// What the button held does, by the view in which it went down.
+/// Drag in progress, by the view in which the button went down.
 #[derive(Clone, Debug, PartialEq)]
 enum Drag {
     Above(above::Drag),
@@ -104,12 +104,12 @@ pub struct Select {
     drag: Option<Drag>,
     /// Corners of an outline.
     corners: Corners,
-    /// What was chosen when the button went down, or the first corner was set.
+    /// Selection when the button went down, or when the first corner was set.
     before: Members,
 }
 
 impl Select {
-    /// Chooses what lies in an outline that was closed.
+    /// Chooses the objects in an outline that was closed.
     fn closed(&mut self, cx: &mut Context<'_>, set: Set) {
         if let Set::Closed(points, held) = set {
             match cx.from_above() {
@@ -120,7 +120,8 @@ impl Select {
         }
     }
 
-    /// Who takes one out of a group that was chosen wants that one.
+    /// Extends the selection to whole groups, unless objects were only taken out of it: then a single member can be
+    /// taken out of its group.
     fn with_groups(&self, cx: &mut Context<'_>) {
         let now = boxes::members(cx.hand);
         if !now.is_within(&self.before) {

@@ -1,4 +1,4 @@
-//! The way of what moves, dragged on the map: keyframes to another place, a path bent.
+//! Motions dragged on the map: a keyframe is moved, or a path is bent.
 
 use glam::DVec2;
 
@@ -9,25 +9,25 @@ use language::tf;
 use scene::clip::Path;
 use scene::{BoxId, Clip, Frame, Motion, Scene};
 
-/// A path can be taken every so far, m.
+/// Spacing of the knots along a path, m.
 const KNOTS_EVERY_M: f64 = 10.0;
-/// What lies nearer than this to where it is taken, along the path, comes along, m.
+/// Least distance along the path, to either side of the dragged place, within which the path bends with it, m.
 const BEND_M: f64 = 15.0;
-/// Points of a path where it is bent lie at most so far apart, m.
+/// Largest spacing of the points of a bent part of a path, m.
 const STEP_M: f64 = 1.0;
-/// A knot is caught by lanes so near, m.
+/// Distance within which a lane catches a knot, m.
 const CATCH_M: f64 = 2.0;
 
-/// Where a motion can be taken.
+/// Handle of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Knot {
-    /// A keyframe: its number.
+    /// A keyframe, by its index.
     Key(usize),
-    /// So far along the path, m.
+    /// A place of a path, by its distance along the path, m.
     Along(f64),
 }
 
-/// A motion that is held.
+/// A drag of a motion in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MotionDrag {
     id: Option<BoxId>,
@@ -37,8 +37,8 @@ pub(super) struct MotionDrag {
 }
 
 impl MotionDrag {
-    /// What a press at a place takes hold of: a knot of what is chosen, or with nothing chosen of the ego vehicle, that
-    /// is not under the thing itself.
+    /// The drag of the nearest knot within `reach_m` of a place, of the only chosen object or, with an empty selection,
+    /// of the ego vehicle; `None` if there is none. The caller looks whether the object itself is there.
     pub(super) fn held(scene: &Scene, hand: &Hand, at_m: DVec2, reach_m: f64) -> Option<Self> {
         let (id, motion) = editable(scene.clip(), hand)?;
         let knots = knots(motion).into_iter();
@@ -53,7 +53,7 @@ impl MotionDrag {
         })
     }
 
-    /// The motion with what is held at another place.
+    /// Edits that move the knot to another place.
     pub(super) fn edits(&self, scene: &Scene, hand: &Hand, to_m: DVec2, held: Modifiers) -> Vec<Edit> {
         let (to_m, yaw_rad) = snapped(scene.frame(), hand, to_m, held);
         let motion = match (&self.start, self.knot) {
@@ -91,7 +91,7 @@ impl MotionDrag {
         }
     }
 
-    /// What is said beside the pointer.
+    /// The text beside the pointer.
     pub(super) fn text(&self) -> String {
         match (&self.start, self.knot) {
             (Motion::Keys(keys), Knot::Key(i)) => {
@@ -115,7 +115,7 @@ impl MotionDrag {
     }
 }
 
-/// Where the knots to draw are, m.
+/// Places of the knots to draw, m.
 pub(super) fn knots_m(sight: &Sight<'_>) -> Vec<DVec2> {
     let Some((_, motion)) = editable(sight.scene.clip(), sight.hand) else {
         return Vec::new();
@@ -155,11 +155,11 @@ fn knots(motion: &Motion) -> Vec<(Knot, DVec2)> {
     }
 }
 
-/// A path whose point so far along moves by `by_m`; what lies near it comes along smoothly.
+/// A path whose point at `along_m` moves by `by_m`; points near it follow smoothly.
 fn bent(path: &Path, along_m: f64, by_m: DVec2) -> Path {
     let mut points_m: Vec<DVec2> = Vec::with_capacity(path.points_m.len() + 64);
     let mut passed_m = 0.0;
-    // What goes far takes more along, so that the way does not turn sharply.
+    // A long move bends more of the path, so that the path does not turn sharply.
     let reach_m = BEND_M.max(2.5 * by_m.length());
     let moved = |at_m: DVec2, passed_m: f64| {
         let apart = ((passed_m - along_m).abs() / reach_m).min(1.0);
@@ -202,8 +202,8 @@ fn snapped(frame: &Frame, hand: &Hand, to_m: DVec2, held: Modifiers) -> (DVec2, 
     (step_m.map_or(to_m, |step| (to_m / step).round() * step), None)
 }
 
-/// The heading of a lane, degrees, at the turn nearest to what was there, along the lane or against it: a keyframe does not
-/// spin round, and who drives the wrong way goes on doing so.
+/// The heading of a lane, degrees, along the lane or against it, in the turn nearest to the heading before: a keyframe
+/// does not spin round, and a vehicle that drives the wrong way goes on doing so.
 fn nearest_turn(was_deg: f64, lane_deg: f64) -> f64 {
     lane_deg + ((was_deg - lane_deg) / 180.0).round() * 180.0
 }

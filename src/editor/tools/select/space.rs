@@ -25,13 +25,13 @@ const APART: f64 = 2.0;
 /// Things are raised by this much at most in one drag, m.
 const MOST_UP_M: f64 = 100.0;
 
-/// What the button held does. Places are of the screen, points.
+/// Drag in progress in the 3D view. Places are points of the screen.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Drag {
     /// Moves, turns or scales boxes.
     Boxes {
         transform: Transform,
-        /// Point that was taken hold of, m.
+        /// Point that the drag pulls, m: the one that was hit, or the middle of the boxes for the gizmo.
         grabbed_m: DVec3,
         from: DVec2,
         to: DVec2,
@@ -63,7 +63,7 @@ fn thing_of(scene: &Scene, hand: &Hand, hit: &Hit) -> Option<ThingId> {
     open.then(|| pick_things::thing_of_voxel(scene.frame(), &scene.background, voxel.cell))?
 }
 
-/// What a press takes hold of among things.
+/// The drag that a press on a thing starts.
 fn press_things(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
     let drag = |pull, grabbed_m, hit| {
         Some(Drag::Things {
@@ -92,7 +92,7 @@ fn press_things(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
     drag(ThingPull::Place, point_of(&hit, &ray), Some(id))
 }
 
-/// What a press takes hold of.
+/// The drag that a press starts.
 pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     if let Some(drag) = press_things(cx, pointer) {
         return Some(drag);
@@ -131,7 +131,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     }
 }
 
-/// What a press takes hold of on the gizmo.
+/// The drag that a press on the gizmo starts.
 fn press_gizmo(cx: &Context<'_>, at: DVec2) -> Option<Drag> {
     let frame = cx.frame();
     let gizmo = Gizmo::new(cx.settled, cx.hand, cx.view);
@@ -156,7 +156,7 @@ fn press_gizmo(cx: &Context<'_>, at: DVec2) -> Option<Drag> {
     None
 }
 
-/// What a move of the pointer changes.
+/// Continues a drag to the place of the pointer.
 pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Response {
     let at = pointer.at;
     match drag {
@@ -197,7 +197,7 @@ pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Resp
     }
 }
 
-/// How far the pointer went on the level of what it holds, or up, m; `None` beyond `limit_m` from the ego vehicle.
+/// Way of the pointer on the level of the dragged object, or up, m; `None` beyond `limit_m` from the ego vehicle.
 fn way_m(
     view: &dyn View,
     limit_m: f64,
@@ -295,7 +295,7 @@ pub(super) fn key(drag: &mut Drag, cx: &Context<'_>, key: Key, repeat: bool, hel
     response
 }
 
-/// What letting go does.
+/// Ends a drag when the button comes up.
 pub(super) fn release(drag: Drag, cx: &mut Context<'_>, at: DVec2) -> Response {
     match drag {
         Drag::Boxes {
@@ -358,7 +358,7 @@ fn area(cx: &mut Context<'_>, points: &[DVec2], at: DVec2, lasso: bool, how: Cho
     chosen_in(cx, &outline, how);
 }
 
-/// Chooses what lies in an outline on the screen.
+/// Chooses the objects in an outline on the screen.
 pub(super) fn chosen_in(cx: &mut Context<'_>, outline: &[DVec2], how: Choose) {
     let (scene, view) = (cx.settled, cx.view);
     let frame = scene.frame();
@@ -370,7 +370,7 @@ pub(super) fn chosen_in(cx: &mut Context<'_>, outline: &[DVec2], how: Choose) {
     things::choose_in(scene, cx.hand, how, on_screen);
 }
 
-/// The part of the gizmo that a drag holds.
+/// The part of the gizmo that is dragged.
 fn held_part(axis: Option<Axis>, kind: TransformKind) -> Option<Part> {
     match (kind, axis) {
         (TransformKind::Turn, _) => Some(Part::Ring),
@@ -378,7 +378,7 @@ fn held_part(axis: Option<Axis>, kind: TransformKind) -> Option<Part> {
     }
 }
 
-/// What is drawn over the view.
+/// The marks over the view.
 pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
     let mut out = Vec::new();
     let gizmo = Gizmo::new(sight.scene, sight.hand, sight.view);

@@ -1,5 +1,5 @@
-//! Chosen things dragged on either view: moved together with the chosen boxes, a corner pulled, raised. Each move of the
-//! pointer starts over from what was there when the button went down.
+//! Chosen things dragged on either view: moved together with the chosen boxes, a corner pulled, raised. Each move of
+//! the pointer starts over from the things as they were when the button went down.
 
 use glam::{DVec2, DVec3};
 
@@ -12,17 +12,17 @@ use scene::{Form, Frame, Scene, SceneBox, ThingId};
 use crate::tools::beside::{KERB_M, words};
 use crate::tools::{Choose, Hand, Modifiers};
 
-/// What was taken hold of.
+/// Drag of chosen things in progress.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThingDrag {
     /// The chosen things, world frame.
     start: Vec<(ThingId, Form)>,
     boxes: Vec<SceneBox>,
-    /// What the pointer changes of them.
+    /// Part of them that the pointer changes.
     pull: Pull,
 }
 
-/// What a drag changes.
+/// Part of the things that a drag changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pull {
     /// The place of all of them.
@@ -34,7 +34,7 @@ pub enum Pull {
 }
 
 impl ThingDrag {
-    /// Takes hold of what is chosen; `None` without a thing.
+    /// Begins a drag of the chosen things; `None` without a thing.
     pub fn new(scene: &Scene, hand: &Hand, pull: Pull) -> Option<Self> {
         let things = hand.things.chosen_in(&scene.background);
         let start: Vec<_> = things.map(|t| (t.id, t.form.clone())).collect();
@@ -45,7 +45,7 @@ impl ThingDrag {
         })
     }
 
-    /// What is pulled.
+    /// The part that is changed.
     pub fn pull(&self) -> Pull {
         self.pull
     }
@@ -161,7 +161,8 @@ pub fn thing_under(scene: &Scene, hand: &Hand, at_m: DVec2, reach_m: f64) -> Opt
         .flatten()
 }
 
-/// What a press from above takes hold of among the chosen things: a corner of the only one, or all of them.
+/// The drag that a press from above starts among the chosen things: of a corner if there is only one thing, or of all
+/// of them.
 pub(super) fn held(scene: &Scene, hand: &Hand, at_m: DVec2, reach_m: f64, shift: bool) -> Option<ThingDrag> {
     let things = &hand.things;
     if shift || things.chosen.is_empty() {
@@ -190,7 +191,7 @@ pub(super) fn choose(hand: &mut Hand, hit: Option<ThingId>, how: Choose) {
     }
 }
 
-/// Chooses the things whose middle (ego frame, m) lies in an area, too, or takes them out of what is chosen.
+/// Adds the things whose middle (ego frame, m) lies in an area to the selection, or takes them out of it.
 pub(super) fn choose_in(scene: &Scene, hand: &mut Hand, how: Choose, inside: impl Fn(DVec2) -> bool) {
     if hand.things.is_open() {
         let ids = pick_things::things_in(&scene.background, inside);
@@ -216,7 +217,7 @@ pub(super) fn handles_m(scene: &Scene, hand: &Hand) -> Vec<DVec2> {
     }
 }
 
-/// The knob that raises what is chosen in space: in the middle of its top, ego frame, m.
+/// The knob that raises the chosen things in the 3D view: in the middle of their top, ego frame, m.
 pub(super) fn knob_m(scene: &Scene, hand: &Hand) -> Option<DVec3> {
     let frame = scene.frame();
     let chosen = hand.things.chosen_in(&scene.background);

@@ -18,7 +18,7 @@ const NEARER_M: f64 = 2.0 * Extent::VOXEL_M;
 /// Points of an outline are so far apart at least, points of the screen.
 const APART: f64 = 3.0;
 
-/// Where voxels are chosen.
+/// Region in which voxels are chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Area {
     /// Columns from one corner to the other, so many layers up from the voxel that was pressed.
@@ -30,7 +30,7 @@ pub(super) enum Area {
 }
 
 impl Area {
-    /// What a press begins; none where it meets no voxel that it needs.
+    /// The region that a press begins; `None` where the press hits no voxel that it needs.
     pub(super) fn begin(cx: &Context<'_>, mode: VoxelMode, at: DVec2) -> Option<Self> {
         if mode == VoxelMode::ChooseLasso {
             return Some(Self::Lasso { points: vec![at] });
@@ -139,7 +139,7 @@ impl Area {
         cx.hand.choose_voxels(cells, how);
     }
 
-    /// What is drawn while it grows.
+    /// The marks while the region grows.
     pub(super) fn marks(&self, frame: &Frame, hand: &Hand, view: &dyn View, color: [u8; 3]) -> Vec<Mark> {
         match self {
             Self::Lasso { points } => {
@@ -173,11 +173,11 @@ pub enum Joins {
     Replace,
     /// Besides them.
     Add,
-    /// They are chosen no more.
+    /// Takes them out of the selection.
     Remove,
 }
 
-/// What the keys that are held mean.
+/// The join that the held keys mean.
 pub(super) fn joins(held: Modifiers) -> Joins {
     match (held.shift, held.ctrl) {
         (true, _) => Joins::Add,

@@ -35,14 +35,14 @@ use target::{target, tipped};
 /// Its name.
 pub const ID: ToolId = ToolId::VOXEL;
 
-/// Colour of what would go.
+/// Colour of voxels that would be removed.
 pub(super) const REMOVED: [u8; 3] = [238, 112, 104];
 /// Colour of chosen voxels: no class has it.
 const CHOSEN: [u8; 3] = [255, 70, 255];
 /// Distance between two samples of a quick stroke, points.
 const SAMPLE_EVERY: f64 = 3.0;
 
-/// What the button held does.
+/// Drag in progress.
 #[derive(Clone, Debug, PartialEq)]
 enum Drag {
     /// Follows the pointer.
@@ -102,7 +102,7 @@ fn normal_axis(hit: &VoxelHit) -> usize {
     (0..3).find(|a| hit.normal[*a] != 0).unwrap_or(2)
 }
 
-/// Shows voxels painted, on both sides where that is asked for, as far as the verb changes them.
+/// Shows voxels painted, on both sides if symmetry is on, as far as the verb changes them.
 fn show(cells: Vec<Cell>, frame: &Frame, hand: &Hand, verb: VoxelVerb) -> Response {
     let both = hand.both_sides(frame.extent(), cells);
     let cells = voxel_ops::only(&frame.occupancy, both, verb == VoxelVerb::Attach);

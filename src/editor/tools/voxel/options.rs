@@ -1,11 +1,11 @@
-//! What can be set of the voxel tool, and done with chosen voxels.
+//! Options of the voxel tool, and actions on chosen voxels.
 
 use crate::tools::paints::voxel_classes;
 use crate::tools::setting::{Control, Number, Setting};
 use crate::tools::{Hand, VoxelMode, VoxelTip, VoxelVerb};
 use language::tf;
 
-/// Everything that can be set of the tool.
+/// All options of the tool.
 pub(super) fn options(hand: &Hand) -> Vec<Setting> {
     let mut out = vec![
         Setting::title("Voxel brush"),
@@ -75,7 +75,7 @@ pub(super) fn options(hand: &Hand) -> Vec<Setting> {
     out
 }
 
-/// What can be done with the chosen voxels.
+/// Actions on the chosen voxels.
 fn chosen(hand: &Hand) -> [Setting; 2] {
     let n = hand.voxels.len();
     let text = match n {
@@ -98,7 +98,7 @@ fn chosen(hand: &Hand) -> [Setting; 2] {
     [Setting::text(text), Setting::new("", Control::Row(buttons))]
 }
 
-/// What can be done with the stamp.
+/// Actions on the stamp.
 fn stamp(hand: &Hand) -> Vec<Setting> {
     match hand.stamp.len() {
         0 => vec![Setting::text(

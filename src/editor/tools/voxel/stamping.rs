@@ -8,7 +8,7 @@ use crate::tools::{Act, Context, Hand, Pointer, Response, View, VoxelVerb};
 use crate::voxel_ops::Cell;
 use scene::{Class, Frame};
 
-/// Where the stamp would be set down by a press.
+/// The voxels of the stamp, by class, where a press would set it down; empty where it has no place.
 pub(super) fn stamp_at(frame: &Frame, hand: &Hand, view: &dyn View, at: DVec2) -> Vec<(Class, Vec<Cell>)> {
     let cell = view
         .ray(at)

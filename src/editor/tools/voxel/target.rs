@@ -1,4 +1,4 @@
-//! Which voxels a brush would change: a block or a ball in front of the face under the ray, or behind it.
+//! Voxels that a brush would change: a block or a ball in front of the face under the ray, or behind it.
 
 use crate::pick::{self, Ray, VoxelHit};
 use crate::tools::{VoxelTip, VoxelVerb};
@@ -10,7 +10,7 @@ pub(super) fn target(frame: &Frame, verb: VoxelVerb, size: [usize; 2], ray: &Ray
     tipped(frame, verb, (VoxelTip::Block, size), ray)
 }
 
-/// The same with another tip.
+/// Like [`target`], with any tip.
 pub(super) fn tipped(
     frame: &Frame,
     verb: VoxelVerb,
@@ -40,8 +40,8 @@ pub(super) fn tipped(
     }
 }
 
-/// What a brush covers that begins at `cell` and reaches along `direction`, centred across it; only the voxels that are free, or
-/// only those that are not.
+/// The voxels of a brush that begins at `cell` and reaches along `direction`, centred across it; only those that are
+/// free, or only those that are not.
 fn covered(
     frame: &Frame,
     cell: [usize; 3],
