@@ -1,4 +1,5 @@
-//! Variants in tars, as WebDataset reads them: files of one sample follow each other and share their name up to the first dot.
+//! Variants in tars, as WebDataset reads them: files of one sample follow each other and share their name up to the
+//! first dot.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +9,7 @@ use super::record::{FILE, Record};
 use formats::{atomic, input};
 use scene::plain_name;
 
-/// Name of a pack without ending.
+/// Name of a pack without its ending.
 fn stem(pack: usize) -> String {
     format!("shard-{pack:06}")
 }
@@ -17,25 +18,25 @@ fn tar_of(output: &Path, pack: usize) -> PathBuf {
     output.join(stem(pack) + ".tar")
 }
 
-/// The records of the variants in a pack; written before the tar, which says that both are there.
+/// File with the records of the variants in a pack. It is written before the tar, so a tar that exists has its records.
 fn records_of(output: &Path, pack: usize) -> PathBuf {
     output.join(stem(pack) + ".json")
 }
 
-/// True if a pack is whole.
+/// True if a pack is complete.
 pub fn is_there(output: &Path, pack: usize) -> bool {
     tar_of(output, pack).exists()
 }
 
-/// What is known of the variants in a pack.
+/// Reads the records of the variants in a pack.
 pub fn records(output: &Path, pack: usize) -> anyhow::Result<Vec<Record>> {
     let path = records_of(output, pack);
     let text = input::read_text(&path, input::LARGEST_TEXT)?;
     serde_json::from_str(&text).with_context(|| path.display().to_string())
 }
 
-/// Puts variants that lie in folders into a tar and takes the folders away. Files are named `000012.FORMAT.FILE`, those of a clip's
-/// later frames `000012_f0003.FORMAT.FILE`. The same variants give the same bytes: no times, no owners.
+/// Moves variants from their folders into a tar and removes the folders. Files are named `000012.FORMAT.FILE`, files of
+/// a clip's later frames `000012_f0003.FORMAT.FILE`. The same variants give the same bytes: no times, no owners.
 pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<()> {
     let text = serde_json::to_string_pretty(records)?;
     atomic::write(&records_of(output, pack), text.as_bytes())?;
@@ -85,7 +86,7 @@ pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<(
     Ok(())
 }
 
-/// The frame of a clip that a file belongs to: `f0003/occ3d/labels.npz` to the third.
+/// The frame of a clip that a file belongs to: `f0003/occ3d/labels.npz` belongs to frame 3.
 fn frame_of(path: &str) -> usize {
     let first = path.split('/').next().unwrap_or("");
     let number = first
@@ -94,7 +95,7 @@ fn frame_of(path: &str) -> usize {
     number.and_then(|n| n.parse().ok()).unwrap_or(0)
 }
 
-/// Its name in the tar.
+/// The name of a variant's file in the tar.
 fn name_of(variant: usize, path: &str) -> String {
     match (frame_of(path), path.split_once('/')) {
         (0, _) => {
