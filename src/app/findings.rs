@@ -1,4 +1,4 @@
-//! The quality checks with what cameras and LiDAR return of every box.
+//! The quality checks, with the camera pixels and LiDAR returns of every box.
 
 use std::collections::BTreeMap;
 
@@ -11,13 +11,14 @@ use scene::{BoxId, LidarPoint, Pose, Returns, Scene};
 use sensors::rolling;
 use sensors::splat::PREVIEW_SIZE;
 
-/// What cameras and LiDAR return of every box of the current frame: pixels by exact rays to voxels and shapes, at the size of
-/// the camera strip's previews; returns of the exact sweep on the physical ground, as files have it, that lie in the box.
-/// Where the scene's sensors are does not matter.
+/// Counts the camera pixels and LiDAR returns of every box of the current frame. Pixels come from exact rays to voxels
+/// and shapes, at the size of the camera strip's previews. Returns are those of the exact sweep on the physical ground,
+/// as files have it, that lie in the box. The result does not depend on the frame in which the scene's sensors are
+/// given.
 pub fn seen(scene: &Scene) -> Seen {
     let scene = &*scene.with_rig_in_world();
     let frame = scene.frame();
-    // Numbers that are not finite are for another check, and for no ray.
+    // Another check reports numbers that are not finite; rays would fail on them.
     let mut sound = frame.boxes.clone();
     sound.retain(|_, b| b.problem().is_none());
     if scene.rig.problem().is_some() {

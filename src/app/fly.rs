@@ -1,5 +1,5 @@
-//! Flight through a view: the pointer turns the head, keys move. Keys count by where they lie on the keyboard, not by what is
-//! written on them: W A S D are one hand's reach on a French keyboard too.
+//! Flight through a view: the pointer turns the head, keys move. Keys are read by their position on the keyboard, not
+//! by their label, so W A S D are under one hand on a French keyboard too.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ pub fn steers(physical: Key) -> bool {
     matches!(physical, Key::W | Key::A | Key::S | Key::D | Key::Q | Key::E)
 }
 
-/// Notes which keys went down or up; to be called in each frame.
+/// Notes the keys that went down or up; to be called in each frame.
 pub fn note(ctx: &Context) {
     let (changes, focused) = ctx.input(|i| {
         let change = |event: &Event| match event {
@@ -43,7 +43,7 @@ pub fn note(ctx: &Context) {
     ctx.data_mut(|data| {
         let down: &mut Down = data.get_temp_mut_or_default(id());
         if !focused {
-            // Nobody tells of a key that comes up elsewhere.
+            // No event comes when a key is released in another window.
             down.clear();
         }
         for (key, pressed) in changes {
@@ -56,14 +56,14 @@ pub fn note(ctx: &Context) {
     });
 }
 
-/// Where the keys steer: to the right, up and ahead, each -1 to 1.
+/// The direction that the keys steer: right, up and ahead, each -1 to 1.
 fn way(ctx: &Context) -> DVec3 {
     let down: Down = ctx.data(|data| data.get_temp(id())).unwrap_or_default();
     let axis = |plus, minus| f64::from(i8::from(down.contains(&plus)) - i8::from(down.contains(&minus)));
     DVec3::new(axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S))
 }
 
-/// Turns the head by so many points of the pointer, and moves by the keys: with Shift faster, with Alt slower.
+/// Turns the head by a movement of the pointer, points, and moves by the keys: faster with Shift, slower with Alt.
 pub fn fly(ui: &Ui, camera: &mut ViewCamera, dx: f64, dy: f64) {
     camera.turn_head(dx * TURN_RAD, dy * TURN_RAD);
     let (modifiers, dt) = ui.input(|i| (i.modifiers, f64::from(i.stable_dt.min(0.1))));
