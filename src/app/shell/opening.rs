@@ -1,5 +1,5 @@
-//! Takes scenes that were read from a file over. What was edited while the file was read is not lost: the scene that was read
-//! waits until the user has said what becomes of the edits.
+//! Takes over scenes that were read from a file. Edits made while the file was read are not lost: the new scene waits
+//! until the user has decided about them.
 
 use crossbeam_channel::TryRecvError;
 use egui::Context;
