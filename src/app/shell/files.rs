@@ -89,7 +89,7 @@ pub struct Files {
     pub(crate) disk: Disk,
     pub(crate) dialogs: FileDialogs,
     pub(crate) opening: Option<Opening>,
-    /// Waits for the answer about what was edited meanwhile.
+    /// A scene that waits until the user is asked about edits made meanwhile.
     pub(crate) arrived: Option<Box<Arrived>>,
     /// The state that the user agreed to leave for a scene that is being chosen or read.
     pub(crate) leaves: Option<Left>,
