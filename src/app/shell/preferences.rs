@@ -49,7 +49,7 @@ impl Preferences {
         true
     }
 
-    /// The next chance to write is taken, whatever was written last.
+    /// Makes the next call of [`Self::write`] due at once, and lets it write even if no value differs.
     pub(crate) fn write_soon(&mut self) {
         self.compared_s = f64::NEG_INFINITY;
     }

@@ -73,7 +73,7 @@ pub struct ActionDef {
     pub group: Group,
     /// Its title for the user.
     pub title: &'static str,
-    /// Where its chords count.
+    /// The condition under which its chords count.
     pub when: When,
     /// Default chords, separated by spaces.
     pub keys: &'static str,
