@@ -408,7 +408,7 @@ impl Canvas {
             extent: self.extent,
         };
         board.paint(ui, &marks);
-        // A still answers no pointer.
+        // A still view does not react to the pointer.
         if response.hover_pos().is_some() && response.sense.senses_drag() {
             let pans = ui.input(|i| i.key_down(egui::Key::Space) || i.pointer.middle_down());
             let cursor = if pans { egui::CursorIcon::Grab } else { cursor };

@@ -116,7 +116,7 @@ pub enum ViewCommand {
     ToggleFullScreen,
     /// Compares with the version of this state.
     CompareWith(SceneRev),
-    /// The next way to compare.
+    /// Changes to the next compare mode.
     CycleCompare,
     /// Swaps the bird's-eye view and the 3D view.
     SwapPanes,
@@ -165,9 +165,9 @@ pub enum GenerationCommand {
     StopHere,
     /// Cancels a job.
     Cancel {
-        /// The generation that runs.
+        /// True: the running generation.
         running: bool,
-        /// An edit that waits for its generation.
+        /// True: an edit that waits for its generation.
         waiting: bool,
     },
     /// Goes back (or forward) to the version of this state, as an undo step.

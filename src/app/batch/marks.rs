@@ -15,7 +15,7 @@ const FILE: &str = "marks.json";
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Marks {
-    /// Worth a second look.
+    /// Starred variants, worth a second look.
     pub starred: BTreeSet<usize>,
     /// To be left out by readers of the index.
     pub discarded: BTreeSet<usize>,

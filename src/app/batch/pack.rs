@@ -41,7 +41,7 @@ pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<(
     let text = serde_json::to_string_pretty(records)?;
     atomic::write(&records_of(output, pack), text.as_bytes())?;
     let half = output.join(format!(".{}.tar", stem(pack)));
-    // (what an ended run left, or a link that leads elsewhere)
+    // (a tar that an interrupted run left, or a link that leads elsewhere)
     if half.symlink_metadata().is_ok() {
         std::fs::remove_file(&half).with_context(|| format!("remove {}", half.display()))?;
     }
@@ -50,7 +50,7 @@ pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<(
     for record in records.iter().filter(|r| r.failed.is_none()) {
         let folder = output.join(format!("{:06}", record.variant));
         let mut add = |path: &str| -> anyhow::Result<()> {
-            // (records may come from a file of another)
+            // (records may come from a file that someone else made)
             path.split('/')
                 .try_for_each(plain_name::check_file)
                 .with_context(|| record.variant.to_string())?;
@@ -62,7 +62,8 @@ pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<(
             header.set_mtime(0);
             Ok(tar.append_data(&mut header, name_of(record.variant, path), bytes.as_slice())?)
         };
-        // Samples in a row: the first moment with the variant's own files, then the others.
+        // The files of a sample follow each other: first those of the first moment with the variant's own files, then
+        // the others.
         let mut names: Vec<&str> = record.files.iter().map(|f| f.path.as_str()).collect();
         names.push(FILE);
         names.sort_by_key(|path| (frame_of(path), *path));

@@ -101,9 +101,9 @@ pub struct Axis {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Seeds {
-    /// The first.
+    /// The first seed.
     pub from: u64,
-    /// How many.
+    /// Number of seeds.
     pub count: usize,
 }
 
@@ -111,9 +111,9 @@ pub struct Seeds {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// Several.
+    /// Several changes.
     Many(Vec<Change>),
-    /// One.
+    /// One change.
     One(Change),
 }
 
@@ -146,7 +146,7 @@ pub enum Change {
         /// Ahead and to the left along its own heading, m.
         #[serde(default)]
         by_m: DVec2,
-        /// To the left, degrees.
+        /// Turn to the left, degrees.
         #[serde(default)]
         turn_deg: f64,
     },
@@ -154,7 +154,7 @@ pub enum Change {
     Count {
         /// The class.
         class: Class,
-        /// How many.
+        /// The new number of boxes.
         n: usize,
     },
 }
@@ -195,7 +195,7 @@ pub fn video(format: &str) -> Option<VideoKind> {
 }
 
 impl Value {
-    /// Its changes.
+    /// The changes of the value.
     pub fn changes(&self) -> &[Change] {
         match self {
             Value::Many(many) => many,
@@ -205,7 +205,7 @@ impl Value {
 }
 
 impl Axis {
-    /// How many values it has.
+    /// Number of values.
     pub fn len(&self) -> usize {
         self.seeds.map_or(self.values.len(), |s| s.count)
     }

@@ -66,7 +66,7 @@ pub struct Item {
     pub priority: Priority,
     /// Its state.
     pub state: State,
-    /// Variants that are ready or failed.
+    /// Number of variants that are ready or failed.
     pub done: usize,
     /// Variants that failed, with the reason of each.
     pub failed: Vec<(usize, String)>,
@@ -79,7 +79,7 @@ pub struct Item {
 }
 
 impl Item {
-    /// The batch itself.
+    /// The batch, ready to run.
     pub fn batch(&self) -> anyhow::Result<Batch> {
         Batch::new(self.plan.clone(), &self.folder, &self.output)
     }
@@ -150,7 +150,7 @@ impl Queue {
         Ok(id)
     }
 
-    /// Takes a batch out of the queue; its files stay.
+    /// Removes a batch from the queue; its files stay.
     pub fn remove(&mut self, id: u64) {
         self.stop(id);
         self.items.retain(|i| i.id != id);

@@ -25,10 +25,10 @@ pub struct Record {
     pub boxes: Vec<SceneBox>,
     /// Conditions: time of day and weather.
     pub conditions: Conditions,
-    /// How often each check found something, where checks were asked for.
+    /// Counts of the findings; `None` if no checks were asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub findings: Option<Findings>,
-    /// Moments that were written.
+    /// Number of written moments.
     pub frames: usize,
     /// The files, relative to the variant's folder, in order.
     pub files: Vec<FileRecord>,
@@ -56,7 +56,7 @@ pub struct Findings {
 pub struct FileRecord {
     /// Its path in the variant's folder, with `/`.
     pub path: String,
-    /// Its length.
+    /// Its length, bytes.
     pub bytes: u64,
     /// SHA-256.
     pub sha256: String,

@@ -28,7 +28,7 @@ pub struct Shard {
 }
 
 impl Default for Shard {
-    /// All of it.
+    /// The whole batch.
     fn default() -> Self {
         Self { number: 0, of: 1 }
     }
@@ -54,7 +54,7 @@ impl std::str::FromStr for Shard {
 pub struct Progress {
     /// The variant that was just handled.
     pub variant: usize,
-    /// Variants of this shard that are ready or failed.
+    /// Number of variants of this shard that are ready or failed.
     pub done: usize,
     /// Number of variants of this shard.
     pub of: usize,

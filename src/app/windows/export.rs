@@ -37,7 +37,7 @@ pub enum Asked {
 /// Choices of the user.
 #[derive(Clone, Debug)]
 pub struct ExportDialog {
-    /// The format; `None`: all formats, into one folder.
+    /// The format; `None`: all formats except Gaussians, into one folder.
     pub format: Option<Format>,
     /// The options.
     pub options: ExportOptions,
