@@ -216,7 +216,7 @@ mod tests {
     use glam::DVec3;
     use sensors::rays::CameraRays;
 
-    /// What is in the middle of the view is in the middle of the picture, and up is up.
+    /// The centre of the view is the centre of the picture, and up is up.
     #[test]
     fn the_view_is_that_camera() {
         let view = ViewCamera {

@@ -166,7 +166,7 @@ mod tests {
         let without = layers(&layout, &style, Color32::TRANSPARENT);
         let [r, g, b] = BevLayer::DrivableArea.color();
         assert_eq!(without.pixels[0], Color32::from_rgb(r, g, b));
-        // Half a walkway over the road is between both.
+        // A half opaque walkway over the road has a colour between both.
         let mut style = solid(0xff);
         style.opacity[2] = 128;
         let half = layers(&layout, &style, Color32::TRANSPARENT).pixels[0];

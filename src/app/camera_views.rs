@@ -316,7 +316,7 @@ mod tests {
         shown.own.insert(3, own(Some(pictures::VIEW.id), 0, false));
         assert_eq!(shown.of_pane(4, 6), (1, pictures::VIEW.id));
         let wanted = Wanted::of(&shown, &LidarShown::default(), 6);
-        // Depth comes with the classes of the strip; a pane that is not drawn asks for nothing.
+        // Depth comes with the classes of the strip; a pane that is not drawn requests no picture.
         let others: Vec<_> = wanted.others.iter().collect();
         assert_eq!(
             others,

@@ -216,7 +216,7 @@ mod tests {
         let marks = DetectionMarks {
             of: SceneRev::fresh(),
             detections: vec![(b(5), false), (b(6), true)],
-            // One of them is gone since.
+            // One of the missed boxes no longer exists.
             missed: vec![BoxId(1), BoxId(2)],
             told: None,
             stands: None,

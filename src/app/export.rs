@@ -389,7 +389,7 @@ mod tests {
         };
         let written = std::thread::scope(|threads| {
             threads.spawn(|| {
-                // The first pictures are ready; those of every format are counted.
+                // The first pictures are ready; pictures of every format are counted.
                 while progress.pictures().is_none_or(|(done, _)| done == 0) {
                     std::thread::yield_now();
                 }
@@ -424,7 +424,7 @@ mod tests {
             ..ExportOptions::default()
         };
         let cameras = scene.rig.cameras.len();
-        // Ten moments a second, two a second, and both.
+        // A format with ten moments a second, one with two, and both together.
         for (ids, moments) in [
             (vec!["mcap"], 11),
             (vec!["nuscenes"], 3),

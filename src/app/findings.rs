@@ -83,7 +83,7 @@ mod tests {
         };
         add(6.0, -0.5).apply(&mut scene).expect("sound");
         add(-30.0, 30.0).apply(&mut scene).expect("sound");
-        // A bunker around the second one.
+        // Walls enclose the second box.
         let [x, y] = Extent::WINDOW.column_at(-30.0, 30.0).expect("inside");
         let ring = |i: usize, j: usize| i.abs_diff(x).max(j.abs_diff(y));
         let mut cells = Vec::new();
@@ -119,7 +119,7 @@ mod tests {
             ["unseen_by_cameras", "no_lidar_returns"]
         );
         assert_eq!(of(901).count(), 0);
-        // A rig without sensors sees nothing and blames nobody; one that is not sound neither.
+        // With a rig without sensors, or with an invalid one, no box is reported as unseen.
         let mut blind = scene.clone();
         let rig = Arc::make_mut(&mut blind.rig);
         (rig.cameras, rig.lidars) = (Vec::new(), Vec::new());
@@ -151,7 +151,7 @@ mod tests {
         assert_eq!(once.with_rig_in_world().rig, once.rig);
         let seen = super::seen(&scene);
         assert_eq!(super::seen(&once), seen);
-        // The returns are those of the sweep that files get.
+        // The returns are those of the sweep in files.
         let returns = seen.lidar_returns.expect("a LiDAR");
         assert!(returns.values().sum::<u32>() > 100, "{returns:?}");
         let at = scene.frame().world_from_ego.translation_m;
@@ -164,7 +164,7 @@ mod tests {
         assert!(near.iter().any(|b| returns.contains_key(&b.id)), "{near:?}");
     }
 
-    /// Returns of things above the ground under their box, and those of them in no box of their class.
+    /// Returns of objects above the ground and under their box, and returns of objects in no box of their class.
     fn outside(scene: &Scene, sweep: &scene::LidarSweep) -> [usize; 2] {
         let boxes = &scene.frame().boxes;
         let of_things = sweep.points.iter().filter_map(|p| {

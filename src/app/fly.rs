@@ -113,14 +113,14 @@ mod tests {
         assert_eq!(ahead, DVec3::Z);
         let left_too = frame(&ctx, vec![key(Key::Q, Some(Key::A), true)], true);
         assert_eq!(left_too, DVec3::new(-1.0, 0.0, 1.0));
-        // They stay down until they come up.
+        // Keys stay down until they are released.
         assert_eq!(frame(&ctx, Vec::new(), true), left_too);
         let left = frame(&ctx, vec![key(Key::Z, Some(Key::W), false)], true);
         assert_eq!(left, -DVec3::X);
-        // The letter W of that keyboard lies elsewhere.
+        // The key labelled W has another position on that keyboard.
         assert_eq!(frame(&ctx, vec![key(Key::W, Some(Key::Z), true)], true), left);
         assert_eq!(frame(&ctx, Vec::new(), false), DVec3::ZERO);
-        // Where the system does not tell, the letter counts.
+        // If the system does not report the physical key, the label counts.
         assert_eq!(frame(&ctx, vec![key(Key::E, None, true)], true), DVec3::Y);
     }
 }

@@ -131,8 +131,8 @@ mod tests {
     use sensors::cameras::{self, CameraPicture, Detail, Ready, RenderContext, RenderOptions};
     use world::World;
 
-    /// What the window shows by way of a card, software here, is what it shows without: labels of splats to 0.1 %,
-    /// pictures to 2/255 on average.
+    /// Views by a card (software here) equal those of the processor: labels of splats to 0.1 %, pictures to 2/255 on
+    /// average.
     #[test]
     fn views_by_card_are_those_by_processor() {
         let mut card = Graphics::find_with(Some("1")).expect("an adapter, software or not");

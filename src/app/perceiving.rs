@@ -270,7 +270,7 @@ mod tests {
         let found = perceiving.found.pop().expect("a search");
         assert_eq!((found.id, found.of), (id, scene.rev));
         assert!(perceiving.searching.is_none() && !found.search.tried.is_empty());
-        // A scene that is forgotten leaves nothing of its search, and is looked at anew.
+        // Forgetting a scene also drops its search, and the scene gets a new prediction.
         perceiving.search(&scene, id, Vary::Distance, Sensor::Cameras);
         wait(&mut perceiving, by, |p| {
             p.searching.is_some_and(|(_, [tried, _])| tried > 0)
@@ -279,7 +279,7 @@ mod tests {
         assert!(perceiving.seen.is_none() && perceiving.searching.is_none());
         wait(&mut perceiving, by, |p| !p.is_stale(scene.rev, Sensor::Cameras));
         assert!(perceiving.found.is_empty() && perceiving.searching.is_none());
-        // A search comes before a look that waits for another; afterwards that is made, and both are there.
+        // A search replaces a waiting prediction; that is made afterwards, and both results are there.
         let mut other = (*scene).clone();
         other.rev = SceneRev::fresh();
         let other = Arc::new(other);
@@ -291,7 +291,7 @@ mod tests {
         wait(&mut perceiving, (&other, Sensor::Both), |p| {
             !p.is_stale(other.rev, Sensor::Both)
         });
-        // A box that is not there is told, and the thread goes on.
+        // A box that does not exist is reported, and the thread goes on.
         perceiving.search(&scene, BoxId(9999), Vary::Fog, Sensor::Cameras);
         wait(&mut perceiving, by, |p| p.problem.is_some());
         assert_eq!(perceiving.problem.as_deref(), Some("there is no box 9999"));

@@ -150,7 +150,7 @@ mod tests {
         p.speed = 2.0;
         assert!((p.tick(1.0, 8.0, 10.3).expect("plays") - 1.4).abs() < 1e-9);
         assert!((p.tick(7.9, 8.0, 10.4).expect("plays") - 0.1).abs() < 1e-9);
-        // A window that was hidden for a minute does not race through it.
+        // After a minute in a hidden window, the clip does not jump.
         assert!((p.tick(1.0, 8.0, 70.0).expect("plays") - 2.0).abs() < 1e-9);
         assert_eq!(p.tick(1.0, 8.0, 60.0), None, "a clock that goes back");
         assert!(p.tick(1.0, 8.0, f64::NAN).is_none_or(f64::is_finite));

@@ -128,7 +128,7 @@ mod tests {
         let middle = |button, _| button == PointerButton::Middle;
         let expected = Some((PointerButton::Middle, egui::vec2(10.0, 2.0)));
         assert_eq!(Held::default().travel(&all, middle), expected);
-        // The same, an event per frame.
+        // The same events, one per frame.
         let mut held = Held::default();
         let parts = all.map(|step| held.travel(&[step], middle).map_or(Vec2::ZERO, |(_, d)| d));
         assert_eq!(

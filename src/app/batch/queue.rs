@@ -380,7 +380,7 @@ mod tests {
             panic!("not done");
         };
         assert!(report.kept >= 1 && report.kept + report.made == 6, "{report:?}");
-        // A folder of another plan.
+        // The folder belongs to another plan.
         queue.remove(long);
         let line = queue
             .add(plan(2), dir.path(), &dir.path().join("long"))
@@ -406,7 +406,7 @@ mod tests {
         queue.run_next(third);
         assert_eq!(queue.next_up(), Some(third));
         assert_eq!(queue.item(third).map(|i| i.priority), Some(Priority::Normal));
-        // One that runs cannot come next.
+        // A running batch cannot be moved to run next.
         queue.run_next(first);
         let ended = until(&mut queue, "all done", |q| {
             q.items().iter().all(|i| matches!(i.state, State::Done(_)))
@@ -439,12 +439,12 @@ mod tests {
         assert_ne!(std::fs::read(&index).expect("an index"), before);
         let marks = Marks::read(&dir.path().join("a")).expect("marks");
         assert!(marks.starred.contains(&1) && marks.discarded.contains(&2));
-        // A variant cannot be both, and all can be taken back.
+        // A variant is never both starred and discarded, and each mark can be removed.
         queue.mark(id, |marks| marks.star(2)).expect("written");
         queue.mark(id, |marks| marks.star(1)).expect("written");
         let marks = &queue.item(id).expect("there").marks;
         assert_eq!((marks.starred.len(), marks.discarded.len()), (1, 0));
-        // Marks that are no marks are told, and the batch is not added.
+        // Invalid marks are reported, and the batch is not added.
         queue.remove(id);
         std::fs::write(dir.path().join("a/marks.json"), "{").expect("written");
         assert!(queue.add(plan(4), dir.path(), &dir.path().join("a")).is_err());

@@ -269,17 +269,17 @@ mod tests {
             asked.shot.size = [500, 400];
             let with = capture(&scene, &asked).expect("small");
             assert_eq!([with.width, with.height], [500, 400], "{subject:?}");
-            // Letters are there, and all is opaque.
+            // There are letters, and every pixel is opaque.
             let last = &with.rgba[360 * 500 * 4..];
             assert!(last.chunks_exact(4).any(|p| p[0] > 150) && last.chunks_exact(4).all(|p| p[3] == 255));
             asked.legend = false;
             let bare = capture(&scene, &asked).expect("small");
             assert_eq!([bare.width, bare.height], [500, 400]);
-            // The map is square, and stands in the middle.
+            // The map is square and centred.
             let color = |x: usize| bare.rgba[(200 * 500 + x) * 4..][..3].to_vec();
             assert!(color(20) == BEHIND && color(480) == BEHIND && color(250) != BEHIND);
         }
-        // What is too low for a legend becomes higher by it.
+        // A picture too low for its legend becomes higher by the legend.
         let mut low = options(Subject::Map);
         low.shot.size = [300, 30];
         assert!(capture(&scene, &low).expect("small").height > 30);

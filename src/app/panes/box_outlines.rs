@@ -101,10 +101,10 @@ mod tests {
             (0.0..f64::from(front.width)).contains(&p[0]) && (0.0..f64::from(front.height)).contains(&p[1])
         };
         assert!(seen.iter().flatten().all(inside), "{seen:?}");
-        // Lower in the world is lower in the picture.
+        // A lower box in the world is lower in the picture.
         let lowered = edges(front, &b, 0.6);
         assert!(seen.iter().zip(&lowered).all(|(a, b)| b[0][1] > a[0][1]));
-        // Around the camera: cut at the near plane, nothing infinite.
+        // A box around the camera is clipped at the near plane, and no coordinate is infinite.
         b.center_m = front.ego_from_camera().translation_m;
         b.size_m = DVec3::splat(3.0);
         let around = edges(front, &b, 0.0);

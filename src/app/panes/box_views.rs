@@ -365,7 +365,7 @@ mod tests {
     use super::*;
     use scene::BoxId;
 
-    /// The voxels of a car end at its roof; the ground around it ends where it stands.
+    /// The voxels of a car end at its roof, and the ground around it at the height on which it stands.
     #[test]
     fn voxels_lie_in_their_box() {
         use scene::draft::draft;
@@ -405,7 +405,7 @@ mod tests {
             label: Default::default(),
         };
         for (axis, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (2, -1.0)] {
-            // Along the axis by half a metre: with sign -1 that makes it smaller.
+            // The face moves by half a metre along the axis; with sign -1 the box becomes smaller.
             let Edit::MoveBox {
                 center_m: Some(center_m),
                 size_m: Some(size_m),

@@ -285,7 +285,7 @@ mod tests {
     use super::*;
     use scene::Class;
 
-    /// Pictures and sweep of the state compared with are of no other, however long theirs take.
+    /// Pictures and sweep are never of another state than the compared one, even if theirs take long.
     #[test]
     fn another_state_has_no_pictures_of_the_one_before() {
         use crate::open;
@@ -341,7 +341,7 @@ mod tests {
         assert_eq!(found.changed, [[4, 5, 6]]);
         let legend: Vec<String> = found.legend().into_iter().map(|(_, text)| text).collect();
         assert_eq!(legend, ["1 added", "1 removed", "1 of another class"]);
-        // A column's colour is that of its voxels in space.
+        // The colour of a column matches that of its voxels in 3D.
         let image = Difference::image(&before, &after);
         let drawn = |color: [u8; 3]| {
             let [r, g, b] = color;

@@ -405,7 +405,7 @@ mod tests {
         assert!(
             matches!(&edits[0], Edit::ChangeThing { id, form } if *id == hedge.id && form.height_m() == 5.0)
         );
-        // Every field sets what it gets.
+        // Every field sets the value that it reads.
         for of in &NUMBERS {
             for t in [&tree, &hedge] {
                 if (of.get)(&t.form).is_some() {

@@ -545,7 +545,7 @@ mod tests {
             found[0] < most[0] && found[2] < most[1],
             "the views get the rest: {found:?}"
         );
-        // What a user left so wide stays.
+        // A width that the user left stays.
         let mut kept = Dock::from_kept(Dock::default().tree).expect("sound");
         kept.fit(2560.0);
         assert_eq!(widths(&kept, 2560.0), widths(&Dock::default(), 2560.0));

@@ -395,7 +395,7 @@ mod tests {
         let recipe: formats::recipe::Recipe =
             serde_json::from_str(&recipe.expect("there").1).expect("as written");
         assert_eq!(recipe.parameters["params"]["seed"], 7);
-        // What cannot be written leaves nothing behind.
+        // A failed write leaves no file behind.
         let nowhere = folder.path().join("missing").join("shot.png");
         assert!(save_png(None, &picture, &nowhere).is_err() && !nowhere.exists());
     }

@@ -64,7 +64,7 @@ mod tests {
             "the window could not be opened: no display; at all"
         );
         assert!(guarded_from(here, || Ok::<(), String>(())).is_ok());
-        // Faults of our own are not called that.
+        // Panics in our own code are not reported so.
         let other = catch_unwind(|| guarded_from(|_| false, || -> Result<(), String> { panic!("ours") }));
         assert!(other.is_err());
     }

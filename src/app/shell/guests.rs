@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use crossbeam_channel::{bounded, unbounded};
 
-    /// Opens once.
+    /// A door that opens once.
     struct OneTime(Option<Receiver<Task>>);
 
     impl Door for OneTime {
@@ -160,7 +160,7 @@ mod tests {
         assert!(!guests.follow(true, wake) && guests.open().is_some());
         let (answer, answered) = bounded::<()>(1);
         sender.send(Box::new(move |_| drop(answer))).expect("it is open");
-        // Closed: what was not done is given up, and who waits for it hears so.
+        // When the door closes, open tasks are dropped, and their senders get an error.
         assert!(!guests.follow(false, wake) && guests.open().is_none());
         assert!(answered.recv().is_err() && sender.send(Box::new(|_| {})).is_err());
         assert!(guests.follow(true, wake) && guests.problem() == Some("the port is taken"));

@@ -258,7 +258,7 @@ mod tests {
         }
     }
 
-    /// In every preset each chord calls for one action in one place, and every chord and id in the files is one.
+    /// In every preset each chord has one action in one place, and every chord and id in the files is valid.
     #[test]
     fn no_preset_holds_a_conflict() {
         for action in ACTIONS.iter() {

@@ -397,7 +397,7 @@ mod tests {
         submit(&mut live, &scene, params, 2.0, 1);
         assert_eq!(live.advise(&scene, false, 2.1), Advice::Rest);
         assert!(live.ended(JobId(1)).is_some());
-        // Failed or cancelled: the same input is not tried again by itself.
+        // After a failure or a cancel, the same input is not generated again automatically.
         assert_eq!(live.advise(&scene, false, 9.0), Advice::Rest);
         live.forget_asked();
         assert!(matches!(live.advise(&scene, false, 9.1), Advice::Submit(_)));
@@ -438,7 +438,7 @@ mod tests {
             panic!()
         };
         submit(&mut live, &scene, params, 1.0, 1);
-        // Undone: the state before needs nothing.
+        // After undo, the earlier state needs no generation.
         assert_eq!(live.advise(&before, false, 1.1), Advice::Cancel);
         assert!(live.ended(JobId(2)).is_none() && live.ended(JobId(1)).is_some());
         assert_eq!(live.advise(&before, false, 1.2), Advice::Rest);
@@ -461,16 +461,16 @@ mod tests {
             live.paused
         );
         assert!(!live.has_waiting(scene.content()));
-        // Undone, nothing is said any more.
+        // After undo, there is no reason to report any more.
         live.advise(&before, false, 1.1);
         assert_eq!(live.paused, None);
-        // Asked for, it is generated.
+        // On request it is generated.
         let params = live.params_for(&scene, false);
         live.touched_by(&scene, 1.2);
         submit(&mut live, &scene, params, 1.2, 1);
         assert_eq!(live.running.as_ref().map(|r| r.purpose), Some(Purpose::Edit));
         live.ended(JobId(1));
-        // A small edit waits while something is dragged; dropped, it is not generated, the next one is.
+        // A small edit waits during a drag. If it is dropped, it is not generated, but the next edit is.
         let mut small = before.clone();
         paint(&mut small, 40);
         live.touched_by(&small, 2.0);
@@ -509,7 +509,7 @@ mod tests {
         assert_eq!(live.advise(&scene, false, 2.0), Advice::Rest);
         paint(&mut scene, 40);
         assert!(matches!(live.advise(&scene, false, 2.1), Advice::Submit(_)));
-        // Inpainted: the source is another one.
+        // After an inpainting the source has changed.
         let full = live.params_for(&scene, true);
         submit(&mut live, &scene, full, 3.0, 2);
         live.ended(JobId(2));

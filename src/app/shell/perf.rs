@@ -347,7 +347,7 @@ mod tests {
         assert_eq!((q.p95, q.max), (1.0, 100.0), "old samples go, the largest stays");
     }
 
-    /// Input arrives in a frame, the next one shows it, the one after that knows when.
+    /// The input arrives in one frame, the next frame shows it, and the frame after that measures when.
     #[test]
     fn an_edit_is_timed_to_the_end_of_the_frame_that_shows_it() {
         let mut perf = Perf {

@@ -413,7 +413,7 @@ mod tests {
         first.wait();
         let mut second = start();
         assert_eq!(second.offers.len(), 0, "the first one lives");
-        drop(first); // as a crash of the window system does it: neither saved nor given up
+        drop(first); // like after a crash of the window system: neither saved nor discarded
         let mut third = start();
         assert_eq!(third.offers.len(), 1);
         assert_eq!(start().offers.len(), 0, "offered to one process only");
@@ -423,11 +423,11 @@ mod tests {
             (Some(Path::new("/tmp/a.loom")), &*document.scene().name)
         );
         assert_eq!(prompt_in(&offer.file()), "night");
-        drop(offer); // later
+        drop(offer); // answer later
         let offer = start().offers.remove(0);
         offer.discard();
         assert_eq!(start().offers.len(), 0);
-        // Given up: nothing is left.
+        // Discarded changes leave no copy.
         second.tick(&document, None, Scene::clone, 0.0);
         second.wait();
         second.forget();
@@ -445,7 +445,7 @@ mod tests {
         for i in 0..3 {
             say(&mut document, &i.to_string());
             recovery.tick(&document, None, Scene::clone, f64::from(i) * 10.0);
-            // Not `wait`, which would swallow the problem.
+            // Not `wait`, which would drop the problem.
             let done = recovery.done.recv().expect("an answer");
             told.extend(recovery.note(done));
         }

@@ -158,7 +158,7 @@ mod tests {
         for i in 0..50 {
             trace.line(&json!({"kind": "frame", "i": i}));
         }
-        // Two looks at the processor time.
+        // Time for two samples of the processor time.
         std::thread::sleep(EVERY * 2 + EVERY / 4);
         trace.finish(json!({"kind": "summary"}));
         let text = std::fs::read_to_string(&path).expect("written");
@@ -173,7 +173,7 @@ mod tests {
             assert!(kinds("cpu") >= 1);
             assert!(lines.last().expect("lines")["cpu_share"].is_number());
         }
-        // A thread that panics costs the trace and nothing else.
+        // A panic of the thread ends the trace only.
         job::guard::panic_next("trace");
         let trace = Trace::start(&path, clock, &json!({"kind": "start"})).expect("started");
         trace.line(&json!({}));

@@ -436,7 +436,7 @@ mod tests {
         assert_eq!(versions.kept(kept.content()).len(), Versions::MAX + 1);
     }
 
-    /// On a thread that all share, a panic that nobody catches aborts the program.
+    /// On shared threads, a panic that is not caught would abort the program.
     #[test]
     fn a_panic_while_packing_costs_that_version_alone() {
         let mut versions = Versions::default();

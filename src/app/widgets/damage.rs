@@ -238,7 +238,7 @@ mod tests {
             row(6, false).damage(&row(7, false), &[]),
             [square(240.0, 100.0).union(square(280.0, 100.0))]
         );
-        // One that is put in or taken out between others.
+        // A shape is added or removed between others.
         assert_eq!(row(5, true).damage(&row(5, false), &[]), [square(500.0, 300.0)]);
         assert_eq!(row(5, false).damage(&row(5, true), &[]), [square(500.0, 300.0)]);
     }
@@ -267,7 +267,7 @@ mod tests {
         assert_eq!(touching.len(), 2);
     }
 
-    /// What is outside of the damage is drawn by the same triangles as before.
+    /// Outside the damage, the same triangles are drawn as before.
     #[test]
     fn a_window_is_undamaged_where_nothing_changed() {
         let ctx = Context::default();

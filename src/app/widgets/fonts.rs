@@ -107,7 +107,7 @@ mod tests {
         }
     }
 
-    /// A sign in the program that no font has is drawn as an empty square: an icon is what it should be.
+    /// A character that no font has would be drawn as an empty square; an icon has to be used instead.
     #[test]
     fn every_sign_that_is_drawn_has_a_shape() {
         let ctx = Context::default();
@@ -120,7 +120,7 @@ mod tests {
             let text = std::fs::read_to_string(&file).expect("source");
             let program = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or("");
             let lines = program.lines().filter(|l| !l.trim_start().starts_with("//"));
-            // Those of other scripts are words that are understood, or names of fonts.
+            // Characters of other scripts are words that the parser understands, or names of fonts.
             let drawn = lines
                 .flat_map(str::chars)
                 .filter(|c| !c.is_ascii() && *c < '\u{2e80}' && *c != IN_THE_TITLE);
@@ -134,7 +134,7 @@ mod tests {
         assert!(signs.is_empty(), "{signs:?}");
     }
 
-    /// Of a scene that is not saved, in the window's title, which the system draws.
+    /// Mark of an unsaved scene in the window's title, which the system draws.
     const IN_THE_TITLE: char = '●';
 
     fn rust_files(folder: &Path) -> Vec<PathBuf> {

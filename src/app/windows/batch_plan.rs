@@ -365,7 +365,7 @@ mod tests {
             })
             .collect();
         assert_eq!(offsets, [-2.0, 0.0, 2.0]);
-        // Without an object nothing is moved; with networks there are seeds.
+        // Without an object there are no offsets; with networks there are seeds.
         form.quality = Some("draft".into());
         assert_eq!(form.plan(&scene, None).count(), 8);
     }

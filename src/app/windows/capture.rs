@@ -263,7 +263,7 @@ mod tests {
         assert!(dialog.is_clip() && dialog.open && dialog.options.subject == Subject::View);
         dialog.options.subject = Subject::Map;
         assert!(dialog.is_clip());
-        // What was ticked for one does not count for others.
+        // Settings for one subject do not count for others.
         dialog.options.subject = Subject::Occupancy;
         assert!(!dialog.is_clip());
     }
