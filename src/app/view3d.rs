@@ -42,7 +42,7 @@ const SETTLE_S: f64 = 0.18;
 struct Gpu {
     render_state: egui_wgpu::RenderState,
     viewport: Viewport,
-    texture: Option<(egui::TextureId, [u32; 2], u32)>, // with the size and the samples that it was registered for
+    texture: Option<(egui::TextureId, [u32; 2], u32)>, // with its registered size and samples
     software: bool,
 }
 

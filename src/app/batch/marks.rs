@@ -17,7 +17,7 @@ const FILE: &str = "marks.json";
 pub struct Marks {
     /// Starred variants, worth a second look.
     pub starred: BTreeSet<usize>,
-    /// To be left out by readers of the index.
+    /// Discarded variants, to be left out by readers of the index.
     pub discarded: BTreeSet<usize>,
 }
 

@@ -197,7 +197,7 @@ impl SceneloomApp {
         let quality = tuning
             .presets
             .named(&settings.quality)
-            .or_else(|| tuning.presets.named(QUALITY)) // (older settings may name a preset that no longer exists)
+            .or_else(|| tuning.presets.named(QUALITY)) // (old settings may name a removed preset)
             .filter(|_| config.settings_file.is_some());
         let params = quality.map_or(config.params.clone(), |preset| {
             preset.knobs.on(config.params.clone())

@@ -75,7 +75,7 @@ impl Dock {
                 framed(&mut t, center)
             }
             Workspace::Sensors => {
-                let rows: Vec<TileId> = [[0, 1, 2], [5, 4, 3]] // in the order of the rig: forward row, then back
+                let rows: Vec<TileId> = [[0, 1, 2], [5, 4, 3]] // order of the rig: front row, then back
                     .map(|cameras| row(&mut t, Horizontal, &cameras.map(|c| (PaneId::of_camera(c), 1.0))))
                     .to_vec();
                 let sweep = t.insert_pane(PaneId::LIDAR);

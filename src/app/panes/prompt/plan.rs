@@ -153,7 +153,7 @@ impl Plan {
     }
 
     /// The request for a scene of these words. If the open scene was made of the same words, locked objects keep their
-    /// places, and the road stays.
+    /// places, and the road stays with them.
     pub fn ask(&mut self, prompt: &str, read: &Description, seed: u64, scene: &Scene) -> Ask {
         self.follow(prompt);
         let description = read.clone();
