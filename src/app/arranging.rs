@@ -3,7 +3,7 @@
 use editor::Edit;
 use scene::{Arrangement, Members};
 
-/// An edit that arranges.
+/// The edit that arranges some objects.
 pub(crate) fn arranging(members: &Members, how: Arrangement) -> Edit {
     Edit::Arrange {
         boxes: members.boxes.iter().copied().collect(),

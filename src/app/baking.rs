@@ -1,4 +1,4 @@
-//! Gaussians in the background: the thread that lifts a scene to them, and the one that draws them.
+//! Gaussians in the background: a thread that lifts a scene to Gaussians, and a thread that draws them.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use viewport::ViewCamera;
 /// A picture to draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// From where, in the world.
+    /// Viewpoint, in the world.
     pub camera: ViewCamera,
     /// Width and height, px.
     pub size: [u32; 2],
@@ -24,9 +24,9 @@ pub struct Seen {
 /// Gaussians of a state, in the world.
 #[derive(Clone)]
 pub struct Baked {
-    /// The state, with its moment.
+    /// The state that they were made from, with its moment.
     pub of: SceneRev,
-    /// How many there are.
+    /// Number of Gaussians.
     pub count: usize,
     ready: Arc<Ready>,
 }
@@ -127,17 +127,17 @@ fn camera_of(seen: &Seen) -> Camera {
     }
 }
 
-/// Both threads, and the newest of what they made.
+/// The two threads, and the newest results of both.
 pub struct Baking {
     baker: Worker<Arc<Scene>, News>,
     drawer: Worker<(Baked, Seen), News>,
-    /// What is being baked.
+    /// State that is being baked.
     pub busy: Option<SceneRev>,
-    /// How far that is, 0 to 1.
+    /// Share of it that is done, 0 to 1.
     pub share: f32,
     /// The newest Gaussians.
     pub baked: Option<Baked>,
-    /// What went wrong last.
+    /// The last failure.
     pub problem: Option<String>,
     drawing: Option<Seen>,
     wanted: Option<Seen>,
@@ -167,19 +167,19 @@ impl Baking {
         self.baker.submit(scene.clone());
     }
 
-    /// Gives up what is being baked.
+    /// Cancels the running bake.
     pub fn cancel(&mut self) {
         self.baker.cancel();
         self.busy = None;
     }
 
-    /// Asks for a picture of the newest Gaussians: the newest wish is drawn next.
+    /// Asks for a picture of the newest Gaussians. A newer request replaces one that is not begun yet.
     pub fn look(&mut self, seen: Seen) {
         self.wanted = Some(seen);
         self.update();
     }
 
-    /// Takes news; a picture if there is a new one.
+    /// Takes news from the threads. Returns a picture if there is a new one.
     pub fn update(&mut self) -> Option<(Seen, ColorImage)> {
         let news: Vec<News> = self.baker.updates().try_iter().map(|e| e.update).collect();
         for news in news {
@@ -216,7 +216,7 @@ mod tests {
     use glam::DVec3;
     use sensors::rays::CameraRays;
 
-    /// What is in the middle of the view is in the middle of the picture, and up is up.
+    /// The centre of the view is the centre of the picture, and up is up.
     #[test]
     fn the_view_is_that_camera() {
         let view = ViewCamera {

@@ -7,31 +7,32 @@ use scene::{BevLayer, BevLayout, Class, Extent, Unobserved, VoxelGrid};
 
 pub use editor::tools::DRAW_ORDER;
 
-/// A picture of a map, one pixel per column: rows run against ego x, pixels of a row against ego y, so that forward is up.
+/// A picture of a map, one pixel per column. Rows run against ego x and the pixels of a row against ego y, so forward
+/// is up.
 pub(super) fn from_above(extent: Extent, pixel: impl Fn(usize, usize) -> Color32) -> ColorImage {
     let [nx, ny] = [extent.nx(), extent.ny()];
     let pixels = (0..nx).rev().flat_map(|x| (0..ny).rev().map(move |y| (x, y)));
     ColorImage::new([ny, nx], pixels.map(|(x, y)| pixel(x, y)).collect())
 }
 
-/// Which map layers are drawn, and how much each hides of what lies below it.
+/// The map layers that are drawn, and their opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LayerStyle {
     /// Bits of the layers that are shown.
     pub shown: u32,
-    /// 0 to 255 for each layer of [`DRAW_ORDER`].
+    /// Opacity of each layer of [`DRAW_ORDER`], 0 to 255.
     pub opacity: [u8; DRAW_ORDER.len()],
-    /// 0 to 255, of all together.
+    /// Opacity of all layers together, 0 to 255.
     pub veil: u8,
 }
 
-/// The map layers of each column, drawn over one another; `behind` where there is none.
+/// The map layers of each column, drawn over one another; `behind` in columns without a layer.
 pub fn layers(layout: &BevLayout, style: &LayerStyle, behind: Color32) -> ColorImage {
     let solid = style.opacity == [255; DRAW_ORDER.len()];
     let colors = DRAW_ORDER.map(|layer| {
         let mut color = layer.color();
         if is_divider(layer) {
-            // Half of the road shows through: a divider is a line, its cells are four times as wide.
+            // Half of the road shows through: a divider is a line, but its cells are four times as wide.
             let under = BevLayer::DrivableArea.color();
             color = std::array::from_fn(|i| ((u16::from(color[i]) + u16::from(under[i])) / 2) as u8);
         }
@@ -58,7 +59,7 @@ fn is_divider(layer: BevLayer) -> bool {
     matches!(layer, BevLayer::RoadDivider | BevLayer::LaneDivider)
 }
 
-/// The highest voxel of each column by class, brighter the higher it is; `behind` where there is none.
+/// The highest voxel of each column by class, brighter the higher it is; `behind` in empty columns.
 pub fn occupancy(grid: &VoxelGrid, behind: Color32) -> ColorImage {
     from_above(grid.extent(), |x, y| {
         let column = grid.column(x, y);
@@ -72,7 +73,7 @@ pub fn occupancy(grid: &VoxelGrid, behind: Color32) -> ColorImage {
     })
 }
 
-/// A violet veil over what nothing observed, denser the more of a column that is.
+/// A violet veil over unobserved columns, denser the larger the unobserved share of a column.
 pub fn unobserved(mask: &Unobserved) -> ColorImage {
     from_above(mask.extent(), |x, y| {
         let alpha = (150.0 * mask.share(x, y)) as u8;
@@ -90,7 +91,7 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// False if it holds none.
+    /// False if it holds no pixel.
     pub fn is_positive(self) -> bool {
         self.size[0] > 0 && self.size[1] > 0
     }
@@ -165,7 +166,7 @@ mod tests {
         let without = layers(&layout, &style, Color32::TRANSPARENT);
         let [r, g, b] = BevLayer::DrivableArea.color();
         assert_eq!(without.pixels[0], Color32::from_rgb(r, g, b));
-        // Half a walkway over the road is between both.
+        // A half opaque walkway over the road has a colour between both.
         let mut style = solid(0xff);
         style.opacity[2] = 128;
         let half = layers(&layout, &style, Color32::TRANSPARENT).pixels[0];

@@ -1,5 +1,4 @@
-//! What the sensors of the window show: which camera source of the table, in which colours, for which cameras; which
-//! LiDAR, in which colours.
+//! Settings of the sensors in the window: camera source, view and hidden cameras; LiDAR model and colours.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,38 +15,38 @@ use widgets::theme;
 
 pub use sensors::cameras::CameraPicture;
 
-/// Size of the picture that is enlarged.
+/// Size of the enlarged picture.
 pub const LARGE_SIZE: [u32; 2] = [800, 450];
 
-/// What the pictures of the cameras show.
+/// Settings of the camera pictures.
 #[derive(Clone, Debug)]
 pub struct CamerasShown {
-    /// What the camera strip shows.
+    /// View that the camera strip shows.
     pub view: ViewId,
-    /// What it is rendered from, where several sources give it.
+    /// Source that the view is rendered from, if several sources give it.
     pub source: SourceId,
     /// Depth of the plane that is shown, m.
     pub plane_m: f64,
     /// Bit per camera that is not rendered.
     pub hidden: u32,
-    /// Camera that is enlarged.
+    /// The enlarged camera.
     pub enlarged: Option<usize>,
-    /// What panes of single cameras show, by the index of the pane.
+    /// Settings of panes of single cameras, by the index of the pane.
     pub own: BTreeMap<u8, OwnCamera>,
 }
 
-/// What the pane of one camera shows where the user wants it otherwise than the strip.
+/// Settings of the pane of one camera, where they differ from the strip's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OwnCamera {
-    /// The camera, counted on from that of the pane.
+    /// Offset added to the pane's index to get the camera.
     pub on_by: u8,
-    /// What is shown; as in the strip if none.
+    /// The view; the strip's view if `None`.
     pub view: Option<ViewId>,
-    /// What the colours mean is shown too.
+    /// True if the legend of the colours is shown.
     pub legend: bool,
-    /// Above 0 the pane was drawn in one of the last frames.
+    /// Frames for which the pane still counts as drawn; 0: it is not on screen.
     pub drawn: u8,
-    /// The pane was so large that its picture is rendered large.
+    /// True if the pane is so large that its picture is rendered large.
     pub large: bool,
 }
 
@@ -70,19 +69,19 @@ impl CamerasShown {
         camera < 32 && self.hidden >> camera & 1 == 1
     }
 
-    /// The source of what the camera strip shows.
+    /// The source of the view that the camera strip shows.
     pub fn shown_source(&self) -> &'static dyn CameraSource {
         cameras::source_of(self.view, self.source)
     }
 
-    /// The camera and the view that the pane of that index shows, in a rig of so many cameras.
+    /// The camera and the view that the pane of an index shows, in a rig of `cameras` cameras.
     pub fn of_pane(&self, pane: u8, cameras: usize) -> (usize, ViewId) {
         let own = self.own.get(&pane).copied().unwrap_or_default();
         let camera = (usize::from(pane) + usize::from(own.on_by)) % cameras.max(1);
         (camera, own.view.unwrap_or(self.view))
     }
 
-    /// A frame ended: what is not drawn again is soon not rendered any more.
+    /// Notes the end of a frame: panes that are not drawn again are soon not rendered any more.
     pub fn frame_ended(&mut self) {
         self.own
             .values_mut()
@@ -99,7 +98,7 @@ impl CamerasShown {
             .fold(0, |a, b| a | b)
     }
 
-    /// What panes show of other sources than the strip.
+    /// Sources other than the strip's that panes show, with their cameras.
     fn others(&self, cameras: usize) -> Others {
         let mut out = Others::default();
         for pane in self
@@ -117,7 +116,7 @@ impl CamerasShown {
         out
     }
 
-    /// What is rendered large: the enlarged camera, else that of a large pane.
+    /// Source and camera that are rendered large: the enlarged camera, else that of a large pane.
     fn large(&self, count: usize) -> Option<(SourceId, usize)> {
         let of_pane = || {
             let mut large = self.own.iter().filter(|(_, own)| own.drawn > 0 && own.large);
@@ -128,7 +127,7 @@ impl CamerasShown {
         Some((cameras::source_of(view, self.source).id(), camera))
     }
 
-    /// After a camera was taken away, those behind it move up.
+    /// Removes a camera: the flags of those behind it move up.
     pub fn forget(&mut self, camera: usize) {
         let below = (1u32 << camera.min(31)) - 1;
         self.hidden = (self.hidden & below) | (self.hidden >> 1 & !below);
@@ -139,14 +138,14 @@ impl CamerasShown {
 /// How the LiDAR sweep is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LidarModel {
-    /// Every ray to the first voxel.
+    /// Every ray ends at the first voxel.
     #[default]
     Exact,
     /// The network: ranges within voxels, intensity, lost echoes.
     Learned,
 }
 
-/// What the LiDAR sweep shows.
+/// Settings of the LiDAR sweep.
 #[derive(Clone, Debug)]
 pub struct LidarShown {
     /// How the sweep is computed.
@@ -164,27 +163,27 @@ impl Default for LidarShown {
     }
 }
 
-/// What is asked of the sensors besides the scene.
+/// Request to the sensors, besides the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
-    /// What the cameras' pictures come from.
+    /// Source of the camera pictures.
     pub source: SourceId,
     /// Bit per camera that is not rendered.
     pub hidden: u32,
-    /// The camera that is rendered large as well, and the source of its picture.
+    /// The camera that is also rendered large, and the source of its picture.
     pub large: Option<(SourceId, usize)>,
-    /// How the LiDAR sweep comes about.
+    /// How the LiDAR sweep is computed.
     pub lidar: LidarModel,
-    /// Echoes that a real sensor would rather lose are in the learned sweep.
+    /// True if the learned sweep keeps echoes that a real sensor would probably lose.
     pub lost_echoes: bool,
-    /// What panes of single cameras show of other sources.
+    /// Sources that panes of single cameras show besides the strip's.
     pub others: Others,
 }
 
-/// Most sources beside that of the strip.
+/// Most sources besides that of the strip.
 const MOST_OTHERS: usize = 8;
 
-/// Sources beside that of the strip, each with a bit per camera that is rendered of it.
+/// Sources besides that of the strip, each with a bit per camera that is rendered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Others([Option<(SourceId, u32)>; MOST_OTHERS]);
 
@@ -203,11 +202,12 @@ impl Others {
     }
 }
 
-/// What decides the strip of pictures: source, cameras that are not rendered. One rendering holds all views of a source.
+/// Key of the strip's pictures: the source, and a bit per camera that is not rendered. One rendering holds all views of
+/// a source.
 pub type Pictures = (SourceId, u32);
 
 impl Wanted {
-    /// What the window shows, with a rig of so many cameras.
+    /// The request for the settings of the window, in a rig of `count` cameras.
     pub fn of(cameras: &CamerasShown, lidar: &LidarShown, count: usize) -> Self {
         Self {
             source: cameras.shown_source().id(),
@@ -226,7 +226,7 @@ impl Wanted {
             .map(|(_, camera)| camera)
     }
 
-    /// What decides the strip of pictures.
+    /// The key of the strip's pictures.
     pub fn pictures(self) -> Pictures {
         (self.source, self.hidden)
     }
@@ -264,19 +264,19 @@ pub fn march(scene: &Scene, shapes: bool) -> MarchScene {
     cameras::march_scene(scene.frame(), shapes, scene.seed)
 }
 
-/// What one camera shows.
+/// The picture of one camera.
 #[derive(Clone, Debug)]
 pub struct CameraView {
     /// Index of the camera in the rig.
     pub camera: usize,
-    /// What it shows.
+    /// The picture.
     pub picture: Arc<CameraPicture>,
-    /// The same in the colours of a view, made beforehand so that the window need not.
+    /// The picture in the colours of a view, made beforehand so that the window need not.
     shown: Option<(ViewId, Arc<ColorImage>)>,
 }
 
 impl CameraView {
-    /// Of one camera of the rig.
+    /// The picture of one camera of the rig.
     pub fn new(camera: usize, picture: CameraPicture) -> Self {
         Self {
             camera,
@@ -285,7 +285,7 @@ impl CameraView {
         }
     }
 
-    /// With the colours of the source's first view made now, unless a knob of the window decides them.
+    /// Makes the colours of the source's first view now, unless a setting of the window decides them.
     pub fn colored(mut self, source: &dyn CameraSource) -> Self {
         if let Some(view) = source.views().first().filter(|v| v.knob.is_none()) {
             self.shown = Some((view.id, Arc::new(colors(&self.picture, view.id, 0.0))));
@@ -293,7 +293,7 @@ impl CameraView {
         self
     }
 
-    /// The picture in colours; `plane_m` is the depth of the plane that is shown.
+    /// The picture in the colours of a view; `plane_m` is the depth of the plane that is shown.
     pub fn colors(&self, view: ViewId, plane_m: f64) -> Arc<ColorImage> {
         match &self.shown {
             Some((of, image)) if *of == view => image.clone(),
@@ -308,7 +308,7 @@ fn colors(picture: &CameraPicture, view: ViewId, plane_m: f64) -> ColorImage {
     ColorImage::from_rgba_unmultiplied(size, &rgba)
 }
 
-/// `CAM_FRONT_LEFT` as a person says it.
+/// The name of a camera for the user: `CAM_FRONT_LEFT` in words.
 pub fn camera_label(name: &str) -> String {
     theme::sentence(t(&name
         .trim_start_matches("CAM_")
@@ -336,7 +336,7 @@ mod tests {
         shown.own.insert(3, own(Some(pictures::VIEW.id), 0, false));
         assert_eq!(shown.of_pane(4, 6), (1, pictures::VIEW.id));
         let wanted = Wanted::of(&shown, &LidarShown::default(), 6);
-        // Depth comes with the classes of the strip; a pane that is not drawn asks for nothing.
+        // Depth comes with the classes of the strip; a pane that is not drawn requests no picture.
         let others: Vec<_> = wanted.others.iter().collect();
         assert_eq!(
             others,

@@ -1,5 +1,5 @@
-//! The bird's-eye view: a frame from above with forward up, drawn and taken hold of. The tools are
-//! driven by `canvas_tools.rs`.
+//! The bird's-eye view: a frame from above with forward up, drawn and edited with the pointer. `canvas_tools.rs` drives
+//! the tools.
 
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ use widgets::theme;
 
 /// The bird's-eye view's own state.
 pub struct Canvas {
-    /// Of the map drawn last.
+    /// Extent of the map drawn last.
     extent: scene::Extent,
     center_m: DVec2,
     scale: f64,                 // points per metre; 0 before the first fit
@@ -65,7 +65,7 @@ struct Shown<K> {
     handle: TextureHandle,
 }
 
-/// What the canvas draws.
+/// Input of the canvas.
 pub struct CanvasInput<'a> {
     /// The scene shown, a drag in progress included.
     pub scene: &'a Scene,
@@ -73,16 +73,16 @@ pub struct CanvasInput<'a> {
     pub settled: &'a Scene,
     /// The newest sweep.
     pub lidar: Option<&'a LidarSweep>,
-    /// Lowest and highest column that is still to be generated, both included.
+    /// Regions still to be generated: lowest and highest column of each, both included.
     pub unsettled: Arc<[Bounds]>,
-    /// A job is on its way.
+    /// True while a job runs or waits.
     pub generating: bool,
 }
 
 const SCALE: std::ops::RangeInclusive<f64> = 2.0..=120.0;
-/// Where nothing is painted.
+/// Colour where no layer is painted.
 const GROUND: Color32 = Color32::from_rgb(29, 32, 37);
-/// Room around the map when all of it is shown, m.
+/// Margin around the map when all of it is shown, m.
 const MARGIN_M: f64 = 2.0;
 
 impl Canvas {
@@ -110,7 +110,7 @@ impl Default for Canvas {
 }
 
 impl Canvas {
-    /// Draws the view into all the space there is, and answers the pointer.
+    /// Draws the view into all the available space, and answers the pointer.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -161,7 +161,7 @@ impl Canvas {
         response
     }
 
-    /// Draws the view into `rect` as `map` says, without answering the pointer.
+    /// Draws the view into `rect` as `map` places it, without answering the pointer.
     pub(super) fn still(&mut self, ui: &Ui, rect: Rect, map: &ScreenMap, scene: &Scene, state: &UiState) {
         let response = ui.interact(rect, ui.scope_id().with("still"), Sense::empty());
         let input = CanvasInput {
@@ -193,19 +193,19 @@ impl Canvas {
         (self.extent.min_m().truncate(), self.extent.max_m().truncate())
     }
 
-    /// Brings a box into the middle.
+    /// Centres a box.
     pub fn frame_box(&mut self, b: &SceneBox) {
         self.center_m = b.center_m.truncate();
         self.scale = self.scale.max(14.0);
         self.fitted = None;
     }
 
-    /// Point in the middle, ego frame, m, and points per metre; 0 before the first picture.
+    /// The centre of the view, ego frame, m, and points per metre; 0 before the first picture.
     pub fn place(&self) -> (DVec2, f64) {
         (self.center_m, self.scale)
     }
 
-    /// Shows a place again; numbers that cannot be are made usable.
+    /// Goes to a centre and a scale, points per metre. The scale is clamped; values that are not finite change nothing.
     pub fn go_to(&mut self, center_m: DVec2, scale: f64) {
         if center_m.is_finite() && scale.is_finite() && scale > 0.0 {
             self.center_m = center_m;
@@ -214,7 +214,7 @@ impl Canvas {
         }
     }
 
-    /// Forgets pictures made with other colours.
+    /// Forgets the cached pictures, which were made with other colours.
     pub fn forget_pictures(&mut self) {
         (self.layers, self.occupancy, self.unobserved) = (None, None, None);
     }
@@ -234,7 +234,7 @@ impl Canvas {
         };
         let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         if let Some(pointer) = response.hover_pos() {
-            // With Ctrl held egui turns the wheel into a zoom: here it is the brush's size.
+            // With Ctrl held egui turns the wheel into a zoom; here it sets the size of the brush.
             if (zoom - 1.0).abs() > 1e-3 {
                 hand.scale_brush(f64::from(zoom));
             } else if scroll != 0.0 {
@@ -242,7 +242,7 @@ impl Canvas {
                 let scale = self.scale * f64::from(scroll / 220.0).exp();
                 self.scale = scale.clamp(*SCALE.start(), *SCALE.end());
                 self.fitted = None;
-                // What is under the pointer stays there.
+                // The point under the pointer stays in place.
                 self.center_m = under + (self.center_m - under) * (map.scale / self.scale);
             }
         }
@@ -357,7 +357,7 @@ impl Canvas {
         tools: &ToolState,
         over_voxels: bool,
     ) -> egui::TextureId {
-        // Alone the picture covers what is behind it; pixels drawn twice cost on a software rasteriser.
+        // Alone the picture covers what is behind it. Pixels drawn twice are slow on a software rasteriser.
         let (veil, behind) = match over_voxels {
             true => (tools.layers_opacity, Color32::TRANSPARENT),
             false => (1.0, GROUND),
@@ -378,7 +378,7 @@ impl Canvas {
         texture(ui, &mut self.occupancy, scene.rev, "occupancy", make)
     }
 
-    /// What the tools draw, and what the pointer looks like.
+    /// Draws the marks of the tools and sets the cursor.
     fn draw_tool(
         &self,
         ui: &Ui,
@@ -408,7 +408,7 @@ impl Canvas {
             extent: self.extent,
         };
         board.paint(ui, &marks);
-        // A still answers no pointer.
+        // A still view does not react to the pointer.
         if response.hover_pos().is_some() && response.sense.senses_drag() {
             let pans = ui.input(|i| i.key_down(egui::Key::Space) || i.pointer.middle_down());
             let cursor = if pans { egui::CursorIcon::Grab } else { cursor };
@@ -432,7 +432,7 @@ fn texture<K: PartialEq>(
     name: &str,
     make: impl FnOnce() -> ColorImage,
 ) -> egui::TextureId {
-    // Large cells stay crisp; small ones are averaged, or thin lines would flicker.
+    // Large cells stay crisp. Small ones are averaged, or thin lines would flicker.
     let options = TextureOptions {
         magnification: egui::TextureFilter::Nearest,
         ..TextureOptions::LINEAR
@@ -441,7 +441,7 @@ fn texture<K: PartialEq>(
         Some(shown) if shown.key == key => {}
         Some(shown) => {
             let image = Arc::new(make());
-            // Only what differs goes to the device.
+            // Only the pixels that differ go to the device.
             match bev_image::differing(&image, &shown.image) {
                 None => shown.handle.set(image.clone(), options),
                 Some(rect) if rect.is_positive() => {
@@ -468,7 +468,7 @@ fn thing_under(scene: &Scene, p_m: DVec2) -> Option<&Thing> {
     scene.background.get(id)
 }
 
-/// What is under a point of the view, for the status bar.
+/// The status bar's text for a point of the view: position, layers, voxels, box or thing.
 pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
     let mut parts = vec![position_text(p_m)];
     let frame = scene.frame();

@@ -1,4 +1,4 @@
-//! What a screen reader finds on the map: each box as something that can be chosen, with its name and where it is.
+//! The map for screen readers: each box is a button with its name and position.
 
 use egui::accesskit::{self, Action, Role};
 use egui::{Rect, Ui};
@@ -10,10 +10,10 @@ use super::command::Command;
 use super::screen_map::ScreenMap;
 use super::state::{UiState, called};
 
-/// Boxes that are told of at most: a list as long as this is looked for in the pane of objects.
+/// Most boxes that are announced. A longer list is better read in the pane of objects.
 const MOST: usize = 200;
 
-/// What a box on the map is called: `Car 5 on the map: 12 m ahead, 3 m to the left`.
+/// The name of a box on the map: `Car 5 on the map: 12 m ahead, 3 m to the left`.
 fn label(b: &SceneBox, ego: &Pose) -> String {
     let from_ego = ego.rotation.inverse() * (b.center_m - ego.translation_m);
     let along = if from_ego.x >= 0.0 {
@@ -37,7 +37,7 @@ fn label(b: &SceneBox, ego: &Pose) -> String {
     )
 }
 
-/// Tells of the boxes in view, and answers what is asked of them.
+/// Announces the boxes in view, and answers requests to choose one.
 pub(super) fn boxes(ui: &Ui, map: &ScreenMap, scene: &Scene, state: &UiState, commands: &mut Vec<Command>) {
     let frame = scene.frame();
     for b in frame.boxes.values().take(MOST) {
@@ -60,7 +60,7 @@ pub(super) fn boxes(ui: &Ui, map: &ScreenMap, scene: &Scene, state: &UiState, co
             node.add_action(Action::Click);
         });
         if told.is_none() {
-            // Nobody listens.
+            // No screen reader runs.
             return;
         }
         if ui.input(|i| i.has_accesskit_action_request(id, Action::Click)) {

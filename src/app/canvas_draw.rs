@@ -1,4 +1,4 @@
-//! What the bird's-eye view draws over its pictures.
+//! Drawings over the pictures of the bird's-eye view: grid, lanes, sensors, boxes.
 
 use egui::{Align2, Color32, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
@@ -13,7 +13,7 @@ use super::state::UiState;
 use viewport::track_color;
 use widgets::theme;
 
-/// What of `outer` is not covered by `inner`.
+/// The parts of `outer` that `inner` does not cover.
 pub(super) fn around(inner: Rect, outer: Rect) -> [Rect; 4] {
     let inner = inner.intersect(outer);
     if !inner.is_positive() {
@@ -138,12 +138,12 @@ pub(super) fn draw_ego(ui: &Ui, map: &ScreenMap, rig: &SensorRig, world_from_ego
     ));
 }
 
-/// How far the fields of view are drawn, m.
+/// Length of the drawn fields of view, m.
 const VIEW_M: f64 = 14.0;
-/// Parts of the arc of a field of view.
+/// Segments of the arc of a field of view.
 const ARC_STEPS: usize = 16;
 
-/// Draws what the cameras of the rig look at, the chosen one over the others.
+/// Draws the fields of view of the rig's cameras, the chosen one over the others.
 pub(super) fn draw_fields_of_view(
     ui: &Ui,
     map: &ScreenMap,
@@ -173,7 +173,7 @@ pub(super) fn draw_fields_of_view(
     }
 }
 
-/// How a box is drawn.
+/// Style of a box.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum BoxStyle {
     Plain,
@@ -183,7 +183,7 @@ pub(super) enum BoxStyle {
     Ghost,
 }
 
-/// The colour of a box: its class's, or one of its own.
+/// The colour of a box: that of its class, or of its track.
 pub(super) fn box_color(b: &SceneBox, by_track: bool) -> [u8; 3] {
     match by_track {
         true => track_color(b.id),

@@ -1,5 +1,5 @@
-//! From the pointer and the keys of a view to events of the tool in hand, and from what it answers to commands. Both
-//! large views drive the tools through here.
+//! Turns the pointer and the keys of a view into events of the tool in hand, and its answers into commands. Both large
+//! views drive the tools through here.
 
 use egui::{CursorIcon, Key as Pressed, PointerButton, Pos2, Response, Ui};
 
@@ -13,13 +13,13 @@ use super::pointer::{self, Step};
 use super::screen_map::point;
 use super::tools::ToolState;
 
-/// Who follows the pointer while the button is down.
+/// Holder of the pointer while the button is down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Hold {
     /// The button is up.
     #[default]
     Nobody,
-    /// Nobody, until it comes up: cancelled, over at the press, or for the camera.
+    /// No tool until the button is released: the drag was cancelled, ended at the press, or moves the camera.
     Waits,
     /// The tool in hand.
     Tool,
@@ -31,7 +31,7 @@ pub(super) struct Driver {
     hold: Hold,
 }
 
-/// What the tools see of a view.
+/// Context of a view for the tools.
 #[derive(Clone, Copy)]
 pub(super) struct Seen<'a> {
     /// The scene shown, a drag in progress included.
@@ -50,7 +50,7 @@ fn modifiers(m: egui::Modifiers) -> Modifiers {
     }
 }
 
-/// Tells the tool in hand of an event.
+/// Sends an event to the tool in hand.
 fn tell(seen: &Seen<'_>, tools: &mut ToolState, event: Event, commands: &mut Vec<Command>) -> Answer {
     let ToolState { toolbox, hand, .. } = tools;
     let tool = toolbox.tool_mut(hand.tool);
@@ -129,7 +129,7 @@ impl Driver {
                 _ => {}
             }
         }
-        // After the pointer: the click that ends an outline is one of its points.
+        // Keys come after the pointer: the click that ends an outline is one of its points.
         self.keys(ui, response, seen, tools, commands);
     }
 
@@ -139,7 +139,7 @@ impl Driver {
         }
     }
 
-    /// Keys and wheel that the tool in hand asks for; they are taken from the frame's input.
+    /// Handles the keys and the wheel that the tool in hand asks for, and takes them from the frame's input.
     fn keys(
         &mut self,
         ui: &Ui,
@@ -190,7 +190,7 @@ impl Driver {
         }
     }
 
-    /// Keys that steer a drag.
+    /// Handles keys that steer a drag.
     fn steer(&mut self, ui: &Ui, seen: &Seen<'_>, tools: &mut ToolState, commands: &mut Vec<Command>) {
         let events = ui.input(|i| i.events.clone());
         let mut left = Vec::with_capacity(events.len());
@@ -220,7 +220,7 @@ impl Driver {
         ui.input_mut(|i| i.events = left);
     }
 
-    /// What is drawn over the view by the tool in hand, and what the pointer looks like there.
+    /// The marks that the tool in hand draws over the view, and its cursor.
     pub fn sight(
         &self,
         ui: &Ui,
@@ -254,8 +254,8 @@ fn icon(cursor: Cursor) -> CursorIcon {
     }
 }
 
-/// Takes a press of a key out of events: Enter whatever is held, since who held Ctrl to take out still holds it as the outline
-/// is closed; other keys alone.
+/// Takes a press of a key out of the events. Enter counts with any modifier, since the user who held Ctrl to take away
+/// still holds it when the outline is closed. Other keys count without modifiers only.
 fn took(events: &mut Vec<egui::Event>, wanted: Pressed) -> bool {
     let is_it = |event: &egui::Event| match event {
         egui::Event::Key {
@@ -293,7 +293,7 @@ fn steering(key: Pressed) -> Option<Key> {
     })
 }
 
-/// Steps of the wheel, up positive.
+/// Notches of the wheel, up positive.
 fn wheel(events: &[egui::Event]) -> i32 {
     let notch = |e: &egui::Event| match e {
         egui::Event::MouseWheel { delta, .. } if delta.y > 0.0 => 1,

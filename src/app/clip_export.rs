@@ -18,37 +18,37 @@ use crate::capture::{CaptureOptions, Subject, capture};
 use crate::painting::PaintWish;
 use crate::picture::{self, Picture, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
 
-/// What is shown.
+/// Subject of a clip.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ClipView {
     /// The 3D view from a viewpoint at the first moment.
     View3d {
         /// The viewpoint.
         camera: Box<ViewCamera>,
-        /// It goes along with the ego vehicle.
+        /// True: the camera moves along with the ego vehicle.
         follow: bool,
-        /// With boxes.
+        /// True: with boxes.
         boxes: bool,
     },
-    /// The layout from above, with boxes, a whole number of pixels for each cell.
+    /// The layout from above with boxes; each cell is a whole number of pixels.
     Bev,
     /// The map from above, as large as fits the size.
     Map,
     /// One camera of the rig by index, or all of them in two rows.
     Cameras {
-        /// What the pictures show.
+        /// The view.
         view: ViewId,
-        /// By which source.
+        /// The source.
         source: SourceId,
-        /// The one; all if none.
+        /// The camera; all of them if `None`.
         camera: Option<usize>,
     },
 }
 
-/// How a clip is written.
+/// Options of a clip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClipOptions {
-    /// What is shown.
+    /// The subject.
     pub view: ClipView,
     /// Width and height of the 3D view and the map, or of each camera, pixels.
     pub size: [u32; 2],
@@ -56,12 +56,12 @@ pub struct ClipOptions {
     pub span_s: [f64; 2],
     /// Frames per second.
     pub rate_hz: f64,
-    /// What paints learned pictures; the weights that ship if none.
+    /// Weights that paint learned pictures; the bundled weights if `None`.
     pub paint: Option<PaintWith>,
 }
 
 impl ClipOptions {
-    /// True if networks paint its pictures.
+    /// True if networks paint the pictures.
     pub fn paints(&self) -> bool {
         match self.view {
             ClipView::Cameras { view, source, .. } => cameras::source_of(view, source).id() == learned::ID,
@@ -69,7 +69,7 @@ impl ClipOptions {
         }
     }
 
-    /// The moments that are shown, s.
+    /// The moments of the frames, s.
     fn times_s(&self) -> Vec<f64> {
         let [from, to] = self.span_s;
         let frames = ((to - from) * self.rate_hz + 1e-6).max(0.0) as usize + 1;
@@ -77,8 +77,8 @@ impl ClipOptions {
     }
 }
 
-/// The file of a clip. `go_on` is told how many of how many frames are done, and says whether to go on. Errors in one line,
-/// also where it was told not to.
+/// The file of a clip. `go_on` is told the number of finished frames and of all frames, and returns whether to go on.
+/// Errors in one line, also when `go_on` stops it.
 pub fn clip(
     scene: &Scene,
     options: &ClipOptions,
@@ -118,7 +118,7 @@ pub fn clip(
     Ok(writer.finish()?)
 }
 
-/// With even sides, which MP4 wants: a row or column is added where one is missing.
+/// The picture with even sides, which MP4 needs: a row or column is added where a side is odd.
 fn even(picture: Picture) -> Picture {
     let (width, height) = (
         picture.width.next_multiple_of(2),
@@ -147,7 +147,7 @@ enum Drawer {
     Cameras(ClipOptions, Option<Box<dyn Paint>>),
 }
 
-/// Pixels of a cell from above: the whole map about so high.
+/// Approximate height of the bird's-eye picture, px; it decides the pixels per cell.
 const BEV_PIXELS: usize = 720;
 
 impl Drawer {
@@ -180,7 +180,7 @@ impl Drawer {
                     cameras::source_of(*view, *source).about().bytes_per_pixel,
                     0,
                 )?;
-                // Painted pictures go on from those of the frame before.
+                // Painted pictures continue from those of the frame before.
                 let with = || match &options.paint {
                     Some(with) => Ok(with.clone()),
                     None => PaintWish::default().open(),

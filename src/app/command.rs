@@ -1,5 +1,5 @@
-//! Commands: all that a user can ask for, as values. Panes, canvases and keys push them; the application carries them out
-//! after the frame is drawn.
+//! Commands: every action that a user can ask for, as a value. Panes, canvases and keys push commands; the application
+//! carries them out after the frame is drawn.
 
 use std::path::PathBuf;
 
@@ -45,9 +45,9 @@ pub enum FileCommand {
     New,
     /// Starts from a ready-made road.
     NewFrom(&'static str),
-    /// A new scene of these words.
+    /// Makes a new scene from a description in words.
     Describe(String),
-    /// Starts from what words describe, drawn from a seed.
+    /// Makes a new scene from a prompt that was read, with a seed.
     NewFromPrompt(Box<super::prompting::Ask>),
     /// Asks for a file and opens it.
     Open,
@@ -57,13 +57,13 @@ pub enum FileCommand {
     Save,
     /// Asks for a file and saves there.
     SaveAs,
-    /// Asks for a file and saves there what the dialog of pictures describes.
+    /// Asks for a file and saves the picture that the dialog of pictures describes.
     AskCapture,
     /// Saves the 3D view beside the scene.
     QuickShot,
-    /// Saves what a camera shows in a view beside the scene.
+    /// Saves the picture of a camera in a view beside the scene.
     SavePicture(usize, ViewId),
-    /// Shows the dialog of pictures with moving ones chosen.
+    /// Shows the dialog of pictures with moving pictures chosen.
     SaveClip,
     /// Asks for a model and puts it into the scene.
     PlaceModel,
@@ -71,7 +71,7 @@ pub enum FileCommand {
     ShapeOfChosen,
     /// Asks for a folder of weights that paint camera pictures.
     PictureWeights,
-    /// Asks for a file of sensors and takes them.
+    /// Asks for a file of sensors and uses them.
     ImportRig,
     /// Asks for a file and saves the sensors there.
     ExportRig,
@@ -79,7 +79,7 @@ pub enum FileCommand {
     Quit,
 }
 
-/// What the views show, and where the panes stand.
+/// Commands for the views and the panes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ViewCommand {
     /// Brings the chosen box into the middle of the view under the pointer.
@@ -90,33 +90,33 @@ pub enum ViewCommand {
     FrameAt(glam::DVec3),
     /// Takes a standard viewpoint in the 3D view.
     Preset(ViewPreset),
-    /// Changes the 3D view between perspective and orthographic, from where it is looked.
+    /// Changes the 3D view between perspective and orthographic, from the same viewpoint.
     ToggleParallel,
     /// Looks through that camera of the rig in the 3D view.
     LookThrough(usize),
-    /// Shows that in the cameras: classes, depth, pictures.
+    /// Sets the view of the cameras: classes, depth, pictures.
     Cameras(ViewId),
-    /// Shows pictures in the cameras, unless they show light and weather already.
+    /// Shows pictures in the cameras, unless their view shows light and weather already.
     ShowLight,
-    /// Ends the painting of learned pictures; they stay as they are by then.
+    /// Stops the painting of learned pictures; they stay as they are.
     StopPainting,
-    /// Paints them after all.
+    /// Resumes the painting of learned pictures.
     PaintAgain,
     /// Enlarges that camera, or shows the strip again.
     Inspect(Option<usize>),
-    /// Keeps where the large views stand under a number.
+    /// Keeps the viewpoints of the large views under a number.
     KeepBookmark(u8),
-    /// Goes where the views stood when that number was kept.
+    /// Goes to the viewpoints that were kept under a number.
     GoToBookmark(u8),
     /// Shows or hides the 10 m grid.
     ToggleGrid,
-    /// Shows the scene alone in the large views, without grid, lines, frames and marks, or all of that again.
+    /// Shows only the scene in the large views, without grid, lines, frames and marks, or shows all of that again.
     ToggleClean,
-    /// The window fills the screen, or is a window again.
+    /// Makes the window fill the screen, or a window again.
     ToggleFullScreen,
-    /// Compares with the version of that state.
+    /// Compares with the version of this state.
     CompareWith(SceneRev),
-    /// The next way to compare.
+    /// Changes to the next compare mode.
     CycleCompare,
     /// Swaps the bird's-eye view and the 3D view.
     SwapPanes,
@@ -132,49 +132,49 @@ pub enum ViewCommand {
     FocusPrompt,
 }
 
-/// Repairs of what the checks found: they are planned in the background, listed, and then done or not.
+/// Commands for repairs of findings. Repairs are planned in the background, listed, and then applied or discarded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RepairCommand {
-    /// Plans repairs of all findings, and of what these leave.
+    /// Plans repairs of all findings, and of the findings that remain after them.
     PlanAll,
-    /// Plans repairs of these findings alone.
+    /// Plans repairs of these findings only.
     PlanThese(Vec<Finding>),
-    /// Plans what was planned before, for the scene as it is now.
+    /// Plans the same repairs again for the scene as it is now.
     Again,
-    /// Ends the planning; what is planned by then is listed.
+    /// Ends the planning; repairs planned so far are listed.
     Stop,
-    /// Does what is listed, as one undo step.
+    /// Applies the listed repairs as one undo step.
     Apply,
     /// Forgets the plan.
     Close,
 }
 
-/// What the worker does, and what becomes of its results.
+/// Commands for the worker and its results.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GenerationCommand {
-    /// Generates: all of it, or what was edited.
+    /// Generates the whole scene, or the edited region.
     Generate {
-        /// True: everything, from fresh noise.
+        /// True: the whole scene, from fresh noise.
         full: bool,
     },
-    /// Regenerates what stands beside the roads, by what is chosen in the list.
+    /// Regenerates the scenery beside the roads, by the choice in the list.
     DrawScenery,
-    /// What becomes of a result that waits.
+    /// Accepts, declines or replaces a staged result.
     Decide(Verdict),
-    /// Ends a whole generation with what it shows now.
+    /// Ends a generation of the whole scene and keeps its current state.
     StopHere,
     /// Cancels a job.
     Cancel {
-        /// The generation that runs.
+        /// True: the running generation.
         running: bool,
-        /// An edit that waits for its generation.
+        /// True: an edit that waits for its generation.
         waiting: bool,
     },
-    /// Goes back (or forward) to the version of that state, as an undo step.
+    /// Goes back (or forward) to the version of this state, as an undo step.
     RestoreVersion(SceneRev),
     /// Goes to the next (1) or previous (-1) version.
     StepVersion(i32),
-    /// Sets seed and knobs to those that the version of that state was made with.
+    /// Sets the seed and the knobs with which the version of this state was made.
     UseAgain(SceneRev),
     /// Keeps the present state as a version, and asks for its name.
     KeepVersion,
@@ -184,44 +184,44 @@ pub enum GenerationCommand {
     Quality(usize),
     /// Times the presets on this machine.
     Calibrate,
-    /// Measures how far the last edit lies from the reference.
+    /// Measures the distance of the last edit from the reference.
     Refine,
     /// Stops these measurements.
     StopMeasuring,
 }
 
-/// What moment is shown, and how things move.
+/// Commands for time and motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TimeCommand {
     /// Shows a moment, s.
     Show(f64),
     /// Shows the frame nearest to a moment, s.
     Scrub(f64),
-    /// Lets everything drive that only says how fast.
+    /// Gives a path to every object that has only a speed.
     Traffic,
-    /// So many seconds more: what moves goes on, s.
+    /// Lengthens the scene by so many seconds, s; what moves goes on.
     Forecast(f64),
     /// Plays, or pauses.
     Play,
-    /// So many frames forward, or back.
+    /// Steps by a number of frames, forward or back.
     Step(i32),
-    /// The first moment that is played.
+    /// Goes to the first moment that is played.
     ToStart,
-    /// The last one.
+    /// Goes to the last moment that is played.
     ToEnd,
-    /// The next (1) or previous (-1) keyframe of what is chosen.
+    /// Goes to the next (1) or previous (-1) keyframe of the selection.
     Key(i32),
-    /// Makes a keyframe of what is chosen at the moment that is shown.
+    /// Makes a keyframe of the selection at the moment shown.
     KeyHere,
-    /// Takes the keyframe of what is chosen that is nearest to the moment that is shown away.
+    /// Deletes the keyframe of the selection that is nearest to the moment shown.
     DropKey,
-    /// Puts what is chosen where it is now so many frames later, or earlier, and goes there.
+    /// Puts the selection at its present place a number of frames later, or earlier, and goes there.
     CopyToFrame(i32),
-    /// What is played begins here.
+    /// Sets the moment shown as the beginning of the played span.
     In,
-    /// What is played ends here.
+    /// Sets the moment shown as the end of the played span.
     Out,
-    /// Lets a box, or (`None`) the ego vehicle, move by a template.
+    /// Makes a box, or the ego vehicle (`None`), move by a template.
     Motion(Option<BoxId>, editor::traffic::Wish),
 }
 
@@ -230,53 +230,54 @@ pub enum TimeCommand {
 pub enum Command {
     /// Applies edits as one undo step of this name.
     Apply(&'static str, Vec<Edit>),
-    /// Applies what a sentence asked for as one undo step, chooses what came or changed, and shows what became of the weather.
+    /// Applies the edits of a sentence as one undo step, chooses the boxes that it added or changed, and shows a change
+    /// of weather.
     ApplyWords(String, Vec<Edit>),
-    /// Shows edits on top of the state in which the drag began.
+    /// Previews edits on top of the state in which the drag began.
     Preview(Vec<Edit>),
     /// Ends the drag as one undo step.
     Commit(&'static str),
     /// Ends the drag without a change.
     CancelDrag,
-    /// One step back.
+    /// Undoes one step.
     Undo,
-    /// One step forward.
+    /// Redoes one step.
     Redo,
-    /// Shows that state of the history.
+    /// Goes to a state of the history, by index.
     JumpTo(usize),
-    /// What was inferred on import is marked as a guess no more.
+    /// Confirms everything that was inferred on import: it is no longer marked as a guess.
     ConfirmInferred,
     /// Gives all painted voxels back to generation.
     ClearPaint,
-    /// Repairs all findings of the checks that can be repaired.
+    /// Plans or applies repairs of findings.
     Repair(RepairCommand),
-    /// What the tools are asked for.
+    /// A command for the tools.
     Tools(super::tools::ToolCommand),
     /// Chooses a box, or none.
     Select(Option<BoxId>),
     /// Chooses the next (1) or previous (-1) box by id.
     SelectNext(i32),
-    /// Ends one thing, the first of these that there is: a drag, an enlarged camera, chosen voxels, the tool, the selection.
+    /// Ends the first of these that there is: a drag, an enlarged camera, chosen voxels, the tool, the selection.
     Escape,
     /// Takes another tool.
     Tool(ToolId),
     /// Takes the tool that places boxes, with this class.
     PlaceClass(Class),
-    /// Paints with the layer or class of that place in the list of the tool in hand.
+    /// Paints with the layer or class at this place in the list of the tool in hand.
     PaintWith(usize),
-    /// Paints with the layer or class before this one again.
+    /// Paints again with the layer or class used before this one.
     PaintWithLast,
     /// Makes the brush in hand larger (1) or smaller (-1).
     BrushSize(i32),
     /// Makes the voxel brush higher (1) or lower (-1).
     BrushHeight(i32),
-    /// What is read, written or begun.
+    /// A command for files and scenes.
     File(FileCommand),
-    /// What the views show, and where the panes stand.
+    /// A command for the views and the panes.
     View(ViewCommand),
-    /// What the worker does, and what becomes of its results.
+    /// A command for the worker and its results.
     Generation(GenerationCommand),
-    /// What moment is shown, and how things move.
+    /// A command for time and motion.
     Time(TimeCommand),
     /// Shows the settings.
     OpenSettings,
@@ -286,31 +287,31 @@ pub enum Command {
     Toggle(Window),
 }
 
-/// What is taken of a staged result.
+/// Part of a staged result to accept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
-    /// What lies in the marked region.
+    /// The marked region.
     Region,
     /// The places of chosen boxes and things.
     Chosen,
-    /// What comes or goes of a class.
+    /// Voxels of a class that come or go.
     Class(Class),
 }
 
-/// What the user decides about a staged result.
+/// Decision of the user about a staged result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It stays.
+    /// The result is kept.
     Accept,
-    /// The state before comes back.
+    /// The state before it is restored.
     Decline,
-    /// The same again from other noise, in its place.
+    /// The result is replaced: the state before it is generated again with the next seed.
     NextSeed,
-    /// Only this part of it stays.
+    /// Only this part of the result is kept.
     Take(Taken),
 }
 
-/// What the history calls an edit by words: the words.
+/// The name of the undo step for an edit by words: the words in quotation marks, cut to 60 characters.
 pub(crate) fn step_name(words: &str) -> String {
     const LONGEST: usize = 60;
     let words = words.split_whitespace().collect::<Vec<_>>().join(" ");

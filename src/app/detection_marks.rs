@@ -1,5 +1,5 @@
-//! What the network of the LiDAR or of both sensors sees, over the large views: its boxes, those of the scene that it misses, and
-//! what it takes the ground for.
+//! Marks over the large views for the predictions of the LiDAR network and the network of both sensors: predicted
+//! boxes, missed boxes of the scene, and the predicted kind of each column.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -16,27 +16,28 @@ use scene::{BoxId, Extent, Frame, Pose, Scene, SceneBox, SceneRev};
 use sensors::perceived::{GHOST, MISSED};
 use widgets::theme;
 
-/// Colour of a box of the network that belongs to one of the scene.
+/// Colour of a predicted box that matches one of the scene.
 const SEEN: Color32 = Color32::from_rgb(80, 230, 230);
-/// So much of what stands is seen over the map, of 255.
+/// Opacity of the predicted kinds of columns over the map, of 255.
 const STANDS: u8 = 150;
 
 /// The marks of one sweep.
 #[derive(Clone)]
 pub struct DetectionMarks {
-    /// The state that the network looked at.
+    /// The state that the network was given.
     pub of: SceneRev,
-    /// Boxes on the map, and true of each for which there is none in the scene.
+    /// Predicted boxes on the map, each with true if it matches no box of the scene.
     pub detections: Vec<(SceneBox, bool)>,
     /// Boxes of the scene that are missed.
     pub missed: Vec<BoxId>,
-    /// What stands in each column of the window around the vehicle, seen from above, ahead is up; and all that stands anywhere.
+    /// Picture of the predicted kind of each column in the window around the vehicle, from above, ahead is up; with the
+    /// set of kinds in it.
     pub stands: Option<(TextureHandle, BTreeSet<Stands>)>,
-    /// The scene with the voxels that the network tells in place of its own.
+    /// The scene with the predicted voxels in place of its own.
     pub told: Option<Arc<Scene>>,
-    /// Map from the vehicle.
+    /// Transform from the vehicle's frame to the map.
     pub map_from_vehicle: Pose,
-    /// Where those columns lie, in the frame of the vehicle.
+    /// Extent of those columns, in the frame of the vehicle.
     pub window: Extent,
 }
 
@@ -56,14 +57,14 @@ impl std::fmt::Debug for DetectionMarks {
 }
 
 impl DetectionMarks {
-    /// What the colours of the map mean.
+    /// The legend of the map: each colour and its meaning.
     pub(crate) fn map_legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
         let standing = self.stands.iter().flat_map(|(_, standing)| standing);
         let named = standing.map(|s| (theme::class_color(s.class()), t(&s.label()).to_owned()));
         self.legend(now).into_iter().chain(named).collect()
     }
 
-    /// What the colours of boxes mean; `now` is the state on screen.
+    /// The legend of the boxes: each colour and its meaning. `now` is the state on screen.
     pub(crate) fn legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
         let mut entries = vec![
             (SEEN, t("seen by the network").to_owned()),
@@ -77,7 +78,7 @@ impl DetectionMarks {
         entries
     }
 
-    /// The same where its voxels are shown in place of the scene's.
+    /// The legend where the predicted voxels are shown in place of the scene's.
     pub(crate) fn told_legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
         let text = match self.of == now {
             true => t("the network's voxels, to look at alone"),
@@ -88,7 +89,7 @@ impl DetectionMarks {
         std::iter::once(first).chain(all).collect()
     }
 
-    /// Each box with what became of it.
+    /// Each marked box with its mark.
     fn boxes<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = (&'a SceneBox, Mark)> {
         let detections = self.detections.iter();
         let detections = detections.map(|(b, ghost)| (b, if *ghost { Mark::Ghost } else { Mark::Seen }));
@@ -98,7 +99,7 @@ impl DetectionMarks {
             .filter(|(b, _)| b.problem().is_none())
     }
 
-    /// Draws them on the bird's-eye view.
+    /// Draws the marks on the bird's-eye view.
     pub(super) fn on_map(&self, painter: &Painter, map: &ScreenMap, frame: &Frame) {
         if let Some((texture, _)) = &self.stands {
             let (min, max) = (self.window.min_m().truncate(), self.window.max_m().truncate());
@@ -113,7 +114,7 @@ impl DetectionMarks {
             painter.add(Shape::mesh(quad(texture, corners)));
         }
         for (b, mark) in self.boxes(frame) {
-            // No nose: which end of a vehicle is its front the network does not know.
+            // No mark of the front: the network does not know which end of a vehicle is its front.
             let corners = b.footprint().map(|p| map.to_screen(p));
             let [first, second, third, fourth] = corners;
             mark.stroke(painter, &[first, second, third, fourth, first]);
@@ -144,7 +145,7 @@ impl DetectionMarks {
     }
 }
 
-/// Draws those that are shown on the 3D view; `project` gives the place of a point on screen.
+/// Draws the marks that are shown on the 3D view; `project` gives the screen position of a point.
 pub(super) fn in_3d(
     painter: &Painter,
     project: &dyn Fn(DVec3) -> Option<Pos2>,
@@ -156,7 +157,7 @@ pub(super) fn in_3d(
     }
 }
 
-/// What became of a box. No mark is told by its colour alone: classes have colours, too.
+/// How a box was predicted. Marks differ in more than colour, because classes have colours too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mark {
     Seen,
@@ -173,7 +174,7 @@ impl Mark {
         }
     }
 
-    /// A line that is seen on bright and on dark; dashed for a thing where there is none.
+    /// Draws a line that is visible on bright and on dark; dashed for a false detection.
     fn stroke(self, painter: &Painter, line: &[Pos2]) {
         for (width, color) in [(3.5, Color32::from_black_alpha(130)), (1.8, self.color())] {
             let stroke = Stroke::new(width, color);
@@ -185,7 +186,7 @@ impl Mark {
     }
 }
 
-/// A texture between four corners, each with its place in the texture.
+/// A textured quad: four corners, each with its texture coordinates.
 fn quad(texture: &TextureHandle, corners: [(Pos2, Pos2); 4]) -> Mesh {
     let mut mesh = Mesh::with_texture(texture.id());
     let color = Color32::from_white_alpha(STANDS);
@@ -215,7 +216,7 @@ mod tests {
         let marks = DetectionMarks {
             of: SceneRev::fresh(),
             detections: vec![(b(5), false), (b(6), true)],
-            // One of them is gone since.
+            // One of the missed boxes no longer exists.
             missed: vec![BoxId(1), BoxId(2)],
             told: None,
             stands: None,

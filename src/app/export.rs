@@ -1,5 +1,5 @@
-//! Takes a scene to files of other programs: what the command line and the window share. Which formats there are, and what
-//! they write, is in `formats::export`; here is what has to be made of the scene for them.
+//! Exports a scene to files of other programs, for the command line and the window. `formats::export` defines the
+//! formats and writes their files; this module makes the products of the scene that they need.
 
 mod files;
 mod progress;
@@ -36,18 +36,18 @@ use progress::takes_pictures;
 /// A format that is written, a line of the table [`formats::export::all`].
 pub type Format = &'static Exporter;
 
-/// How to export.
+/// Options of an export.
 #[derive(Clone, Debug)]
 pub struct ExportOptions {
     /// Size of camera pictures and maps in pixels.
     pub camera_size: [u32; 2],
-    /// What classes and depths are rendered from.
+    /// Source that classes and depths are rendered from.
     pub source: SourceId,
-    /// How the LiDAR sweep comes about.
+    /// How the LiDAR sweep is computed.
     pub lidar: LidarModel,
-    /// How the picture of the 3D view is taken.
+    /// Options for the picture of the 3D view.
     pub shot: ShotOptions,
-    /// What the scene was made with, for the recipe that files carry; null if that is not known.
+    /// Parameters that the scene was made with, for the recipe in the files; null if they are not known.
     pub parameters: serde_json::Value,
 }
 
@@ -93,10 +93,10 @@ pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
 }
 
 /// Writes the current frame. One format goes to `path`: the file, or a folder for the format's usual name; formats that
-/// fill a folder make it. More go into the folder `path`. Returns the files and their sizes in bytes. Errors in one line;
-/// each file is written whole or not at all, and none before all are ready: an export that is cancelled leaves nothing
-/// behind. In a folder nothing outside it is written, and no file over another: a format that would put something else into a
-/// file of an earlier one gets a folder of its own there, called as the format.
+/// fill a folder make it. Several formats go into the folder `path`. Returns the files and their sizes in bytes. Errors
+/// in one line. Each file is written whole or not at all, and none before all are ready, so a cancelled export leaves
+/// no file behind. In a folder, no file is written outside it and no file over another: a format that would give other
+/// contents to a file of an earlier one gets a folder of its own there, named after the format.
 pub fn export_all(
     scene: &Scene,
     formats: &[Format],
@@ -107,7 +107,7 @@ pub fn export_all(
     let mut ready = Vec::new();
     progress.begin(formats, &scene.rig);
     let (recipe, gaussians) = (OnceCell::new(), OnceCell::new());
-    // Files of a moment speak of the ego frame; sensors see the scene where it is.
+    // Files of a moment are in the ego frame; sensors are computed in the world frame.
     for format in formats {
         let of_file = match format.span {
             Span::Moment => scene.in_ego(),
@@ -134,22 +134,23 @@ pub fn export_all(
 struct Making<'a> {
     /// The clip.
     whole: &'a Scene,
-    /// Made when the first file asks for it: it takes the scene as a file.
+    /// Made when the first file asks for it, because it needs the scene as a file.
     recipe: &'a OnceCell<Recipe>,
-    /// Baked when the first file asks for them, and of which moment.
+    /// The Gaussians with their moment, s. Baked when the first file asks for them.
     gaussians: &'a OnceCell<(f64, GaussianScene)>,
     began: Began,
-    /// The moment that products are made of, with the sensors where the ego vehicle is.
+    /// The scene at the moment of the products, with the sensors where the ego vehicle is.
     scene: Cow<'a, Scene>,
     options: &'a ExportOptions,
     progress: &'a ExportProgress,
 }
 
-/// How the moments of a clip begin: those that a format takes pictures of are evenly spaced, so two of them tell how many there are.
+/// State of counting the moments of a clip. The moments of a format with pictures are evenly spaced, so the first two
+/// give their number.
 enum Began {
-    /// Nothing is to be counted, or all is.
+    /// No moments are left to count: they are counted, or the format is not a clip of pictures.
     Counted,
-    /// Of a clip, at this moment if there was one, s.
+    /// A clip is to be counted; with its first moment, s, once that is known.
     At(Option<f64>),
 }
 
@@ -161,7 +162,8 @@ impl Began {
         }
     }
 
-    /// How many moments there are besides the first, of a clip of that length, s, once that is told by the second one.
+    /// The number of moments after the first, in a clip of `length_s` seconds. It is known when the second moment
+    /// comes, and returned then only.
     fn more(&mut self, time_s: f64, length_s: f64) -> Option<usize> {
         match *self {
             Self::At(Some(first_s)) if time_s > first_s => {
@@ -178,15 +180,15 @@ impl Began {
 }
 
 impl Making<'_> {
-    /// Counts the pictures of the moments to come, as soon as pictures of a second one are asked for.
+    /// Counts the pictures of the moments to come when pictures of the second moment are asked for.
     fn count_moments(&mut self) {
         if let Some(moments) = self.began.more(self.scene.time_s(), self.whole.clip().length_s) {
             self.progress.more(moments * self.whole.rig.cameras.len());
         }
     }
 
-    /// Renders a view for each camera, in the rig's order, and hands each picture on before the next is made; asks before
-    /// each whether to go on.
+    /// Renders a view for each camera, in the rig's order, and hands each picture on before the next is made. Checks
+    /// before each picture whether to go on.
     fn each_camera(
         &self,
         view: ViewId,
@@ -335,7 +337,7 @@ impl Products for Making<'_> {
         let baked = bake::bake_scene(&self.scene, &BakeOptions::default(), &go_on);
         self.progress.baked();
         let baked = baked.ok_or_else(|| FormatError::new("cancelled"))?;
-        // (of a second moment nothing is kept)
+        // (the Gaussians of a second moment are not kept)
         let _ = self.gaussians.set((time_s, baked.clone()));
         Ok(baked)
     }
@@ -387,7 +389,7 @@ mod tests {
         };
         let written = std::thread::scope(|threads| {
             threads.spawn(|| {
-                // The first pictures are ready; those of every format are counted.
+                // The first pictures are ready; pictures of every format are counted.
                 while progress.pictures().is_none_or(|(done, _)| done == 0) {
                     std::thread::yield_now();
                 }
@@ -422,7 +424,7 @@ mod tests {
             ..ExportOptions::default()
         };
         let cameras = scene.rig.cameras.len();
-        // Ten moments a second, two a second, and both.
+        // A format with ten moments a second, one with two, and both together.
         for (ids, moments) in [
             (vec!["mcap"], 11),
             (vec!["nuscenes"], 3),

@@ -1,4 +1,4 @@
-//! Rows of number fields: a caption and what it names, in the same places on every pane.
+//! Rows of number fields with their captions, at the same places on every pane.
 
 use egui::{DragValue, Ui};
 use glam::DVec3;
@@ -8,12 +8,12 @@ use editor::Edit;
 use numeric::decimal::decimal;
 use widgets::theme;
 
-/// What the fields to its right are.
+/// The caption at the left of a row of fields.
 pub fn caption(ui: &mut Ui, text: &str) {
     label(ui, text, 52.0);
 }
 
-/// What the widget to its right is, in so many points.
+/// The caption at the left of a widget, `width_points` wide.
 pub fn label(ui: &mut Ui, text: &str, width_points: f32) {
     let (rect, _) = ui.allocate_exact_size(egui::vec2(width_points, theme::ROW), egui::Sense::hover());
     let font = egui::TextStyle::Body.resolve(ui.style());
@@ -22,9 +22,10 @@ pub fn label(ui: &mut Ui, text: &str, width_points: f32) {
         .text(at, egui::Align2::LEFT_CENTER, text, font, theme::text_weak());
 }
 
-/// A field of a number as `shown`, whose typed number counts when it is done: by Enter or by going elsewhere. A number that the
-/// scene gives back as another (a heading, a place along turned axes) would replace what is being typed, and each digit would be a
-/// step to undo. A text that is left as it was shown means the exact number behind it.
+/// A field for a number, displayed as `shown`. A typed number takes effect at the end: with Enter or when the focus
+/// leaves. Otherwise a number that the scene normalizes (a heading, a place along turned axes) would replace the text
+/// while it is typed, and each digit would be an undo step. A text that is left unchanged stands for the exact number
+/// behind it.
 pub fn typed<'a>(value: &'a mut f64, shown: impl Fn(f64) -> String + Copy + 'a) -> DragValue<'a> {
     let exact = *value;
     DragValue::new(value)
@@ -50,7 +51,7 @@ pub fn short(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Three numbers in a row; the response of all of them.
+/// Three numbers in a row; returns the response of all of them.
 pub fn numbers(
     ui: &mut Ui,
     title: &str,
@@ -78,12 +79,12 @@ pub fn numbers(
     .inner
 }
 
-/// Dragging previews, letting go commits, typing applies.
+/// Turns the response of a field into commands: dragging previews the edit, releasing commits it, typing applies it.
 pub fn field(response: &egui::Response, label: &'static str, edit: Edit, commands: &mut Vec<Command>) {
     fields(response, label, vec![edit], commands);
 }
 
-/// The same for several edits.
+/// Turns the response of a field into commands for several edits; see [`field`].
 pub fn fields(response: &egui::Response, label: &'static str, edits: Vec<Edit>, commands: &mut Vec<Command>) {
     if response.dragged() {
         if response.changed() {

@@ -1,4 +1,4 @@
-//! Marks a finding of the checks in the large views: its voxels, its box or its place, while it is pointed at or chosen in
+//! Marks a finding of the checks in the large views: its voxels, its box or its place, while it is hovered or chosen in
 //! the list.
 
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind};
@@ -10,21 +10,21 @@ use editor::checks::Finding;
 use scene::{BoxId, Extent, Frame, Scene, SceneBox};
 use viewport::BrushCells;
 
-/// Colour of the marks in both views; no class and no layer has it.
+/// Colour of the marks in both views; no class and no layer has this colour.
 const COLOR: [u8; 3] = [255, 70, 255];
-/// Colour of what a repair leaves.
+/// Colour of the boxes as a repair leaves them.
 const REPAIRED: Color32 = Color32::from_rgb(90, 230, 120);
-/// A mark smaller than this would be overlooked, points.
+/// Smallest size of a mark, points. A smaller one would be overlooked.
 const LEAST: f32 = 9.0;
 
 /// The marks of one finding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FindingMarks {
-    /// Voxels.
+    /// Marked voxels.
     pub cells: Vec<[usize; 3]>,
-    /// A box.
+    /// Marked box.
     pub box_id: Option<BoxId>,
-    /// The middle of it, ego frame, m.
+    /// Centre of the finding, ego frame, m.
     pub where_m: DVec3,
     /// Boxes as the first repair leaves them.
     pub becomes: Vec<SceneBox>,
@@ -50,7 +50,7 @@ fn repaired(finding: &Finding, scene: &Scene) -> Vec<SceneBox> {
 }
 
 impl FindingMarks {
-    /// By a finding of a scene.
+    /// The marks of a finding in a scene.
     pub fn by(finding: &Finding, scene: &Scene) -> Self {
         Self {
             becomes: repaired(finding, scene),
@@ -60,7 +60,7 @@ impl FindingMarks {
         }
     }
 
-    /// Its voxels, for the 3D view.
+    /// The marked voxels, for the 3D view.
     pub(super) fn brush(&self) -> BrushCells<'_> {
         BrushCells {
             cells: &self.cells,
@@ -68,7 +68,8 @@ impl FindingMarks {
         }
     }
 
-    /// Draws it on the bird's-eye view: columns filled, and a frame around all of it, never too small to be seen.
+    /// Draws the marks on the bird's-eye view: filled columns, and a frame around all of them that is never too small
+    /// to be seen.
     pub(super) fn draw(&self, painter: &Painter, map: &ScreenMap, frame: &Frame) {
         let color = Color32::from_rgb(COLOR[0], COLOR[1], COLOR[2]);
         let mut around = Rect::NOTHING;
@@ -109,7 +110,7 @@ impl FindingMarks {
         }
         let grown = egui::Vec2::splat(LEAST).max(around.size() / 2.0 + egui::Vec2::splat(5.0));
         let ring = Rect::from_center_size(around.center(), 2.0 * grown);
-        // Dark below, or it would vanish on bright layers.
+        // A dark line below, or the frame would vanish on bright layers.
         painter.rect_stroke(
             ring,
             3.0,

@@ -1,4 +1,4 @@
-//! The quality checks with what cameras and LiDAR return of every box.
+//! The quality checks, with the camera pixels and LiDAR returns of every box.
 
 use std::collections::BTreeMap;
 
@@ -11,13 +11,14 @@ use scene::{BoxId, LidarPoint, Pose, Returns, Scene};
 use sensors::rolling;
 use sensors::splat::PREVIEW_SIZE;
 
-/// What cameras and LiDAR return of every box of the current frame: pixels by exact rays to voxels and shapes, at the size of
-/// the camera strip's previews; returns of the exact sweep on the physical ground, as files have it, that lie in the box.
-/// Where the scene's sensors are does not matter.
+/// Counts the camera pixels and LiDAR returns of every box of the current frame. Pixels come from exact rays to voxels
+/// and shapes, at the size of the camera strip's previews. Returns are those of the exact sweep on the physical ground,
+/// as files have it, that lie in the box. The result does not depend on the frame in which the scene's sensors are
+/// given.
 pub fn seen(scene: &Scene) -> Seen {
     let scene = &*scene.with_rig_in_world();
     let frame = scene.frame();
-    // Numbers that are not finite are for another check, and for no ray.
+    // Another check reports numbers that are not finite; rays would fail on them.
     let mut sound = frame.boxes.clone();
     sound.retain(|_, b| b.problem().is_none());
     if scene.rig.problem().is_some() {
@@ -82,7 +83,7 @@ mod tests {
         };
         add(6.0, -0.5).apply(&mut scene).expect("sound");
         add(-30.0, 30.0).apply(&mut scene).expect("sound");
-        // A bunker around the second one.
+        // Walls enclose the second box.
         let [x, y] = Extent::WINDOW.column_at(-30.0, 30.0).expect("inside");
         let ring = |i: usize, j: usize| i.abs_diff(x).max(j.abs_diff(y));
         let mut cells = Vec::new();
@@ -118,7 +119,7 @@ mod tests {
             ["unseen_by_cameras", "no_lidar_returns"]
         );
         assert_eq!(of(901).count(), 0);
-        // A rig without sensors sees nothing and blames nobody; one that is not sound neither.
+        // With a rig without sensors, or with an invalid one, no box is reported as unseen.
         let mut blind = scene.clone();
         let rig = Arc::make_mut(&mut blind.rig);
         (rig.cameras, rig.lidars) = (Vec::new(), Vec::new());
@@ -150,7 +151,7 @@ mod tests {
         assert_eq!(once.with_rig_in_world().rig, once.rig);
         let seen = super::seen(&scene);
         assert_eq!(super::seen(&once), seen);
-        // The returns are those of the sweep that files get.
+        // The returns are those of the sweep in files.
         let returns = seen.lidar_returns.expect("a LiDAR");
         assert!(returns.values().sum::<u32>() > 100, "{returns:?}");
         let at = scene.frame().world_from_ego.translation_m;
@@ -163,7 +164,7 @@ mod tests {
         assert!(near.iter().any(|b| returns.contains_key(&b.id)), "{near:?}");
     }
 
-    /// Returns of things above the ground under their box, and those of them in no box of their class.
+    /// Returns of objects above the ground and under their box, and returns of objects in no box of their class.
     fn outside(scene: &Scene, sweep: &scene::LidarSweep) -> [usize; 2] {
         let boxes = &scene.frame().boxes;
         let of_things = sweep.points.iter().filter_map(|p| {

@@ -1,5 +1,5 @@
-//! Flight through a view: the pointer turns the head, keys move. Keys count by where they lie on the keyboard, not by what is
-//! written on them: W A S D are one hand's reach on a French keyboard too.
+//! Flight through a view: the pointer turns the head, keys move. Keys are read by their position on the keyboard, not
+//! by their label, so W A S D are under one hand on a French keyboard too.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ pub fn steers(physical: Key) -> bool {
     matches!(physical, Key::W | Key::A | Key::S | Key::D | Key::Q | Key::E)
 }
 
-/// Notes which keys went down or up; to be called in each frame.
+/// Notes the keys that went down or up; to be called in each frame.
 pub fn note(ctx: &Context) {
     let (changes, focused) = ctx.input(|i| {
         let change = |event: &Event| match event {
@@ -43,7 +43,7 @@ pub fn note(ctx: &Context) {
     ctx.data_mut(|data| {
         let down: &mut Down = data.get_temp_mut_or_default(id());
         if !focused {
-            // Nobody tells of a key that comes up elsewhere.
+            // No event comes when a key is released in another window.
             down.clear();
         }
         for (key, pressed) in changes {
@@ -56,14 +56,14 @@ pub fn note(ctx: &Context) {
     });
 }
 
-/// Where the keys steer: to the right, up and ahead, each -1 to 1.
+/// The direction that the keys steer: right, up and ahead, each -1 to 1.
 fn way(ctx: &Context) -> DVec3 {
     let down: Down = ctx.data(|data| data.get_temp(id())).unwrap_or_default();
     let axis = |plus, minus| f64::from(i8::from(down.contains(&plus)) - i8::from(down.contains(&minus)));
     DVec3::new(axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S))
 }
 
-/// Turns the head by so many points of the pointer, and moves by the keys: with Shift faster, with Alt slower.
+/// Turns the head by a movement of the pointer, points, and moves by the keys: faster with Shift, slower with Alt.
 pub fn fly(ui: &Ui, camera: &mut ViewCamera, dx: f64, dy: f64) {
     camera.turn_head(dx * TURN_RAD, dy * TURN_RAD);
     let (modifiers, dt) = ui.input(|i| (i.modifiers, f64::from(i.stable_dt.min(0.1))));
@@ -113,14 +113,14 @@ mod tests {
         assert_eq!(ahead, DVec3::Z);
         let left_too = frame(&ctx, vec![key(Key::Q, Some(Key::A), true)], true);
         assert_eq!(left_too, DVec3::new(-1.0, 0.0, 1.0));
-        // They stay down until they come up.
+        // Keys stay down until they are released.
         assert_eq!(frame(&ctx, Vec::new(), true), left_too);
         let left = frame(&ctx, vec![key(Key::Z, Some(Key::W), false)], true);
         assert_eq!(left, -DVec3::X);
-        // The letter W of that keyboard lies elsewhere.
+        // The key labelled W has another position on that keyboard.
         assert_eq!(frame(&ctx, vec![key(Key::W, Some(Key::Z), true)], true), left);
         assert_eq!(frame(&ctx, Vec::new(), false), DVec3::ZERO);
-        // Where the system does not tell, the letter counts.
+        // If the system does not report the physical key, the label counts.
         assert_eq!(frame(&ctx, vec![key(Key::E, None, true)], true), DVec3::Y);
     }
 }

@@ -1,6 +1,5 @@
-//! A graphics card for sensor views: camera maps by splats and camera pictures, drawn where a real card is at hand. The
-//! thread that senses has a device of its own, so the window never waits for it. What the card cannot draw, the
-//! processor draws.
+//! A graphics card for sensor views: camera maps by splats and camera pictures, drawn on a real card if there is one.
+//! The sensor thread has a device of its own, so the window never waits for it. The processor draws the rest.
 
 use scene::{Camera, CameraMaps};
 use sensors::appearance::{Appearance, CameraImage, Quality};
@@ -10,17 +9,17 @@ use sensors::rays::CameraRays;
 use sensors::splat::SplatOptions;
 use viewport::{AppearanceRenderer, SplatRenderer, headless_device};
 
-/// Set to 1, software drivers are used too, for tests; set to 0, no card is.
+/// Environment variable: 1 allows software drivers too, for tests; 0 allows no card.
 const SWITCH: &str = "SCENELOOM_GPU_VIEWS";
 
-/// Renderers on one device; a part that failed is not asked again.
+/// Renderers on one device. A renderer that failed is not used again.
 pub struct Graphics {
     adapter: String,
     splats: Option<SplatRenderer>,
     appearance: Option<AppearanceRenderer>,
 }
 
-/// Whether an adapter is to be used, from the switch and what it is.
+/// True if an adapter is to be used: by the switch, and by whether it is a software driver.
 fn wanted(switch: Option<&str>, software: bool) -> bool {
     match switch {
         Some("0") => false,
@@ -30,12 +29,12 @@ fn wanted(switch: Option<&str>, software: bool) -> bool {
 }
 
 impl Graphics {
-    /// The best adapter, unless it is the processor in disguise. `None` without one.
+    /// The best adapter that is not a software driver. `None` without one.
     pub fn find() -> Option<Self> {
         Self::find_with(std::env::var(SWITCH).ok().as_deref())
     }
 
-    /// The best adapter if the switch says so, software or not.
+    /// The best adapter, software or not, if the switch is 1.
     pub fn forced() -> Option<Self> {
         let switch = std::env::var(SWITCH).ok().filter(|s| s == "1")?;
         Self::find_with(Some(&switch))
@@ -45,7 +44,7 @@ impl Graphics {
         if !wanted(switch, false) {
             return None;
         }
-        // Any reason not to have a device leads to the processor, and `sceneloom doctor` tells it.
+        // Without a device, for any reason, the processor draws; `sceneloom doctor` reports the reason.
         let (info, device, queue) = headless_device().ok()?;
         let software = info.device_type == wgpu::DeviceType::Cpu;
         if !wanted(switch, software) {
@@ -72,7 +71,7 @@ impl Card for Graphics {
     }
 
     fn maps(&mut self, camera: &Camera, [width, height]: [u32; 2]) -> Option<CameraMaps> {
-        // The shaders know straight lines alone.
+        // The shaders support straight lines only.
         if !is_plain(camera) {
             return None;
         }
@@ -119,7 +118,7 @@ impl Card for Graphics {
     }
 }
 
-/// True for a pinhole whose picture is read at one instant.
+/// True for a pinhole camera with a global shutter.
 fn is_plain(camera: &Camera) -> bool {
     CameraRays::new(camera, camera.width, camera.height).is_plain()
 }
@@ -132,8 +131,8 @@ mod tests {
     use sensors::cameras::{self, CameraPicture, Detail, Ready, RenderContext, RenderOptions};
     use world::World;
 
-    /// What the window shows by way of a card, software here, is what it shows without: labels of splats to 0.1 %,
-    /// pictures to 2/255 on average.
+    /// Views by a card (software here) equal those of the processor: labels of splats to 0.1 %, pictures to 2/255 on
+    /// average.
     #[test]
     fn views_by_card_are_those_by_processor() {
         let mut card = Graphics::find_with(Some("1")).expect("an adapter, software or not");

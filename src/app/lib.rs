@@ -1,4 +1,4 @@
-//! The window with its panes. It knows every other room; only the command line knows it.
+//! The window with its panes. Only the command line and the assistants (`assist`) use this crate.
 
 mod arranging;
 mod baking;

@@ -1,4 +1,4 @@
-//! Beyond each edge of the map in the bird's-eye view: a button that makes the map larger there.
+//! Buttons beyond the edges of the map in the bird's-eye view; each makes the map larger on its side.
 
 use egui::accesskit::Role;
 use egui::{Align2, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
@@ -11,14 +11,14 @@ use language::{t, tf};
 use scene::Extent;
 use widgets::theme;
 
-/// A click makes it so much larger, m; with Shift, a long road.
+/// Growth of the map per click, m; the second with Shift, for a long road.
 const STEP_M: f64 = 40.0;
 const LONG_M: f64 = 200.0;
 /// Size of a button and its distance from the edge, points.
 const BUTTON_POINTS: f32 = 20.0;
 const AWAY_POINTS: f32 = 16.0;
 
-/// A side of the map: its name, and outward on the ground.
+/// The sides of the map: name, and outward direction on the ground.
 const SIDES: [(&str, DVec2); 4] = [
     ("ahead", DVec2::X),
     ("behind", DVec2::NEG_X),
@@ -26,7 +26,7 @@ const SIDES: [(&str, DVec2); 4] = [
     ("to the right", DVec2::NEG_Y),
 ];
 
-/// The edit that makes the map larger on the side that lies `outward`.
+/// The edit that makes the map larger on the side in the direction `outward`.
 pub(crate) fn extend(outward: DVec2, by_m: f64) -> Edit {
     let so_far = |way: DVec2| if outward == way { by_m } else { 0.0 };
     Edit::ExtendMap {
@@ -85,7 +85,8 @@ pub(crate) fn show(ui: &Ui, map: &ScreenMap, extent: Extent, commands: &mut Vec<
     }
 }
 
-/// Where the button of a side stands: beyond the middle of what is seen of the edge.
+/// Centre of the button of a side: beyond the middle of the visible part of the edge. `None` if there is no room for
+/// it.
 fn place(map: &ScreenMap, (low, high): (DVec2, DVec2), shown: Rect, outward: DVec2) -> Option<Pos2> {
     let edge = map.to_screen(if outward.min_element() < 0.0 { low } else { high });
     let middle = shown.center();
@@ -93,7 +94,7 @@ fn place(map: &ScreenMap, (low, high): (DVec2, DVec2), shown: Rect, outward: DVe
         true => pos2(middle.x, edge.y - outward.x as f32 * AWAY_POINTS),
         false => pos2(edge.x - outward.y as f32 * AWAY_POINTS, middle.y),
     };
-    // Where there is no room beyond an edge that is seen, it stands on the edge.
+    // If there is no room beyond a visible edge, the button stands on the edge.
     let room = map.rect.shrink(BUTTON_POINTS / 2.0 + 1.0);
     let inside = room.clamp(at);
     (shown.is_positive() && inside.distance(at) <= AWAY_POINTS).then_some(inside)

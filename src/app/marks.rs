@@ -1,4 +1,5 @@
-//! Paints what the tools draw over a view: the shapes are data of the editor, colours and widths are chosen here.
+//! Paints the marks of the tools over a view. The editor gives the shapes as data; their colours and widths are chosen
+//! here.
 
 use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, vec2};
 use glam::DVec2;
@@ -11,24 +12,24 @@ use super::screen_map::{ScreenMap, pos};
 use super::thing_outlines;
 use widgets::theme;
 
-/// Colours of x, y and z, as everywhere in the field.
+/// Colours of x, y and z, as usual: red, green, blue.
 const AXES: [Color32; 3] = [
     Color32::from_rgb(235, 92, 92),
     Color32::from_rgb(120, 200, 90),
     Color32::from_rgb(96, 150, 245),
 ];
-/// Corners of a circle in space.
+/// Corners of a circle in 3D space.
 const CORNERS: usize = 48;
 
-/// Where marks are painted.
+/// Target on which marks are painted.
 pub(super) struct Board<'a> {
-    /// Paints within the view.
+    /// Painter of the view.
     pub painter: &'a Painter,
-    /// Where points appear.
+    /// Projection of points to the screen.
     pub view: &'a dyn View,
-    /// The map, in the view from above.
+    /// The map, if the view is from above.
     pub map: Option<&'a ScreenMap>,
-    /// Columns of the scene that is seen.
+    /// Extent of the scene shown.
     pub extent: Extent,
 }
 
@@ -56,7 +57,7 @@ impl Board<'_> {
         }
     }
 
-    /// Paints all of them, in order. Voxels, and in space boxes, belong to the picture itself.
+    /// Paints all marks, in order. Voxels, and boxes in 3D, are part of the picture itself.
     pub fn paint(&self, ui: &Ui, marks: &[Mark]) {
         for mark in marks {
             self.mark(ui, mark);
@@ -161,7 +162,7 @@ impl Board<'_> {
         }
     }
 
-    /// A point of the ground where it appears.
+    /// The screen position of a point on the ground.
     fn on_ground(&self, p_m: DVec2) -> Option<Pos2> {
         self.view.project(p_m.extend(0.1)).map(pos)
     }
@@ -183,7 +184,7 @@ impl Board<'_> {
         }
     }
 
-    /// The brush where it would paint, or a disc.
+    /// A disc on the ground: the brush, or an area.
     fn disc(&self, middle_m: DVec2, radius_m: f64, role: Role) {
         let (color, fill) = match role {
             Role::Paint(layer) => (theme::ON_CANVAS, theme::rgba(layer.color(), 0.35)),
@@ -231,7 +232,7 @@ fn arrow(painter: &Painter, [from, to]: [Pos2; 2], color: Color32, hot: bool, sq
     }
 }
 
-/// The cells to inpaint.
+/// Paints the latent cells that are marked to be inpainted.
 pub(super) fn region(painter: &Painter, map: &ScreenMap, cells: impl Iterator<Item = [i32; 2]>) {
     const CELL_M: f64 = 1.6;
     let window_m = Extent::WINDOW.min_m();
@@ -245,7 +246,7 @@ pub(super) fn region(painter: &Painter, map: &ScreenMap, cells: impl Iterator<It
     }
 }
 
-/// A rectangle that chooses.
+/// A selection rectangle.
 fn marquee(painter: &Painter, rect: Rect) {
     painter.rect_filled(rect, 0.0, theme::accent().gamma_multiply(0.12));
     painter.rect_stroke(rect, 0.0, Stroke::new(1.2, theme::accent()), StrokeKind::Middle);
@@ -271,7 +272,7 @@ fn label(painter: &Painter, middle: Pos2, text: &str) {
     painter.galley(rect.min + vec2(3.0, 3.0), galley, theme::ON_CANVAS);
 }
 
-/// Sorted cells of a map as few rectangles, corner to corner, ego frame, m.
+/// Merges sorted cells of a map into few rectangles, each from corner to corner, ego frame, m.
 fn runs(extent: Extent, cells: &[[usize; 2]]) -> Vec<[DVec2; 2]> {
     let corner = |x: usize, y: usize| {
         DVec2::new(

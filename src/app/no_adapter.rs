@@ -1,4 +1,4 @@
-//! What the 3D pane says where nothing can draw its picture.
+//! The text of the 3D pane where no adapter can draw its picture.
 
 use egui::accesskit::Role;
 use egui::{Align2, Rect, Sense, Ui, WidgetInfo};
@@ -6,7 +6,7 @@ use egui::{Align2, Rect, Sense, Ui, WidgetInfo};
 use language::t;
 use widgets::theme;
 
-/// In place of a picture.
+/// Shows the text in place of a picture.
 pub(crate) fn show(ui: &Ui, rect: Rect) {
     let hint_text =
         "Install a Vulkan driver (a software one such as lavapipe will do); editing works without.";

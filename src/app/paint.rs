@@ -1,4 +1,4 @@
-//! Draws egui on the processor, without a window or a graphics card: for pictures of what a pane shows.
+//! Draws egui on the processor, without a window or a graphics card, for pictures of a pane.
 
 use egui::epaint::{ImageData, Mesh, Primitive};
 use egui::{Color32, Context, Pos2, RawInput, Rect, TextureId, Ui, pos2};
@@ -12,7 +12,7 @@ struct Texture {
     texels: Vec<Color32>,
 }
 
-/// What `show` draws on `points` (width, height) at so many pixels per point.
+/// The picture that `show` draws on `points` (width, height), with `pixels_per_point`.
 pub fn picture(
     ctx: &Context,
     points: [f32; 2],
@@ -26,7 +26,7 @@ pub fn picture(
     ctx.set_pixels_per_point(pixels_per_point);
     let mut textures: HashMap<TextureId, Texture> = HashMap::new();
     let mut last = None;
-    // The first passes measure what the last one lays out.
+    // The first passes measure sizes for the layout of the last one.
     for _ in 0..4 {
         let output = ctx.run_ui(input(), &mut show);
         let deltas = output.textures_delta.set.iter();
@@ -75,7 +75,7 @@ pub fn picture(
     Picture { width, height, rgba }
 }
 
-/// Triangles with colours and texture coordinates at their corners, blended over what is there (both premultiplied).
+/// Draws triangles with colours and texture coordinates at their corners, blended over `out` (both premultiplied).
 fn draw(
     mesh: &Mesh,
     texture: &Texture,
@@ -125,7 +125,7 @@ fn cross(a: Pos2, b: Pos2, p: Pos2) -> f32 {
     (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)
 }
 
-/// Between the four nearest texels.
+/// The bilinear sample of a texture: between the four nearest texels.
 fn sample(texture: &Texture, [u, v]: [f32; 2]) -> [f32; 4] {
     let [width, height] = texture.size;
     if width == 0 || height == 0 {

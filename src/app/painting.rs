@@ -1,4 +1,4 @@
-//! How the user wants learned pictures to be painted: with which weights, and with numbers of their own or the usual ones.
+//! Settings for painting learned pictures: the weights, and numbers set by the user or the defaults.
 
 use std::path::PathBuf;
 
@@ -6,44 +6,45 @@ use serde::{Deserialize, Serialize};
 
 use sensors::painter::{PaintError, PaintModel, PaintOptions, PaintWith, SchedulerKind};
 
-/// A wish; what is none is as usual with the weights.
+/// The user's settings. A value of `None` stands for the default of the weights.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PaintWish {
-    /// Folder of the weights: the program's own kind, or public ones with a `model_index.json`; those that ship if none.
+    /// Folder of the weights: the program's own format, or public weights with a `model_index.json`; the bundled
+    /// weights if `None`.
     pub weights: Option<PathBuf>,
     /// Steps from noise to a picture.
     pub steps: Option<usize>,
-    /// How strictly the pictures obey what they are told.
+    /// Guidance: how strictly the pictures follow the condition.
     pub guidance: Option<f64>,
-    /// Public weights alone: how much of the rendered picture is painted anew.
+    /// Public weights only: the share of the rendered picture that is painted anew.
     pub strength: Option<f64>,
-    /// Public weights alone: width of a picture, px.
+    /// Public weights only: width of a picture, px.
     pub width_px: Option<usize>,
-    /// Public weights alone: what the pictures show, in words.
+    /// Public weights only: prompt.
     pub prompt: String,
-    /// Public weights alone: what they do not show, in words.
+    /// Public weights only: negative prompt.
     pub negative: String,
-    /// Public weights alone: how a step is made of what the network says; as their folder has it if none.
+    /// Public weights only: the scheduler; the one that their folder names if `None`.
     pub scheduler: Option<SchedulerKind>,
 }
 
 impl PaintWish {
-    /// Steps that can be chosen.
+    /// Range of the number of steps.
     pub const STEPS: std::ops::RangeInclusive<usize> = 1..=50;
-    /// Guidance that can be chosen.
+    /// Range of the guidance.
     pub const GUIDANCE: std::ops::RangeInclusive<f64> = 1.0..=15.0;
-    /// Shares of the rendered picture that can be painted anew.
+    /// Range of the strength.
     pub const STRENGTH: std::ops::RangeInclusive<f64> = 0.1..=1.0;
-    /// Widths that can be chosen, px.
+    /// Range of the width, px.
     pub const WIDTH_PX: std::ops::RangeInclusive<usize> = 64..=1024;
 
-    /// True if its weights are public ones.
+    /// True if the weights are public ones.
     pub fn is_public(&self) -> bool {
         self.weights.as_deref().is_some_and(PaintModel::is_public)
     }
 
-    /// What is usual with its weights.
+    /// The default options of the weights.
     pub fn usual(&self) -> PaintOptions {
         match self.is_public() {
             true => PaintOptions::public(),
@@ -51,7 +52,8 @@ impl PaintWish {
         }
     }
 
-    /// Its numbers, within what networks take, whatever a file said; for the rest what is usual.
+    /// The options: the numbers set by the user, clamped to what the networks take whatever a file says, else the
+    /// defaults.
     pub fn options(&self) -> PaintOptions {
         let usual = self.usual();
         let within = |value: Option<f64>, range: std::ops::RangeInclusive<f64>, usual: f64| match value {
@@ -73,12 +75,12 @@ impl PaintWish {
         }
     }
 
-    /// Opens its weights. Errors in one line if they are missing, damaged or foreign.
+    /// Opens the weights and takes the options. Errors in one line if the weights are missing, damaged or foreign.
     pub fn open(&self) -> Result<PaintWith, PaintError> {
         Ok(self.with(self.model()?))
     }
 
-    /// Its weights alone. Errors as [`PaintWish::open`].
+    /// Opens the weights only. Errors as [`PaintWish::open`].
     pub fn model(&self) -> Result<PaintModel, PaintError> {
         let model = match &self.weights {
             Some(folder) => PaintModel::open(folder)?,
@@ -90,7 +92,7 @@ impl PaintWish {
         Ok(model)
     }
 
-    /// Its numbers and words, with weights that are open already.
+    /// The options together with weights that are open already.
     pub fn with(&self, model: PaintModel) -> PaintWith {
         PaintWith {
             model,

@@ -1,4 +1,5 @@
-//! What small networks see of the scene in its cameras, its LiDAR and both, and searches for what they miss: on a thread of its own.
+//! Predictions of small networks from the scene's cameras, its LiDAR and both, and searches for changes after which
+//! they miss a box, on a thread of its own.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -12,7 +13,7 @@ use sensors::perceived::{self, Report};
 use sensors::perceived_sweep::{self, SweepReport};
 use sensors::perceived_voxels::{self, Hears, VoxelReport};
 
-/// What is asked for.
+/// A request to the thread.
 enum Request {
     Look(Arc<Scene>, Sensor),
     Search(Arc<Scene>, BoxId, Vary, Sensor),
@@ -28,21 +29,21 @@ enum News {
     GivenUp,
 }
 
-/// A search that is over.
+/// A finished search.
 #[derive(Debug)]
 pub struct Found {
     /// The state that was varied.
     pub of: SceneRev,
-    /// The box that was to be missed.
+    /// The box that the network should miss.
     pub id: BoxId,
-    /// What came of it.
+    /// Result of the search.
     pub search: Search,
-    /// The user kept it as a version.
+    /// True if the user kept it as a version.
     pub kept: bool,
 }
 
 impl Found {
-    /// Whose network was asked.
+    /// The sensor whose network was used.
     pub fn by(&self) -> Sensor {
         self.search.tried.first().map_or(Sensor::Cameras, |t| t.sight.by)
     }
@@ -107,26 +108,26 @@ impl Product for Perceiver {
     }
 }
 
-/// The newest of what the networks see, and the thread that asks them.
+/// The newest predictions, and the thread that makes them.
 pub struct Perceiving {
     worker: Worker<Request, News>,
     asked: Option<(SceneRev, Sensor)>,
-    /// News of this job and those before it is of a scene that was forgotten.
+    /// Last job for a forgotten scene: news of it and of earlier jobs is dropped.
     forgotten: u64,
-    /// The newest job of each kind; news of others is old.
+    /// The newest job of each kind; news of others is outdated.
     look: Option<JobId>,
     search: Option<JobId>,
-    /// What is seen in the cameras, and of which state.
+    /// Prediction from the cameras, with its state.
     pub seen: Option<(SceneRev, Report)>,
-    /// What is seen in the LiDAR's sweep, and of which state.
+    /// Prediction from the LiDAR sweep, with its state.
     pub swept: Option<(SceneRev, Arc<SweepReport>)>,
-    /// Which voxels are told from both, and of which state.
+    /// Voxels predicted from both sensors, with their state.
     pub told: Option<(SceneRev, Arc<VoxelReport>)>,
-    /// A search that runs: what was tried last, its number and how many there are at most.
+    /// A running search: the last change tried, its number, and the number of tries at most.
     pub searching: Option<(Change, [usize; 2])>,
-    /// The last search, and before it the last one that found a change.
+    /// The last search; after it, the last search before that found a change.
     pub found: Vec<Found>,
-    /// Why there is no news.
+    /// The reason why there is no prediction.
     pub problem: Option<String>,
 }
 
@@ -148,7 +149,7 @@ impl Perceiving {
         })
     }
 
-    /// Takes in what has arrived, and has a scene looked at by a sensor that did not yet, unless a search runs.
+    /// Takes in the news. Requests a prediction for a scene and a sensor if there is none yet, unless a search runs.
     pub fn update(&mut self, scene: &Arc<Scene>, by: Sensor) {
         let news: Vec<_> = self.worker.updates().try_iter().collect();
         let forgotten = self.forgotten;
@@ -160,7 +161,7 @@ impl Perceiving {
                     (self.swept, self.problem) = (Some((rev, Arc::new(report))), None)
                 }
                 News::Told(rev, report) => (self.told, self.problem) = (Some((rev, Arc::new(report))), None),
-                // What was forgotten may still be searched.
+                // A search for a forgotten scene may still send news.
                 News::Tried(..) | News::Searched(_) if !of_search => {}
                 News::Tried(tried, at) => self.searching = Some((tried.change, at)),
                 News::Searched(found) => {
@@ -174,7 +175,7 @@ impl Perceiving {
                     self.end_search();
                     self.problem = Some(problem);
                 }
-                // A search came before it: it is asked for again afterwards.
+                // A search replaced the prediction; it is requested again afterwards.
                 News::GivenUp if of_look => self.asked = None,
                 News::GivenUp if of_search => self.end_search(),
                 News::Failed(_) | News::GivenUp => {}
@@ -191,7 +192,7 @@ impl Perceiving {
         (self.searching, self.search) = (None, None);
     }
 
-    /// Forgets what was seen and found: another scene was opened.
+    /// Forgets predictions and searches, because another scene was opened.
     pub fn forget(&mut self) {
         (self.seen, self.swept, self.told) = (None, None, None);
         self.found.clear();
@@ -202,18 +203,18 @@ impl Perceiving {
         self.forgotten = self.worker.newest().0;
     }
 
-    /// Searches for a change of a scene after which a box is missed. What was found before stays until this is over.
+    /// Starts a search for a change of a scene after which a box is missed. Earlier results stay until it ends.
     pub fn search(&mut self, scene: &Arc<Scene>, id: BoxId, vary: Vary, by: Sensor) {
         self.searching = Some((Change::None, [0, 1]));
         self.search = Some(self.worker.submit(Request::Search(scene.clone(), id, vary, by)));
     }
 
-    /// Ends a search after what it tries now.
+    /// Ends a search after its current try.
     pub fn stop(&mut self) {
         self.worker.cancel();
     }
 
-    /// True if what a sensor sees is of another state.
+    /// True if the prediction from a sensor is of another state.
     pub fn is_stale(&self, rev: SceneRev, by: Sensor) -> bool {
         match by {
             Sensor::Cameras => self.seen.as_ref().is_none_or(|(of, _)| *of != rev),
@@ -269,7 +270,7 @@ mod tests {
         let found = perceiving.found.pop().expect("a search");
         assert_eq!((found.id, found.of), (id, scene.rev));
         assert!(perceiving.searching.is_none() && !found.search.tried.is_empty());
-        // A scene that is forgotten leaves nothing of its search, and is looked at anew.
+        // Forgetting a scene also drops its search, and the scene gets a new prediction.
         perceiving.search(&scene, id, Vary::Distance, Sensor::Cameras);
         wait(&mut perceiving, by, |p| {
             p.searching.is_some_and(|(_, [tried, _])| tried > 0)
@@ -278,7 +279,7 @@ mod tests {
         assert!(perceiving.seen.is_none() && perceiving.searching.is_none());
         wait(&mut perceiving, by, |p| !p.is_stale(scene.rev, Sensor::Cameras));
         assert!(perceiving.found.is_empty() && perceiving.searching.is_none());
-        // A search comes before a look that waits for another; afterwards that is made, and both are there.
+        // A search replaces a waiting prediction; that is made afterwards, and both results are there.
         let mut other = (*scene).clone();
         other.rev = SceneRev::fresh();
         let other = Arc::new(other);
@@ -290,7 +291,7 @@ mod tests {
         wait(&mut perceiving, (&other, Sensor::Both), |p| {
             !p.is_stale(other.rev, Sensor::Both)
         });
-        // A box that is not there is told, and the thread goes on.
+        // A box that does not exist is reported, and the thread goes on.
         perceiving.search(&scene, BoxId(9999), Vary::Fog, Sensor::Cameras);
         wait(&mut perceiving, by, |p| p.problem.is_some());
         assert_eq!(perceiving.problem.as_deref(), Some("there is no box 9999"));

@@ -1,4 +1,4 @@
-//! Pictures made without a window: top views, the 3D view off screen, sheets of several pictures.
+//! Pictures made without a window: top views, the 3D view off screen, and sheets of several pictures.
 
 use anyhow::bail;
 
@@ -11,10 +11,10 @@ use viewport::{
     headless_device, lidar_colors,
 };
 
-/// What is between the pictures of a sheet, sRGB.
+/// Colour between the pictures of a sheet, sRGB.
 pub const SHEET_COLOR: [u8; 3] = [24, 26, 31];
 
-/// RGBA8, row-major, top row first.
+/// A picture: RGBA8, row-major, top row first.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// Pixels per row.
@@ -26,7 +26,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// One colour.
+    /// A picture of one colour.
     pub fn filled(width: usize, height: usize, color: [u8; 3]) -> Self {
         let pixel = [color[0], color[1], color[2], 255];
         Self {
@@ -43,7 +43,7 @@ impl Picture {
         }
     }
 
-    /// Fills a column of a grid that is seen from above, ahead up, `scale` pixels a column.
+    /// Fills a column of a grid seen from above, ahead is up, with `scale` pixels per column.
     pub fn fill_column(&mut self, extent: Extent, [x, y]: [usize; 2], scale: usize, color: [u8; 3]) {
         let (left, top) = ((extent.ny() - 1 - y) * scale, (extent.nx() - 1 - x) * scale);
         for i in 0..scale * scale {
@@ -51,7 +51,7 @@ impl Picture {
         }
     }
 
-    /// Copies another picture in at (x, y); what does not fit is cut.
+    /// Copies another picture in at (x, y). Parts that do not fit are cut off.
     pub fn put(&mut self, other: &Picture, x: usize, y: usize) {
         for row in 0..other.height.min(self.height.saturating_sub(y)) {
             let n = other.width.min(self.width.saturating_sub(x)) * 4;
@@ -61,7 +61,7 @@ impl Picture {
         }
     }
 
-    /// Pictures side by side in rows, with a margin around each.
+    /// Arranges pictures side by side in rows, with a margin around each.
     pub fn sheet(rows: &[Vec<Picture>], margin: usize) -> Self {
         let width = |row: &Vec<Picture>| row.iter().map(|p| p.width + margin).sum::<usize>() + margin;
         let height = |row: &Vec<Picture>| row.iter().map(|p| p.height).max().unwrap_or(0) + margin;
@@ -80,7 +80,7 @@ impl Picture {
     }
 }
 
-/// Fills grid cells seen from above: ego x is up, ego y is left.
+/// Draws grid cells seen from above: ego x is up, ego y is left.
 fn top_view(extent: Extent, scale: usize, cell: impl Fn(usize, usize) -> [u8; 3]) -> Picture {
     let mut out = Picture::filled(extent.ny() * scale, extent.nx() * scale, [0; 3]);
     for [x, y] in extent.all_columns() {
@@ -134,14 +134,14 @@ pub fn occupancy_top(grid: &VoxelGrid, scale: usize) -> Picture {
     })
 }
 
-/// Nine planes of a multi-plane image, near to far, at a third of its size each.
+/// Sheet of nine planes of a multi-plane image, near to far, each at a third of its size.
 pub fn plane_sheet(image: &MultiPlaneImage) -> Picture {
     const SIDE: usize = 3;
     let (w, h) = (image.width / SIDE, image.height / SIDE);
     let (width, height) = (w * SIDE, h * SIDE);
     let mut rgba = vec![255; width * height * 4];
     for tile in 0..SIDE * SIDE {
-        // Evenly in log depth from 5 m: near planes hold little but road.
+        // Evenly spaced in log depth from 5 m: near planes hold little but road.
         let depth_m = 5.0 * (image.planes.far_m / 5.0).powf(tile as f64 / (SIDE * SIDE) as f64);
         let step_m = image.planes.depth_m(1) - image.planes.depth_m(0);
         let plane = ((depth_m - image.planes.near_m) / step_m).max(0.0) as u16;
@@ -164,7 +164,7 @@ pub fn lidar_top(extent: Extent, sweep: &LidarSweep, scale: usize) -> Picture {
         let u = extent.to_voxel_units(glam::DVec3::new(x, y, 0.0)) * scale as f64;
         let (px, py) = (out.width as f64 - u.y, out.height as f64 - u.x);
         if px >= 0.0 && py >= 0.0 {
-            // Two pixels wide and never dark, so that a sparse ring shows.
+            // Two pixels wide and never dark, so that a sparse ring is visible.
             let bright = color::ramp(0.35 + 0.65 * (1.0 - (p.range_m / 45.0).min(1.0)));
             for i in 0..4 {
                 out.set(px as usize + i % 2, py as usize + i / 2, bright);
@@ -174,24 +174,24 @@ pub fn lidar_top(extent: Extent, sweep: &LidarSweep, scale: usize) -> Picture {
     out
 }
 
-/// Memory that a 3D picture takes, bytes per pixel: the target with four samples of colour and depth, the sums of
+/// Memory of a 3D picture, bytes per pixel: the target with four samples of colour and depth, the sums of
 /// supersampling, the picture and its PNG.
 pub const SHOT_BYTES_PER_PIXEL: u64 = 80;
 
-/// How a 3D picture is taken.
+/// Options of a 3D picture.
 #[derive(Clone, Debug)]
 pub struct ShotOptions {
-    /// Where from.
+    /// The viewpoint.
     pub camera: ViewCamera,
     /// Size in pixels.
     pub size: [u32; 2],
     /// Supersampling per axis.
     pub supersample: u32,
-    /// No background.
+    /// True: without background.
     pub transparent: bool,
-    /// With LiDAR returns.
+    /// True: with LiDAR returns.
     pub lidar: bool,
-    /// With boxes.
+    /// True: with boxes.
     pub boxes: bool,
 }
 
@@ -218,7 +218,7 @@ pub struct View3d {
 }
 
 impl View3d {
-    /// On any adapter, a software one included; one line if there is none.
+    /// Opens any adapter, a software one included. Errors in one line if there is none.
     pub fn new() -> anyhow::Result<Self> {
         let (info, device, queue) = headless_device()?;
         let viewport = Viewport::new(&device, &queue);
@@ -230,7 +230,7 @@ impl View3d {
         })
     }
 
-    /// A picture of the scene. Errors if it is larger than [`bounds`] allow.
+    /// Draws a picture of the scene. Errors if it is larger than [`bounds`] allow.
     pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<Picture> {
         bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
         let scene = &*scene.with_rig_in_world();

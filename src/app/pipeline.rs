@@ -1,14 +1,14 @@
-//! The generation that the window runs: the bundled networks, warmed up while nobody waits.
+//! The generation pipeline of the window: the bundled networks, warmed up in idle time.
 
 use job::pipeline::{OccPipeline, is_idle};
 use job::{GenError, GenReport, GenResult, Job, JobCtx, Pipeline};
 
-/// [`OccPipeline`], where a job that edits nothing reads the networks and inverts the frame's source,
-/// so that the first edit finds both ready.
+/// [`OccPipeline`] with a warm-up: a job that edits nothing reads the networks and inverts the frame's source, so that
+/// the first edit finds both ready.
 pub struct WarmPipeline(OccPipeline);
 
 impl WarmPipeline {
-    /// With the weights that ship with the program.
+    /// The pipeline with the bundled weights.
     pub fn bundled() -> Result<Self, GenError> {
         OccPipeline::bundled().map(Self)
     }

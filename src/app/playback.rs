@@ -1,38 +1,39 @@
-//! Playing a clip: which moment is shown when, and what edits mean for other moments. It knows no clock: it is told the time.
+//! Playback of a clip: the moment to show at each time, and the moments for which edits count. It has no clock; the
+//! caller passes the time.
 
 use scene::{Motion, Moving, Scope};
 
-/// A motion that was copied, and where it begins.
+/// A copied motion and its start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Copied {
     /// The motion.
     pub motion: Motion,
-    /// Where what has it is at its beginning.
+    /// State of the copied object at the beginning of the motion.
     pub start: Moving,
 }
 
-/// How a clip is played.
+/// Settings and state of the playback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Playback {
-    /// It plays.
+    /// True while it plays.
     pub playing: bool,
-    /// Times as fast as real time.
+    /// Speed relative to real time.
     pub speed: f64,
-    /// It starts over at its end.
+    /// True if it starts over at its end.
     pub looping: bool,
-    /// The part that is played, s; all of it if none.
+    /// The part that is played, s; all of it if `None`.
     pub span_s: Option<[f64; 2]>,
-    /// For which moments a moved object is elsewhere.
+    /// Moments for which an edit of a moving object counts.
     pub scope: Scope,
-    /// Paths of moving objects are shown in both views.
+    /// True if the paths of moving objects are shown in both views.
     pub paths: bool,
-    /// Where the chosen object is a second earlier and later is shown too.
+    /// True if the chosen object is also shown a second earlier and a second later.
     pub onion: bool,
-    /// The 3D view goes along with the chosen object, or with the ego vehicle.
+    /// True if the 3D view moves along with the chosen object, or with the ego vehicle.
     pub follow: bool,
-    /// A motion that was copied.
+    /// The copied motion.
     pub copied: Option<Copied>,
-    /// The scene was a clip already when it was looked at last.
+    /// True if the scene was already a clip when it was last checked.
     pub known: bool,
     last_s: Option<f64>,
     sensed_s: Option<f64>,
@@ -57,16 +58,16 @@ impl Default for Playback {
     }
 }
 
-/// A pause between two ticks that is longer than this was no playing: the window was hidden, say. s.
+/// Longest time by which one tick advances the clip, s. Longer pauses, for example of a hidden window, are cut to it.
 const LONGEST_TICK_S: f64 = 0.5;
-/// While it plays, the sensors look once in so many seconds.
+/// Time between two updates of the sensors while it plays, s.
 const SENSORS_EVERY_S: f64 = 0.5;
 
 impl Playback {
     /// Speeds to choose from.
     pub const SPEEDS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 
-    /// First and last moment that are played of a clip of this length, s.
+    /// First and last moment that are played, in a clip of this length, s.
     pub fn span(&self, length_s: f64) -> [f64; 2] {
         match self.span_s {
             Some([from, to]) if from < to && from < length_s => [from.max(0.0), to.min(length_s)],
@@ -74,8 +75,8 @@ impl Playback {
         }
     }
 
-    /// True if the sensors should look now: always while it rests, and seldom enough to leave the views their time while it
-    /// plays.
+    /// True if the sensors should be updated now: always while paused, and seldom while playing, to leave time for the
+    /// views.
     pub fn sensors_are_due(&mut self, now_s: f64) -> bool {
         let waited_s = self.sensed_s.map_or(f64::INFINITY, |last_s| now_s - last_s);
         let due = !self.playing || waited_s.is_nan() || waited_s >= SENSORS_EVERY_S;
@@ -85,7 +86,7 @@ impl Playback {
         due
     }
 
-    /// The moment to show now, if it is another one than `shown_s`.
+    /// The moment to show now, s; `None` if it is still `shown_s`.
     pub fn tick(&mut self, shown_s: f64, length_s: f64, now_s: f64) -> Option<f64> {
         let last_s = self.last_s.replace(now_s);
         if !self.playing {
@@ -111,7 +112,7 @@ impl Playback {
         (next_s != shown_s).then_some(next_s)
     }
 
-    /// Starts or pauses; from its end it starts over.
+    /// Starts or pauses. Returns the moment to start from if `shown_s` is at the end or outside the played part.
     pub fn toggle(&mut self, shown_s: f64, length_s: f64) -> Option<f64> {
         self.playing = !self.playing && length_s > 0.0;
         self.last_s = None;
@@ -149,7 +150,7 @@ mod tests {
         p.speed = 2.0;
         assert!((p.tick(1.0, 8.0, 10.3).expect("plays") - 1.4).abs() < 1e-9);
         assert!((p.tick(7.9, 8.0, 10.4).expect("plays") - 0.1).abs() < 1e-9);
-        // A window that was hidden for a minute does not race through it.
+        // After a minute in a hidden window, the clip does not jump.
         assert!((p.tick(1.0, 8.0, 70.0).expect("plays") - 2.0).abs() < 1e-9);
         assert_eq!(p.tick(1.0, 8.0, 60.0), None, "a clock that goes back");
         assert!(p.tick(1.0, 8.0, f64::NAN).is_none_or(f64::is_finite));

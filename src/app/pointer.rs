@@ -1,5 +1,5 @@
-//! What the pointer did on a canvas since the last frame, event by event: where frames are slow, a
-//! press, a way and a release may all fall into one of them, and none may be lost.
+//! Pointer events on a canvas since the last frame, one by one. In a slow frame a press, a movement and a release may
+//! all come together, and none may be lost.
 
 use egui::{Event, Modifiers, PointerButton, Pos2, Response, Ui, Vec2};
 
@@ -9,19 +9,19 @@ use editor::tools::Act;
 use super::command::Command;
 use super::tools::ToolCommand;
 
-/// One event.
+/// One pointer event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// A button went down on the canvas.
     Press(PointerButton, Pos2, Modifiers),
-    /// The pointer is there now, on the canvas or off it.
+    /// The pointer moved to a place, on the canvas or off it.
     Move(Pos2),
     /// A button came up.
     Release(PointerButton, Pos2),
 }
 
-/// The events of this frame. Presses count if the canvas is what lies under the pointer, and nothing that stands on it, as
-/// the line of a wipe does.
+/// The events of this frame. Presses count only if the canvas itself is under the pointer, and no widget on it such as
+/// the wipe line.
 pub fn steps(ui: &Ui, response: &Response) -> Vec<Step> {
     let ours = response.hovered()
         || response.is_pointer_button_down_on()
@@ -49,7 +49,7 @@ pub fn steps(ui: &Ui, response: &Response) -> Vec<Step> {
     ui.input(|i| i.events.iter().filter_map(step).collect())
 }
 
-/// A button that is held to move the view.
+/// The button that is held to move the view.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Held {
     button: Option<PointerButton>,
@@ -57,7 +57,7 @@ pub struct Held {
 }
 
 impl Held {
-    /// How far the pointer went while a button was held that `wants` lets move the view, and that button.
+    /// The pointer's movement while a button is held to move the view, with that button; `wants` says which buttons do.
     pub fn travel(
         &mut self,
         steps: &[Step],
@@ -82,7 +82,7 @@ impl Held {
     }
 }
 
-/// Asks for a preview; one that was asked for before in this frame is of no use any more.
+/// Pushes a preview. It replaces a preview pushed just before in this frame.
 pub fn preview(commands: &mut Vec<Command>, edits: Vec<Edit>) {
     match commands.last_mut() {
         Some(Command::Preview(old)) => *old = edits,
@@ -90,12 +90,12 @@ pub fn preview(commands: &mut Vec<Command>, edits: Vec<Edit>) {
     }
 }
 
-/// Asks for what a tool answered.
+/// Pushes the commands for a tool's acts.
 pub fn carry_out(acts: Vec<Act>, commands: &mut Vec<Command>) {
     for act in acts {
         match act {
             Act::Preview(edits) => preview(commands, edits),
-            // Of what is tried within one frame the last is shown.
+            // Of several tries in one frame, only the last is kept.
             Act::Try(edits) => {
                 if let Some(Command::Tools(ToolCommand::Act(Act::Try(_)))) = commands.last() {
                     commands.pop();
@@ -128,7 +128,7 @@ mod tests {
         let middle = |button, _| button == PointerButton::Middle;
         let expected = Some((PointerButton::Middle, egui::vec2(10.0, 2.0)));
         assert_eq!(Held::default().travel(&all, middle), expected);
-        // The same, an event per frame.
+        // The same events, one per frame.
         let mut held = Held::default();
         let parts = all.map(|step| held.travel(&[step], middle).map_or(Vec2::ZERO, |(_, d)| d));
         assert_eq!(

@@ -1,4 +1,4 @@
-//! From the ego frame to the screen of the bird's-eye view, and back.
+//! Transform from the ego frame to the screen of the bird's-eye view, and back.
 
 use egui::{Pos2, Rect, vec2};
 use glam::{DVec2, DVec3};
@@ -6,19 +6,19 @@ use glam::{DVec2, DVec3};
 use editor::pick::Ray;
 use editor::tools::{View, ViewKind};
 
-/// From the ego frame to the screen and back.
+/// Transform from the ego frame to the screen and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenMap {
     /// The pane, points.
     pub rect: Rect,
-    /// Point of the ego frame in the middle of the pane, m.
+    /// Point of the ego frame at the centre of the pane, m.
     pub center_m: DVec2,
     /// Points per metre.
     pub scale: f64,
 }
 
 impl ScreenMap {
-    /// Where a point of the ego frame appears.
+    /// The screen position of a point of the ego frame.
     pub fn to_screen(&self, p_m: DVec2) -> Pos2 {
         let d = (p_m - self.center_m) * self.scale;
         self.rect.center() + vec2(-d.y as f32, -d.x as f32)
@@ -36,17 +36,17 @@ impl ScreenMap {
     }
 }
 
-/// A point of the window for the tools.
+/// Converts a screen position to the type of the tools.
 pub(super) fn point(p: Pos2) -> DVec2 {
     DVec2::new(p.x.into(), p.y.into())
 }
 
-/// A point of the window from the tools.
+/// Converts a screen position from the type of the tools.
 pub(super) fn pos(p: DVec2) -> Pos2 {
     egui::pos2(p.x as f32, p.y as f32)
 }
 
-/// Rays from above begin this high, m.
+/// Height at which rays from above begin, m.
 const ABOVE_M: f64 = 1000.0;
 
 impl View for ScreenMap {

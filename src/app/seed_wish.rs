@@ -1,11 +1,11 @@
-//! The seed that the user wants.
+//! The seed that the user set for generation.
 
-/// The seed that generation is asked for.
+/// Setting of the seed for generation on request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SeedWish {
-    /// The seed; that of the scene if none.
+    /// The seed; the scene's seed if `None`.
     pub value: Option<u64>,
-    /// Another one each time that something is generated on request.
+    /// True if each request draws another seed.
     pub another: bool,
 }
 
@@ -13,7 +13,7 @@ impl SeedWish {
     /// Largest seed that is drawn.
     pub const MOST: u64 = 999_999;
 
-    /// The seed for this scene.
+    /// The seed to use for a scene.
     pub fn of(&self, scene_seed: u64) -> u64 {
         self.value.unwrap_or(scene_seed)
     }
@@ -22,7 +22,7 @@ impl SeedWish {
     pub fn roll(&mut self) {
         let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
         let nanos = since.map_or(1, |d| d.as_nanos() as u64);
-        // (clocks that tick slowly give the same twice)
+        // (mixed, since a slow clock gives similar values twice)
         let mixed = nanos.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29) % Self::MOST;
         self.value = match self.value == Some(mixed) {
             true => Some(mixed + 1),

@@ -1,11 +1,11 @@
-//! What the large views show of a scene: without what the user has hidden. Made once per state.
+//! The scene as the large views show it, without hidden objects. Made once per state.
 
 use std::sync::Arc;
 
 use editor::arranged;
 use scene::Scene;
 
-/// A scene and what is seen of it.
+/// A scene and its copy without hidden objects.
 #[derive(Debug, Default)]
 struct Kept {
     of: Option<(Arc<Scene>, Arc<Scene>)>,
@@ -24,7 +24,7 @@ impl Kept {
     }
 }
 
-/// What is seen of the scene on screen, and of the one without the drag in progress.
+/// Copies without hidden objects, of the scene on screen and of the scene without the drag in progress.
 #[derive(Debug, Default)]
 pub struct SeenScenes {
     shown: Kept,
@@ -32,7 +32,7 @@ pub struct SeenScenes {
 }
 
 impl SeenScenes {
-    /// Of both.
+    /// The two scenes without hidden objects.
     pub fn of(&mut self, shown: &Arc<Scene>, settled: &Arc<Scene>) -> SeenScene {
         let shown_seen = self.shown.seen(shown);
         let settled = match Arc::ptr_eq(shown, settled) {
@@ -46,7 +46,7 @@ impl SeenScenes {
     }
 }
 
-/// What the large views draw and what their tools work on.
+/// Scenes that the large views draw and their tools work on.
 #[derive(Clone, Debug)]
 pub struct SeenScene {
     /// The scene on screen, a drag in progress included.

@@ -1,5 +1,5 @@
-//! The thread that keeps LiDAR sweep and camera maps up to date with the scene shown. Newest scene
-//! wins; what is on screen stays until something newer is there.
+//! The thread that keeps LiDAR sweep and camera maps up to date with the scene shown. The newest scene wins; results on
+//! screen stay until newer ones come.
 
 mod painting;
 #[cfg(test)]
@@ -32,10 +32,10 @@ use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 pub use painting::PaintStage;
 use painting::Painting;
 
-/// Rays whose samples are shown at most: more would cover the map.
+/// Most rays whose samples are shown; more would cover the map.
 const SHOWN_RAYS: usize = 400;
 
-/// A scene to sense.
+/// A request to sense a scene.
 struct Request {
     scene: Arc<Scene>,
     wanted: Wanted,
@@ -46,14 +46,14 @@ struct Request {
 enum News {
     Lidar(SceneRev, LidarSweep, Option<Sampled>),
     Cameras(SceneRev, Wanted, Vec<CameraView>),
-    /// Cameras of another source.
+    /// Pictures of another source than the strip's.
     Other(SceneRev, SourceId, Vec<CameraView>),
-    /// All of a scene was sensed, or a newer one waits.
+    /// The scene is done, or a newer one waits.
     Ended,
     Failed(Panicked),
 }
 
-/// The newest of what was sensed, and the thread that senses.
+/// The newest results of the sensors, and the threads that make them.
 pub struct Sensing {
     worker: Worker<Request, News>,
     asked: Option<(SceneRev, Wanted, bool)>,
@@ -62,16 +62,16 @@ pub struct Sensing {
     cameras: Option<(SceneRev, Wanted, Arc<Vec<CameraView>>)>,
     others: Vec<(SceneRev, SourceId, Arc<Vec<CameraView>>)>,
     version: u64,
-    /// News of these jobs and those before them is of a scene that was forgotten: sensed, painted.
+    /// Last jobs for a forgotten scene, of sensing and of painting: news of them and of earlier jobs is dropped.
     forgotten: [u64; 2],
     problem: Option<String>,
     painting: Worker<painting::Request, painting::News>,
     paint: Arc<PaintWish>,
-    /// The learned pictures of all cameras, and of which state.
+    /// The learned pictures of all cameras, with their state.
     painted: Option<(SceneRev, Arc<Vec<CameraView>>)>,
     stage: Option<PaintStage>,
     stop: Arc<AtomicBool>,
-    /// The painting was stopped, or failed, and nothing has changed since.
+    /// True if the painting was stopped or failed, and no request has come since.
     stopped: bool,
 }
 
@@ -82,8 +82,8 @@ impl Drop for Sensing {
 }
 
 impl Sensing {
-    /// Starts the thread `sensing`, which takes up a scene after a `grace`: where the processor draws, an edit is shown
-    /// first. `wake` is called after each piece of news. Errors if the system gives no thread.
+    /// Starts the threads `sensing` and `painting`. Sensing begins after a `grace`, so that on a software rasteriser an
+    /// edit is shown first. `wake` is called after each piece of news. Errors if the system gives no thread.
     pub fn spawn(grace: Duration, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
         let senses = move || Senses {
             grace,
@@ -111,19 +111,20 @@ impl Sensing {
         })
     }
 
-    /// How learned pictures are painted from the next scene on; what is shown is painted anew if that changes.
+    /// Sets how learned pictures are painted. If the settings change, the pictures are painted again with the next
+    /// request.
     pub fn paint_with(&mut self, settings: &PaintWish) {
         if *self.paint != *settings {
             self.paint = Arc::new(settings.clone());
             self.asked = None;
-            // Those that are there were painted otherwise.
+            // Existing pictures were painted with other settings.
             if let Some((rev, _)) = &mut self.painted {
                 *rev = SceneRev::fresh();
             }
         }
     }
 
-    /// Forgets all that was sensed, and what is still on its way: another scene is shown.
+    /// Forgets all results, and those that are still to come, because another scene is shown.
     pub fn forget(&mut self) {
         self.stop_painting();
         self.worker.cancel();
@@ -135,19 +136,19 @@ impl Sensing {
         self.version += 1;
     }
 
-    /// How far the pictures are that are being painted.
+    /// Progress of the pictures that are being painted.
     pub fn paint_stage(&self) -> Option<PaintStage> {
         let ends = self.stop.load(Ordering::Relaxed);
         self.stage
             .map(|stage| if ends { PaintStage::Stopping } else { stage })
     }
 
-    /// Ends the painting after its present step; the pictures stay as they are by then until something changes.
+    /// Stops the painting after its current step. The pictures stay as they are until a new request.
     pub fn stop_painting(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
 
-    /// Ends a painting that nobody looks at; it begins again when it is asked for.
+    /// Stops a painting that is not shown; it begins again when it is requested.
     pub fn rest(&mut self) {
         if self.stage.is_some() {
             self.stop_painting();
@@ -155,17 +156,17 @@ impl Sensing {
         }
     }
 
-    /// True if the painting was stopped, or failed, and nothing has changed since.
+    /// True if the painting was stopped or failed, and no request has come since.
     pub fn is_stopped(&self) -> bool {
         self.stopped
     }
 
-    /// Paints after all.
+    /// Lets the painting start again with the next request.
     pub fn paint_again(&mut self) {
         self.asked = None;
     }
 
-    /// Asks for a scene, unless the same was asked for already. A preview has smaller pictures.
+    /// Requests the sensors of a scene, unless the same was requested already. A preview has smaller pictures.
     pub fn ask(&mut self, scene: &Arc<Scene>, wanted: Wanted, preview: bool) {
         let known = |(rev, was, was_preview): (SceneRev, Wanted, bool)| {
             rev == scene.rev && was == wanted && (!was_preview || preview)
@@ -189,7 +190,7 @@ impl Sensing {
         });
     }
 
-    /// Takes in what has arrived.
+    /// Takes in the news of the threads.
     pub fn drain(&mut self) {
         self.drain_painting();
         let events: Vec<_> = self.worker.updates().try_iter().collect();
@@ -205,7 +206,7 @@ impl Sensing {
                     self.sampled = sampled;
                     self.version += 1;
                 }
-                // Another kind of picture was asked for since.
+                // Another source was requested since.
                 News::Cameras(_, of, _) if self.asked.is_some_and(|(_, now, _)| now.source != of.source) => {}
                 News::Cameras(rev, wanted, views) => {
                     self.cameras = Some((rev, wanted, Arc::new(views)));
@@ -225,7 +226,7 @@ impl Sensing {
         }
     }
 
-    /// Why a scene could not be sensed, told once. Later scenes are sensed again.
+    /// The reason why a scene could not be sensed; returned once. Later scenes are sensed again.
     pub fn take_problem(&mut self) -> Option<String> {
         self.problem.take()
     }
@@ -235,7 +236,8 @@ impl Sensing {
         self.lidar.as_ref().map(|(_, sweep)| sweep)
     }
 
-    /// Where rays of the newest sweep were sampled after the last change; none if the network did not look.
+    /// The places where rays of the newest sweep were sampled after the last change; `None` if the sweep is not
+    /// learned.
     pub fn sampled(&self) -> Option<&Sampled> {
         self.sampled.as_ref()
     }
@@ -245,7 +247,7 @@ impl Sensing {
         self.cameras.as_ref().map(|(_, _, views)| views)
     }
 
-    /// The newest pictures of a source, whether the strip shows it or a pane does.
+    /// The newest pictures of a source, from the strip or from a pane.
     pub fn pictures_of(&self, source: SourceId) -> Option<&Arc<Vec<CameraView>>> {
         let of_strip = self
             .cameras
@@ -268,7 +270,7 @@ impl Sensing {
         }
     }
 
-    /// True if the pictures are not those of this state, or not of the kind that was asked for last.
+    /// True if the pictures are of another state, or of other cameras or another source than requested last.
     pub fn cameras_stale(&self, rev: SceneRev) -> bool {
         let wanted = self.asked.map(|(_, wanted, _)| wanted.pictures());
         let current = |(of, shown, _): &(SceneRev, Wanted, _)| *of == rev && Some(shown.pictures()) == wanted;
@@ -280,16 +282,16 @@ impl Sensing {
         self.lidar.as_ref().is_none_or(|(of, _)| *of != rev)
     }
 
-    /// Counts the news: what was made from it is up to date as long as this is the same.
+    /// Counter of the news: values derived from the results are current as long as it is unchanged.
     pub fn version(&self) -> u64 {
         self.version
     }
 }
 
-/// Sweeps and pictures as a product.
+/// The product of the thread: sweeps and pictures.
 struct Senses {
     grace: Duration,
-    /// A grace has passed in which only newer scenes came.
+    /// True if a newer scene came during the last grace; that scene is then sensed without another grace.
     rested: bool,
     kept: Kept,
 }
@@ -331,18 +333,18 @@ impl Product for Senses {
     }
 }
 
-/// What is kept between requests: the exact sweep and the learned one with the rigs that they belong to, the network
-/// once it was asked for, the last full pictures.
+/// Values kept between requests: the exact and the learned sweep with their rigs, the LiDAR network once it is used,
+/// and the last full pictures.
 #[derive(Default)]
 struct Kept {
     lidar: Option<(Arc<SensorRig>, Caster)>,
     net: Option<Arc<LidarNet>>,
     learned: Option<(Arc<SensorRig>, LearnedCaster)>,
     views: Option<((SceneRev, Pictures), Vec<CameraView>)>,
-    /// What is rendered of other sources: state, source, cameras.
+    /// Pictures of other sources: state, source, bit per camera, pictures.
     others: Vec<(SceneRev, SourceId, u32, Vec<CameraView>)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
-    /// The graphics card, once views that it can draw were asked for.
+    /// The graphics card, looked for when a source that can use it is requested; `None` inside if there is none.
     graphics: Option<Option<Graphics>>,
 }
 
@@ -372,7 +374,7 @@ impl Kept {
             .unwrap_or_default()
     }
 
-    /// The sweep of a LiDAR that spins while things move; nothing of it is kept.
+    /// The sweep of a LiDAR that spins while the scene moves. It is not kept.
     fn rolling(&mut self, scene: &Scene, wanted: &Wanted) -> LidarSweep {
         let net = match wanted.lidar {
             LidarModel::Learned => self.net(),
@@ -389,7 +391,7 @@ impl Kept {
         self.net.clone()
     }
 
-    /// `None` where the network cannot be had; the exact sweep takes its place.
+    /// The learned sweep. `None` if the network cannot be opened; the caller then uses the exact sweep.
     fn learned(&mut self, scene: &Scene, lost_echoes: bool) -> Option<LidarSweep> {
         let (grid, rig) = (&scene.frame().occupancy, &scene.rig);
         let net = self.net()?;
@@ -408,7 +410,7 @@ impl Kept {
     }
 }
 
-/// What becomes of echoes that may be lost: they are shown as such, or gone.
+/// Treatment of echoes that a sensor may lose: kept and marked if `shown`, else dropped.
 fn drops(shown: bool) -> Drops {
     if shown { Drops::Keep } else { Drops::Likely }
 }
@@ -433,7 +435,7 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     }
     let key = (scene.rev, wanted.pictures());
     let source = wanted.camera_source();
-    // Those are painted on a thread of their own.
+    // Learned pictures are painted on a thread of their own.
     if source.id() == learned::ID {
         return other_sources(request, kept, ctx);
     }
@@ -443,8 +445,8 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         let size = if quick { PREVIEW_SIZE } else { VIEW_SIZE };
         let mut views = Vec::with_capacity(rig.cameras.len());
         for i in (0..rig.cameras.len()).filter(shown) {
-            // Full pictures give way to a newer scene; previews are quick, and giving way would leave
-            // the strip without any news for as long as the user drags.
+            // Full pictures give way to a newer scene. Previews do not: they are quick, and otherwise the strip would
+            // get no pictures while the user drags.
             if !quick && ctx.should_stop() {
                 return None;
             }
@@ -452,12 +454,12 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         }
         Some(views)
     };
-    // What is there already is not rendered again because another camera is enlarged.
+    // Existing pictures are not rendered again when another camera is enlarged.
     let kept_views = kept.views.as_ref().filter(|(of, _)| *of == key);
     let views = match kept_views.map(|(_, views)| views.clone()) {
         Some(views) => views,
         None => {
-            // Camera pictures take their time: a coarse one comes first.
+            // Camera pictures are slow, so a coarse one comes first.
             if (*preview || source.about().previews)
                 && let Some(views) = render(true)
             {
@@ -480,7 +482,7 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     other_sources(request, kept, ctx);
 }
 
-/// What panes of single cameras show of other sources than the strip.
+/// Renders the other sources that panes of single cameras show.
 fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     let Request {
         scene,

@@ -1,4 +1,4 @@
-//! State of the window beside the document: the tool in hand, layers, options. Nothing here is saved with a scene.
+//! State of the window besides the document: the tool in hand, layers, options. It is never saved with a scene.
 
 use std::ops::{Deref, DerefMut};
 
@@ -22,42 +22,42 @@ use super::windows::open::OpenWindows;
 /// State of the window.
 #[derive(Clone, Debug, Default)]
 pub struct UiState {
-    /// Counts the scenes that were opened.
+    /// Number of scenes that were opened.
     pub opened: u64,
-    /// The tools and what they hold: the state is a [`Hand`] with more.
+    /// The tools and their state; this state dereferences to their [`Hand`].
     pub tools: ToolState,
-    /// Brushes that the user keeps.
+    /// Brushes saved by the user.
     pub brushes: Vec<SavedBrush>,
-    /// What the two large views show of a scene.
+    /// Settings of the two large views, and their marks.
     pub shown: ViewsShown,
-    /// Edits of boxes and map layers correct what was inferred on import: no voxel changes.
+    /// True if edits of boxes and map layers correct values inferred on import, without changing voxels.
     pub correcting: bool,
-    /// Densities that generation is asked for.
+    /// Densities that the user set for generation.
     pub named: Named,
-    /// The seed that it is asked for.
+    /// The seed that the user set for generation.
     pub seed: SeedWish,
-    /// What the pictures of the cameras show.
+    /// Settings of the camera pictures.
     pub cameras: CamerasShown,
-    /// What the LiDAR sweep shows.
+    /// Settings of the LiDAR sweep.
     pub lidar: LidarShown,
-    /// How the present state is compared with the version before.
+    /// How the present state is compared with another version.
     pub compare: Comparing,
-    /// How a clip is played.
+    /// Settings and state of the playback.
     pub playback: Playback,
-    /// What the pointer is over.
+    /// The pane and the place under the pointer.
     pub pointed: Pointed,
-    /// Which windows are open.
+    /// The windows that are open.
     pub windows: OpenWindows,
 }
 
 impl UiState {
-    /// The edits as they are; or as corrections while the user corrects what was inferred.
+    /// The edits, turned into corrections while the user corrects inferred values.
     pub fn as_meant(&self, edits: Vec<Edit>) -> Vec<Edit> {
         corrected(self.correcting, edits)
     }
 }
 
-/// The edits as they are; or, if that is asked for, those of boxes and layers as corrections of what was inferred.
+/// The edits; with `correcting`, those of boxes and layers are turned into corrections of inferred values.
 pub(crate) fn corrected(correcting: bool, edits: Vec<Edit>) -> Vec<Edit> {
     let authored = |edit: &Edit| {
         matches!(
@@ -90,7 +90,7 @@ impl DerefMut for UiState {
     }
 }
 
-/// What a box is called in the language that is shown: its name and paint, or its class.
+/// The name of a box in the language of the interface: its paint, if any, with its name or else its class.
 pub fn called(b: &SceneBox) -> String {
     let class = b.class.label();
     let name = match b.label.name.is_empty() {
@@ -103,7 +103,7 @@ pub fn called(b: &SceneBox) -> String {
     }
 }
 
-/// Position for a person: `12.4, -3.0 m`.
+/// A position for the user, for example `12.4, -3.0 m`.
 pub fn position_text(p_m: DVec2) -> String {
     // Adding 0 turns -0 into 0.
     let tidy = |v: f64| (v * 10.0).round() / 10.0 + 0.0;

@@ -1,4 +1,4 @@
-//! What is drawn of things over both large views: outlines, what is chosen, what would come.
+//! Drawings of things over both large views: outlines, the selection, and previews of new things.
 
 use egui::{Color32, Painter, Pos2, Shape, Stroke, pos2};
 use glam::{DVec2, DVec3};
@@ -8,13 +8,13 @@ use scene::{Form, Scene, ThingId};
 
 use super::screen_map::ScreenMap;
 
-/// More outlines than this are drawn without those of trees and posts.
+/// Number of outlines above which those of trees and posts are left out.
 const MANY: usize = 4000;
 const STEPS: usize = 28;
 
 fn color(form: &Form) -> Color32 {
     let [r, g, b] = match form {
-        // Brighter than their class, which is a shade of the ground.
+        // Brighter than the colour of their class, which is close to that of the ground.
         Form::Building(_) | Form::Bridge(_) => [232, 214, 188],
         Form::Tree(_) | Form::Shrubs(_) => [126, 206, 120],
         Form::Line(line) if line.kind.class() == scene::Class::Vegetation => [126, 206, 120],
@@ -24,7 +24,7 @@ fn color(form: &Form) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// Points of a form on the screen, and whether they close.
+/// The points of a form on the screen, and whether they are a closed outline.
 pub(super) fn trace(form: &Form, to_screen: &dyn Fn(DVec2) -> Option<Pos2>) -> (Vec<Pos2>, bool) {
     let round = |middle: DVec2, radius: f64| {
         let at =
@@ -41,7 +41,7 @@ pub(super) fn trace(form: &Form, to_screen: &dyn Fn(DVec2) -> Option<Pos2>) -> (
     }
 }
 
-/// How a form is drawn from above.
+/// Style of a form from above.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Style {
     Plain,
@@ -50,7 +50,7 @@ enum Style {
     Coming,
 }
 
-/// Draws things (world frame) that would be added.
+/// Draws previews of things (world frame) that would be added.
 pub(super) fn copies(painter: &Painter, map: &ScreenMap, scene: &Scene, forms: &[Form]) {
     let ego_from_world = scene.frame().world_from_ego.inverse();
     for form in forms {
@@ -95,7 +95,7 @@ fn draw_form(painter: &Painter, map: &ScreenMap, form: &Form, style: Style) {
     }
 }
 
-/// A thing that would come, from above.
+/// Draws the preview of a thing, from above.
 pub(super) fn coming(painter: &Painter, map: &ScreenMap, form: &Form) {
     draw_form(painter, map, form, Style::Coming);
 }
@@ -110,7 +110,7 @@ fn is_convex(points: &[Pos2]) -> bool {
     n >= 3 && ((0..n).all(|i| turn(i) <= 0.0) || (0..n).all(|i| turn(i) >= 0.0))
 }
 
-/// Outlines of all things over the map layers; `hovered_m` is where the pointer chooses.
+/// Draws the outlines of all things over the map layers; `hovered` is the thing that a click would choose.
 pub(crate) fn outlines(
     painter: &Painter,
     map: &ScreenMap,
@@ -142,7 +142,7 @@ pub(crate) fn outlines(
     }
 }
 
-/// Chosen things, over the 3D view.
+/// Draws the outlines of chosen things, over the 3D view.
 pub(crate) fn in_3d(
     painter: &Painter,
     project: &dyn Fn(DVec3) -> Option<Pos2>,

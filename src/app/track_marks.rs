@@ -1,4 +1,4 @@
-//! Where moving objects go, in both large views: their paths, the keyframes of what is chosen, and where it is a second
+//! Marks of moving objects in both large views: their paths, the keyframes of the selection, and its places a second
 //! earlier and later.
 
 use egui::{Color32, Painter, Pos2, Shape, Stroke};
@@ -10,12 +10,12 @@ use crate::screen_map::ScreenMap;
 use crate::state::UiState;
 use widgets::theme;
 
-/// Time between two points of a path that is drawn, s.
+/// Time between two points of a drawn path, s.
 const STEP_S: f64 = 0.1;
-/// More paths than this are not drawn but for that of what is chosen.
+/// Number of tracks above which only the paths of the selection and of the ego vehicle are drawn.
 const MANY: usize = 60;
 
-/// What there is to draw of one track.
+/// Marks of one track.
 struct Mark {
     points_m: Vec<DVec2>,
     keys_m: Vec<DVec2>,
@@ -71,17 +71,17 @@ fn mark(scene: &Scene, state: &UiState, id: Option<BoxId>) -> Option<Mark> {
     })
 }
 
-/// Over the bird's-eye view.
+/// Draws the marks over the bird's-eye view.
 pub(crate) fn from_above(painter: &Painter, map: &ScreenMap, scene: &Scene, state: &UiState) {
     let on_screen = |p: DVec2| Some(map.to_screen(p));
     for mut mark in marks(scene, state) {
-        // The select tool shows them as handles.
+        // The select tool draws the keyframes as handles.
         mark.keys_m.clear();
         draw(painter, &mark, on_screen);
     }
 }
 
-/// Over the 3D view.
+/// Draws the marks over the 3D view.
 pub(crate) fn in_3d(
     painter: &Painter,
     project: &dyn Fn(DVec3) -> Option<Pos2>,
@@ -98,7 +98,7 @@ pub(crate) fn in_3d(
 fn draw(painter: &Painter, mark: &Mark, on_screen: impl Fn(DVec2) -> Option<Pos2>) {
     let (width, alpha) = if mark.chosen { (2.0, 0.95) } else { (1.2, 0.5) };
     let stroke = Stroke::new(width, mark.color.gamma_multiply(alpha));
-    // What lies behind the eye parts the line.
+    // Points behind the camera divide the line.
     let places: Vec<Option<Pos2>> = mark.points_m.iter().map(|p| on_screen(*p)).collect();
     for piece in places.split(Option::is_none) {
         let line: Vec<Pos2> = piece.iter().flatten().copied().collect();

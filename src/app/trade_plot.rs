@@ -1,4 +1,4 @@
-//! The plot of time against error: in the window, and as a picture drawn without one.
+//! The plot of time against error, in the window and as a picture without one.
 
 use egui::{Align2, RichText, Ui, Vec2, vec2};
 use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, PlotUi, Points, Text, VLine};
@@ -9,16 +9,16 @@ use judge::presets::plan::Mark;
 use language::t;
 use widgets::theme;
 
-/// Published wall times to be seen beside ours, s: all on graphics cards.
+/// Published wall times for comparison with ours, s: all on graphics cards.
 pub const ANCHORS: [(f64, &str); 1] = [(3.25, "X-Scene, 20 steps\non an A6000: 3.25 s")];
-/// Errors below this are drawn here: the reference has none.
+/// Smallest error of the plot; the reference has none, and is drawn here.
 const LEAST_ERROR: f64 = 1e-4;
 
 fn log(v: f64) -> f64 {
     v.clamp(LEAST_ERROR, 1e6).log10()
 }
 
-/// Decades and, within them, 2 and 5.
+/// Grid marks at decades and, within them, at 2 and 5.
 fn decades(low: f64, high: f64) -> Vec<GridMark> {
     let mut marks = Vec::new();
     for decade in low.floor() as i32 - 1..=high.ceil() as i32 {
@@ -35,12 +35,12 @@ fn decades(low: f64, high: f64) -> Vec<GridMark> {
     marks
 }
 
-/// Width of the plot from which on names of presets carry their numbers, points.
+/// Least width of the plot at which the names of presets carry their numbers, points.
 const ROOM_FOR_NUMBERS: f32 = 520.0;
-/// Height of such a name in decades of the error.
+/// Height of such a name, in decades of the error.
 const LABEL_DECADES: f64 = 0.14;
 
-/// Draws the plot; `current` is the preset in use, `last` what the last edit took and, if it was measured, its error.
+/// Draws the plot. `current` is the preset in use; `last` is the time of the last edit and, if measured, its error.
 pub fn front_plot(
     ui: &mut Ui,
     marks: &[Mark],
@@ -92,7 +92,7 @@ pub fn front_plot(
             .iter()
             .map(|m| log(m.wall_s[0]))
             .fold(ANCHORS[0].0.log10(), f64::max);
-        // Names of presets stand above and below the line by turns.
+        // Names of presets alternate above and below the line.
         let mut nth = 0u32;
         for mark in marks.iter().filter(|m| m.error[0].is_finite()) {
             draw_point(plot, mark, current);
@@ -127,7 +127,7 @@ pub fn front_plot(
     });
 }
 
-/// One setting: its middle and its intervals, and a ring around the preset that is in use.
+/// Draws one setting: its median and its intervals, with a ring if it is the preset in use.
 fn draw_point(plot: &mut PlotUi<'_>, mark: &Mark, current: Option<&str>) {
     let color = if mark.on_front {
         theme::accent()
@@ -164,7 +164,7 @@ fn draw_point(plot: &mut PlotUi<'_>, mark: &Mark, current: Option<&str>) {
     }
 }
 
-/// The name of a preset beside its point, with its numbers where there is room for them; the list of presets tells them too.
+/// Draws the name of a preset beside its point, with its numbers if they fit; the list of presets shows them too.
 fn draw_name(
     plot: &mut PlotUi<'_>,
     mark: &Mark,
@@ -185,9 +185,9 @@ fn draw_name(
         ),
     });
     let text = if here { text.small().strong() } else { text.small() };
-    // Where the name has room: to the left of the last ones.
+    // The names of the last points stand to their left, where there is room.
     let late = s > right - 0.35;
-    // Two that stand below lie beside each other: the second one a line lower.
+    // The second of two names below the line stands one line lower.
     let (below, lower) = (nth % 2 == 1, f64::from(nth / 2) * LABEL_DECADES);
     let (dx, dy, anchor) = match (late, below) {
         (true, _) => (-0.03, 0.02, Align2::RIGHT_BOTTOM),
@@ -199,7 +199,7 @@ fn draw_name(
     plot.text(Text::new(preset.to_owned(), at, text).color(color).anchor(anchor));
 }
 
-/// The same as a picture of `points` size, twice as many pixels.
+/// The plot as a picture of `points` size, with two pixels per point.
 pub fn picture(marks: &[Mark], points: [f32; 2]) -> Picture {
     let ctx = egui::Context::default();
     theme::apply(&ctx, theme::Theme::Light);

@@ -1,4 +1,4 @@
-//! Camera pictures with the truth about them, as the command line, the export and data sets make them.
+//! Camera pictures with their ground truth, for the command line, the export and data sets.
 
 use anyhow::bail;
 
@@ -6,12 +6,13 @@ use scene::{CameraTruth, Pose, Scene};
 use sensors::appearance::{Appearance, CameraImage, NextMoment, Quality};
 use sensors::cameras::{CameraInput, bounds};
 
-/// Memory that a picture with its truth takes, bytes per pixel.
+/// Memory of a picture with its ground truth, bytes per pixel.
 pub const BYTES_PER_PIXEL: u64 = 160;
 
-/// Renders each camera of a scene whose sensors are in the world ([`Scene::with_rig_in_world`]) with the truth about its
-/// picture, in the rig's order, and hands both on before the next is made; `input` is the scene as camera sources take it. Flow leads to the clip's next frame, if there is
-/// one. Errors if there is no camera, pictures are too large, or `take` fails.
+/// Renders each camera of a scene with its ground truth, in the rig's order, and hands both on before the next is made.
+/// The scene's sensors are in the world ([`Scene::with_rig_in_world`]); `input` is the scene for camera sources. Flow
+/// leads to the clip's next frame, if there is one. Errors if there is no camera, if the pictures are too large, or if
+/// `take` fails.
 pub fn each_camera(
     scene: &Scene,
     input: &CameraInput<'_>,
@@ -38,7 +39,8 @@ pub fn each_camera(
     Ok(())
 }
 
-/// The scene at the clip's next frame, its sensors on the vehicle there; none at the end and where nothing moves.
+/// The scene at the clip's next frame, with the sensors on the vehicle there; `None` at the end, or if the scene does
+/// not move.
 fn next_frame(scene: &Scene) -> Option<Scene> {
     let clip = scene.clip();
     let time_s = scene.time_s() + 1.0 / clip.rate_hz;
@@ -50,7 +52,7 @@ fn next_frame(scene: &Scene) -> Option<Scene> {
     Some(later)
 }
 
-/// Gives the truth in another frame than that of the sensors' poses: camera and boxes.
+/// Transforms the ground truth, camera and boxes, into another frame than that of the sensors' poses.
 pub fn place(truth: &mut CameraTruth, outer_from_inner: &Pose) {
     let pose = *outer_from_inner * truth.camera.ego_from_camera();
     let q = pose.rotation;

@@ -1,4 +1,4 @@
-//! Dashed frames around what is still to be generated, in both large views.
+//! Dashed frames around the regions that are still to be generated, in both large views.
 
 use egui::{Color32, Painter, Pos2, Shape, Stroke};
 use glam::{DVec2, DVec3};
@@ -9,7 +9,7 @@ use crate::screen_map::ScreenMap;
 use crate::shell::live::Bounds;
 use widgets::theme;
 
-/// A frame in space is drawn in pieces of this length, m, so that it follows the ground.
+/// Length of the pieces of a frame in 3D, m, short enough to follow the ground.
 const PIECE_M: f64 = 4.0;
 
 fn color(generating: bool) -> Color32 {
@@ -19,14 +19,14 @@ fn color(generating: bool) -> Color32 {
     }
 }
 
-/// Lowest and highest corner of a part, m.
+/// Lowest and highest corner of a region, m.
 fn corners_m(extent: Extent, (low, high): &Bounds) -> [DVec2; 2] {
     let at = |c: &[usize; 2]| extent.center(c[0], c[1], 0).truncate();
     let half = DVec2::splat(Extent::VOXEL_M / 2.0);
     [at(low) - half, at(high) + half]
 }
 
-/// Over the bird's-eye view.
+/// Draws the frames over the bird's-eye view.
 pub(super) fn from_above(
     painter: &Painter,
     map: &ScreenMap,
@@ -50,7 +50,7 @@ pub(super) fn from_above(
     }
 }
 
-/// Over the 3D view, on the ground.
+/// Draws the frames over the 3D view, on the ground.
 pub(super) fn in_3d(
     painter: &Painter,
     project: &dyn Fn(DVec3) -> Option<Pos2>,

@@ -1,5 +1,5 @@
-//! The 3D pane: the viewport's picture at the size of the pane, its camera, and what is under the
-//! pointer. The tools are driven by `canvas_tools.rs`.
+//! The 3D pane: the viewport's picture at the size of the pane, its camera, and the readout under the pointer.
+//! `canvas_tools.rs` drives the tools.
 
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ use widgets::software_ui;
 
 /// Turn per point that the pointer moves, rad.
 const ORBIT_RAD: f64 = 0.006;
-/// Frames slower than this while moving make the picture coarse, s.
+/// Frame time above which the picture is coarse during motion, s.
 const SLOW_FRAME_S: f32 = 0.045;
 /// Time without motion after which the picture is fine again, s.
 const SETTLE_S: f64 = 0.18;
@@ -42,7 +42,7 @@ const SETTLE_S: f64 = 0.18;
 struct Gpu {
     render_state: egui_wgpu::RenderState,
     viewport: Viewport,
-    texture: Option<(egui::TextureId, [u32; 2], u32)>, // with size and samples it was registered for
+    texture: Option<(egui::TextureId, [u32; 2], u32)>, // with its registered size and samples
     software: bool,
 }
 
@@ -50,14 +50,14 @@ struct Gpu {
 pub struct View3d {
     /// Viewpoint.
     pub camera: ViewCamera,
-    /// What is shown and how.
+    /// Options of the picture.
     pub options: ViewOptions,
-    /// The view stays orthographic when it is turned.
+    /// True if the view stays orthographic when it is turned.
     pub parallel: bool,
     gpu: Option<Gpu>,
     held: Held,
     driver: Driver,
-    /// The pane drawn last; tests click with it.
+    /// Rectangle of the pane drawn last; tests click with it.
     pub rect: Rect,
     colors: Option<(Arc<LidarSweep>, LidarColorMode, Vec<[u8; 4]>)>,
     last_motion_s: f64,
@@ -66,36 +66,36 @@ pub struct View3d {
     pixels_per_point: f32,
 }
 
-/// What the view draws.
+/// Input of the view.
 pub struct View3dInput<'a> {
     /// The scene shown, a drag in progress included.
     pub scene: &'a Scene,
-    /// The scene without the drag in progress: what a stroke picks against.
+    /// The scene without the drag in progress; strokes pick against it.
     pub settled: &'a Scene,
     /// The newest sweep.
     pub lidar: Option<&'a Arc<LidarSweep>>,
-    /// The user drags something, anywhere.
+    /// True if the user drags anything, in any view.
     pub dragging: bool,
-    /// Voxels that are marked, by colour.
+    /// Marked voxels, by colour.
     pub marked: &'a [BrushCells<'a>],
-    /// What is still to be generated, and whether it is being generated.
+    /// Regions still to be generated, and true if a generation runs.
     pub unsettled: (&'a [Bounds], bool),
-    /// The voxels are those that a network tells: brushes do nothing to them.
+    /// True if the voxels are predicted by a network; brushes then have no effect on them.
     pub is_told: bool,
 }
 
-/// Voxels that are marked at most; more would only hide each other.
+/// Most marked voxels that are drawn; more would only hide each other.
 const MARKED: usize = 40_000;
 
 /// The pointer over the view.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pointer {
-    /// The way it looks.
+    /// The ray under the pointer.
     pub ray: Ray,
 }
 
 impl View3d {
-    /// Without a render state the pane says that there is no graphics adapter.
+    /// The view; without a render state the pane reports that there is no graphics adapter.
     pub fn new(render_state: Option<egui_wgpu::RenderState>) -> Self {
         let gpu = render_state.map(|state| Gpu {
             viewport: Viewport::new(&state.device, &state.queue),
@@ -127,7 +127,7 @@ impl View3d {
         self.gpu.is_some()
     }
 
-    /// Forgets colours of returns made with another palette.
+    /// Forgets the colours of returns, which were made with another palette.
     pub fn forget_pictures(&mut self) {
         self.colors = None;
     }
@@ -138,25 +138,25 @@ impl View3d {
         self.parallel = false;
     }
 
-    /// Changes between perspective and orthographic, from where it is looked.
+    /// Changes between perspective and orthographic, from the same viewpoint.
     pub fn toggle_parallel(&mut self) {
         self.parallel = !self.camera.ortho;
         self.camera.ortho = self.parallel;
     }
 
-    /// Brings a box into the middle.
+    /// Centres a box.
     pub fn frame_box(&mut self, b: &SceneBox) {
         self.camera.focus(b.center_m, b.size_m.length() * 0.9);
         self.step_back();
     }
 
-    /// Fits a whole map in.
+    /// Fits a whole map into the view.
     pub fn frame_map(&mut self, extent: Extent) {
         self.camera
             .focus_map(extent, f64::from(self.rect.width() / self.rect.height()));
     }
 
-    /// What fits in by its height must also do so by its width, in a pane that is narrow.
+    /// Moves the camera back in a narrow pane, so that contents that fit by height also fit by width.
     fn step_back(&mut self) {
         let aspect = f64::from(self.rect.width() / self.rect.height());
         if (0.05..1.0).contains(&aspect) {
@@ -165,7 +165,7 @@ impl View3d {
         }
     }
 
-    /// Draws the view into all the space there is, and answers the pointer.
+    /// Draws the view into all the available space, and answers the pointer.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -204,7 +204,7 @@ impl View3d {
             place_marks::point(state, PaneId::VIEW3D, point_of(hit, &pointer.ray));
         }
         let now_s = ui.input(|i| i.time);
-        // Where the processor draws, only what a drag or a brush touches is drawn again: that is quick as it is.
+        // On a software rasteriser only the part that a drag or a brush touches is drawn again, which is quick enough.
         let brushes = state.tool != select::ID && response.hovered() && ui.input(|i| i.pointer.is_moving());
         if moved || (input.dragging || brushes) && !self.is_software() {
             self.last_motion_s = now_s;
@@ -239,7 +239,7 @@ impl View3d {
         response
     }
 
-    /// Draws the view as a picture into `rect`, without answering the pointer, from where `camera` stands.
+    /// Draws the view as a picture into `rect`, from the viewpoint `camera`, without answering the pointer.
     pub(super) fn still(
         &mut self,
         ui: &Ui,
@@ -264,7 +264,7 @@ impl View3d {
         self.driver.is_dragging()
     }
 
-    /// True if pictures are made by the processor.
+    /// True if the processor draws the pictures.
     pub fn is_software(&self) -> bool {
         self.gpu.as_ref().is_some_and(|g| g.software)
     }
@@ -287,7 +287,7 @@ impl View3d {
         Ray::new(origin, direction).map(|ray| Pointer { ray })
     }
 
-    /// Where a point of the ego frame appears; `None` behind the eye.
+    /// Screen position of a point of the ego frame; `None` behind the camera.
     pub(super) fn project(&self, p_m: DVec3) -> Option<Pos2> {
         let size = self.size_px();
         let pixel = self.camera.project(p_m, size)?;
@@ -298,7 +298,7 @@ impl View3d {
         Some(self.rect.min + part * self.rect.size())
     }
 
-    /// Camera motion by pointer and keys; true if the view changed.
+    /// Moves the camera by pointer and keys; returns true if the view changed.
     fn navigate(
         &mut self,
         ui: &Ui,
@@ -326,17 +326,17 @@ impl View3d {
             } else if pans {
                 self.camera.pan(DVec2::new(dx, dy) * px, self.size_px());
             } else {
-                // A turned standard view is none any more: back to perspective, unless that was not wanted.
+                // A turned standard view becomes perspective again, unless the user chose orthographic.
                 self.camera.ortho &= self.parallel || delta == egui::Vec2::ZERO;
                 self.camera.orbit(dx * ORBIT_RAD, dy * ORBIT_RAD);
             }
         }
-        // A block that is being drawn takes the wheel for its height.
+        // While a block is drawn, the wheel sets its height.
         let wheel_taken = self.driver.is_dragging() && tools.toolbox.tool(tools.tool).wants() == Wants::Wheel;
         if let Some(at) = response.hover_pos().filter(|_| !wheel_taken) {
             let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
             let mut factor = f64::from((scroll / 260.0).exp() * zoom);
-            // With Ctrl held egui turns the wheel into a zoom: with a brush in hand it is the brush's size.
+            // With Ctrl held egui turns the wheel into a zoom; with a brush in hand it sets the size of the brush.
             if tools.tool.def().is_brush && (zoom - 1.0).abs() > 1e-4 {
                 tools.scale_brush(f64::from(zoom));
                 factor = 1.0;
@@ -368,7 +368,7 @@ impl View3d {
         self.frames += 1;
         let rect = self.rect;
         if self.frames < 3 {
-            // The window comes up first; the pipelines take a moment.
+            // The first frames leave the picture out, so that the window appears before the pipelines are built.
             no_adapter::hint(ui, rect, t("Preparing the 3D view…"), "");
             ui.ctx().request_repaint();
             return;
@@ -461,7 +461,7 @@ impl View3d {
         };
     }
 
-    /// The view as an image, `width` x `height` pixels, RGBA.
+    /// The view as an image, `width` x `height` pixels, RGBA. Errors without a graphics adapter.
     pub fn screenshot(
         &mut self,
         scene: &Scene,
@@ -533,7 +533,7 @@ impl View for View3d {
 }
 
 impl View3d {
-    /// What the tools see of the view.
+    /// Context of the view for the tools.
     fn seen<'a>(&'a self, input: &View3dInput<'a>) -> Seen<'a> {
         Seen {
             scene: input.scene,
@@ -543,7 +543,7 @@ impl View3d {
     }
 }
 
-/// The picture as a texture of egui; registered again when the viewport made a new one.
+/// The texture of the picture in egui; registered again if the viewport made a new one.
 fn register(gpu: &mut Gpu, samples: u32) -> egui::TextureId {
     let size = gpu.viewport.size();
     let device = &gpu.render_state.device;

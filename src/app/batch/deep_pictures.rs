@@ -1,11 +1,12 @@
-//! Pictures of 16 bits as arrays: the usual decoders of WebDataset turn every PNG into 8 bits, which leaves two values of a depth.
+//! Pictures of 16 bits as arrays. The usual decoders of WebDataset turn every PNG into 8 bits, which leaves two
+//! different values in a depth picture.
 
 use std::path::PathBuf;
 
 use anyhow::Context;
 use formats::{atomic, npz, png};
 
-/// Puts an `.npy` (u16, `[height, width]`) in the place of each PNG of 16 bits among files that were just written.
+/// Replaces each PNG of 16 bits among files that were just written by an `.npy` (u16, `[height, width]`).
 pub fn as_arrays(files: &[(PathBuf, u64)]) -> anyhow::Result<()> {
     for (path, _) in files {
         if path.extension().is_none_or(|e| e != "png") {

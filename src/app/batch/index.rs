@@ -16,7 +16,7 @@ use formats::{atomic, png};
 /// Names of the files.
 const FILE: &str = "index.parquet";
 const SHEET: &str = "contact.png";
-/// Variants on the sheet at most, and in a row of it.
+/// Most variants on the sheet, and how many stand in a row.
 const MOST: usize = 120;
 const COLUMNS: usize = 4;
 

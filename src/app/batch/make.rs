@@ -1,4 +1,4 @@
-//! One variant: its scene, and the files of it.
+//! One variant: its scene and its files.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -33,7 +33,7 @@ use trade::Presets;
 /// Size of each camera in moving pictures, pixels.
 const CLIP_SIZE: [u32; 2] = [400, 225];
 
-/// What makes the variants of a plan.
+/// Maker of the variants of a plan.
 pub struct Maker {
     plan: Plan,
     /// Folder of the plan, to which its paths are relative.
@@ -42,7 +42,8 @@ pub struct Maker {
 }
 
 impl Maker {
-    /// For a plan in a folder. Errors if networks are asked for that are not there, or by a name that no preset has.
+    /// A maker for a plan in a folder. Errors if the plan asks for networks that are not there, or for a quality that
+    /// no preset has.
     pub fn new(plan: Plan, folder: &Path) -> anyhow::Result<Self> {
         let models = match &plan.generate {
             Some(generate) => {
@@ -63,8 +64,8 @@ impl Maker {
         &self.plan
     }
 
-    /// Makes a variant into a folder that is there and empty, and returns what is known of it; its record is the last
-    /// file that is written. Errors in one line.
+    /// Makes a variant in an empty folder that exists, and returns its record. The record is the last file that is
+    /// written. Errors in one line.
     pub fn make(&self, variant: usize, into: &Path) -> anyhow::Result<Record> {
         let mut record = Record {
             variant,
@@ -148,7 +149,7 @@ impl Maker {
                 scene: document.scene().clone(),
                 params,
             };
-            // One for each variant: nothing of another one is kept.
+            // A pipeline for each variant: nothing carries over from another one.
             let result = OccPipeline::new(models.clone()).run(&job, &JobCtx::detached())?;
             document.adopt(result.rev(), result.occupancy.clone())?;
         }
@@ -187,7 +188,7 @@ impl Maker {
                     ..Recipe::default()
                 };
                 let made = crate::again(&recipe)?;
-                // The words' own light and air.
+                // The conditions that the words ask for.
                 let read = text::read(words)?;
                 let mut scene = made;
                 scene.conditions = read.described.description.conditions(scene.seed);
@@ -197,7 +198,7 @@ impl Maker {
         }
     }
 
-    /// Moments of which files of a moment are written, s.
+    /// Moments for which the files of a moment are written, s.
     fn times_s(&self, scene: &Scene) -> Vec<f64> {
         let Some(hz) = self.plan.frames_hz.filter(|_| scene.clip().length_s > 0.0) else {
             return vec![scene.time_s()];
@@ -206,7 +207,8 @@ impl Maker {
         (0..frames).map(|i| i as f64 / hz).collect()
     }
 
-    /// Writes one kind of file of a moment below a folder; what holds a whole clip with the first moment alone.
+    /// Writes one output of a moment below a folder. An output that holds the whole clip is written with the first
+    /// moment only.
     fn write(&self, output: &Output, scene: &Scene, folder: &Path, first: bool) -> anyhow::Result<()> {
         let place = folder.join(&output.format);
         let make = || std::fs::create_dir_all(&place).with_context(|| format!("create {}", place.display()));
@@ -286,7 +288,7 @@ fn params_of(generate: &Generate, seed: u64) -> anyhow::Result<GenParams> {
     })
 }
 
-/// What a change means for a scene as it is.
+/// The edits that make a change in a scene.
 fn edits_of(change: &Change, scene: &Scene, seed: u64) -> anyhow::Result<Vec<Edit>> {
     Ok(match change {
         Change::Seed(_) | Change::Base(_) => Vec::new(),
@@ -332,7 +334,8 @@ fn by_words(words: &str, scene: &Scene, seed: u64) -> anyhow::Result<Vec<Edit>> 
     Ok(edits)
 }
 
-/// As many boxes of a class: those that go are drawn by the seed, those that come stand where words would put them.
+/// Edits that leave exactly `n` boxes of a class. Boxes to remove are drawn by the seed; boxes to add stand where words
+/// would put them. Errors if there is no room for them.
 fn counted(class: Class, n: usize, scene: &Scene, seed: u64) -> anyhow::Result<Vec<Edit>> {
     let mut there: Vec<_> = scene
         .frame()

@@ -1,4 +1,5 @@
-//! What a person says of the variants of a batch: stars, and those to leave out. Kept beside the variants in `marks.json`.
+//! A person's marks on the variants of a batch: stars, and variants to leave out. Kept beside the variants in
+//! `marks.json`.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -14,14 +15,14 @@ const FILE: &str = "marks.json";
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Marks {
-    /// Worth a second look.
+    /// Starred variants, worth a second look.
     pub starred: BTreeSet<usize>,
-    /// To be left out by who reads the index.
+    /// Discarded variants, to be left out by readers of the index.
     pub discarded: BTreeSet<usize>,
 }
 
 impl Marks {
-    /// Those of a batch's folder; none if nobody marked anything. Errors if the file cannot be read.
+    /// Reads the marks of a batch's folder; empty if there are none yet. Errors if the file cannot be read.
     pub fn read(output: &Path) -> anyhow::Result<Self> {
         let path = output.join(FILE);
         if !path.exists() {
@@ -31,14 +32,14 @@ impl Marks {
         serde_json::from_str(&text).with_context(|| path.display().to_string())
     }
 
-    /// Writes them.
+    /// Writes the marks.
     pub fn write(&self, output: &Path) -> anyhow::Result<()> {
         let path = output.join(FILE);
         atomic::write(&path, serde_json::to_string(self)?.as_bytes())
             .with_context(|| format!("write {}", path.display()))
     }
 
-    /// Stars a variant, or takes the star away. A star takes a variant back in.
+    /// Stars a variant, or takes the star away. A star takes a discarded variant back in.
     pub fn star(&mut self, variant: usize) {
         if !self.starred.remove(&variant) {
             self.starred.insert(variant);

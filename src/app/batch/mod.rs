@@ -1,7 +1,8 @@
 //! Batches: many variants of a scene by a plan, each a folder of files; resumable, in shards, packed into tars, with one index.
 //!
-//! A variant is made in a folder beside its final name and renamed when it is whole, so a run that is killed leaves nothing
-//! half done and the next one goes on. Its bytes depend on the plan and its number alone.
+//! A variant is made in a folder beside its final name and renamed when it is complete. A run that is killed therefore
+//! leaves no half-made variant, and the next run goes on. The bytes of a variant depend on the plan and the variant's
+//! number alone.
 
 mod deep_pictures;
 pub mod index;

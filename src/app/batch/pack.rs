@@ -1,4 +1,5 @@
-//! Variants in tars, as WebDataset reads them: files of one sample follow each other and share their name up to the first dot.
+//! Variants in tars, as WebDataset reads them: files of one sample follow each other and share their name up to the
+//! first dot.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +9,7 @@ use super::record::{FILE, Record};
 use formats::{atomic, input};
 use scene::plain_name;
 
-/// Name of a pack without ending.
+/// Name of a pack without its ending.
 fn stem(pack: usize) -> String {
     format!("shard-{pack:06}")
 }
@@ -17,30 +18,30 @@ fn tar_of(output: &Path, pack: usize) -> PathBuf {
     output.join(stem(pack) + ".tar")
 }
 
-/// The records of the variants in a pack; written before the tar, which says that both are there.
+/// File with the records of the variants in a pack. It is written before the tar, so a tar that exists has its records.
 fn records_of(output: &Path, pack: usize) -> PathBuf {
     output.join(stem(pack) + ".json")
 }
 
-/// True if a pack is whole.
+/// True if a pack is complete.
 pub fn is_there(output: &Path, pack: usize) -> bool {
     tar_of(output, pack).exists()
 }
 
-/// What is known of the variants in a pack.
+/// Reads the records of the variants in a pack.
 pub fn records(output: &Path, pack: usize) -> anyhow::Result<Vec<Record>> {
     let path = records_of(output, pack);
     let text = input::read_text(&path, input::LARGEST_TEXT)?;
     serde_json::from_str(&text).with_context(|| path.display().to_string())
 }
 
-/// Puts variants that lie in folders into a tar and takes the folders away. Files are named `000012.FORMAT.FILE`, those of a clip's
-/// later frames `000012_f0003.FORMAT.FILE`. The same variants give the same bytes: no times, no owners.
+/// Moves variants from their folders into a tar and removes the folders. Files are named `000012.FORMAT.FILE`, files of
+/// a clip's later frames `000012_f0003.FORMAT.FILE`. The same variants give the same bytes: no times, no owners.
 pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<()> {
     let text = serde_json::to_string_pretty(records)?;
     atomic::write(&records_of(output, pack), text.as_bytes())?;
     let half = output.join(format!(".{}.tar", stem(pack)));
-    // (what an ended run left, or a link that leads elsewhere)
+    // (a tar that an interrupted run left, or a link that leads elsewhere)
     if half.symlink_metadata().is_ok() {
         std::fs::remove_file(&half).with_context(|| format!("remove {}", half.display()))?;
     }
@@ -49,7 +50,7 @@ pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<(
     for record in records.iter().filter(|r| r.failed.is_none()) {
         let folder = output.join(format!("{:06}", record.variant));
         let mut add = |path: &str| -> anyhow::Result<()> {
-            // (records may come from a file of another)
+            // (records may come from a file that someone else made)
             path.split('/')
                 .try_for_each(plain_name::check_file)
                 .with_context(|| record.variant.to_string())?;
@@ -61,7 +62,8 @@ pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<(
             header.set_mtime(0);
             Ok(tar.append_data(&mut header, name_of(record.variant, path), bytes.as_slice())?)
         };
-        // Samples in a row: the first moment with the variant's own files, then the others.
+        // The files of a sample follow each other: first those of the first moment with the variant's own files, then
+        // the others.
         let mut names: Vec<&str> = record.files.iter().map(|f| f.path.as_str()).collect();
         names.push(FILE);
         names.sort_by_key(|path| (frame_of(path), *path));
@@ -85,7 +87,7 @@ pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<(
     Ok(())
 }
 
-/// The frame of a clip that a file belongs to: `f0003/occ3d/labels.npz` to the third.
+/// The frame of a clip that a file belongs to: `f0003/occ3d/labels.npz` belongs to frame 3.
 fn frame_of(path: &str) -> usize {
     let first = path.split('/').next().unwrap_or("");
     let number = first
@@ -94,7 +96,7 @@ fn frame_of(path: &str) -> usize {
     number.and_then(|n| n.parse().ok()).unwrap_or(0)
 }
 
-/// Its name in the tar.
+/// The name of a variant's file in the tar.
 fn name_of(variant: usize, path: &str) -> String {
     match (frame_of(path), path.split_once('/')) {
         (0, _) => {

@@ -1,4 +1,4 @@
-//! What a batch is to make, as a JSON file.
+//! The plan of a batch, as a JSON file.
 
 use std::path::{Path, PathBuf};
 
@@ -27,35 +27,35 @@ pub struct Plan {
     pub format: String,
     /// 1.
     pub version: u32,
-    /// What every variant begins with.
+    /// The scene that every variant begins with.
     pub base: Base,
-    /// Fixes every draw, also which variants a sample takes.
+    /// Seed of every draw; it also decides which variants a sample takes.
     #[serde(default)]
     pub seed: u64,
-    /// What varies. A variant takes one value of each, in this order; there is one for every combination, the last axis
-    /// first.
+    /// Axes that vary. A variant takes one value of each, in this order. There is one variant for every combination;
+    /// the last axis changes fastest.
     #[serde(default)]
     pub sweep: Vec<Axis>,
-    /// Only so many of the combinations, drawn by the seed.
+    /// Number of combinations to make, drawn by the seed; all of them if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sample: Option<usize>,
-    /// Lets the networks make the occupancy; drafted if left out.
+    /// Makes the occupancy with the networks; drafted without networks if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub generate: Option<Generate>,
     /// Runs the quality checks and counts their findings.
     #[serde(default)]
     pub check: bool,
-    /// What is written of each variant.
+    /// Files to write of each variant.
     pub write: Vec<Output>,
-    /// Of clips: files of a moment are written so many times per second; of the first moment alone if left out.
+    /// Rate at which files of a moment are written over a clip, Hz; the first moment only if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frames_hz: Option<f64>,
-    /// So many variants go into a tar (WebDataset) in place of a folder each.
+    /// Number of variants per tar (WebDataset); a folder for each variant if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pack: Option<usize>,
 }
 
-/// What a variant begins with.
+/// The scene that a variant begins with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Base {
@@ -83,7 +83,7 @@ pub struct Road {
     pub heading_deg: Option<f64>,
 }
 
-/// One thing that varies.
+/// One axis: a property that varies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
@@ -92,28 +92,28 @@ pub struct Axis {
     /// The values, each a list of changes made together.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub values: Vec<Value>,
-    /// In place of values: seeds from the first on, so many.
+    /// Consecutive seeds in place of values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seeds: Option<Seeds>,
 }
 
-/// Seeds in a row.
+/// Consecutive seeds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Seeds {
-    /// The first.
+    /// The first seed.
     pub from: u64,
-    /// How many.
+    /// Number of seeds.
     pub count: usize,
 }
 
-/// A value of an axis: one change, or several together. An empty list changes nothing.
+/// A value of an axis: one change, or several that are made together. An empty list changes nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// Several.
+    /// Several changes.
     Many(Vec<Change>),
-    /// One.
+    /// One change.
     One(Change),
 }
 
@@ -125,7 +125,7 @@ pub enum Change {
     Seed(u64),
     /// Another base.
     Base(Base),
-    /// Another time of day or weather; what is left out stays.
+    /// Another time of day or weather. A part that is left out stays as it is.
     Conditions {
         /// Time of day.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -146,15 +146,15 @@ pub enum Change {
         /// Ahead and to the left along its own heading, m.
         #[serde(default)]
         by_m: DVec2,
-        /// To the left, degrees.
+        /// Turn to the left, degrees.
         #[serde(default)]
         turn_deg: f64,
     },
-    /// As many boxes of a class: some are taken out, or put in where such a thing is found.
+    /// Sets the number of boxes of a class. Some are removed, or some are added where such an object is found.
     Count {
         /// The class.
         class: Class,
-        /// How many.
+        /// The new number of boxes.
         n: usize,
     },
 }
@@ -165,7 +165,7 @@ pub enum Change {
 pub struct Generate {
     /// A preset of the measured trade: `draft`, `balanced`, `careful`, `reference`.
     pub quality: String,
-    /// All of the scene; what the changes touch if false.
+    /// True: generates the whole scene. False: only the region that the changes touch.
     #[serde(default)]
     pub whole: bool,
 }
@@ -184,7 +184,7 @@ pub struct Output {
     pub learned_lidar: bool,
 }
 
-/// The kind of moving pictures that a format of a plan is, if it is one.
+/// The video format that an output format of a plan names; `None` for other formats.
 pub fn video(format: &str) -> Option<VideoKind> {
     match format {
         "mp4" => Some(VideoKind::Mp4),
@@ -195,7 +195,7 @@ pub fn video(format: &str) -> Option<VideoKind> {
 }
 
 impl Value {
-    /// Its changes.
+    /// The changes of the value.
     pub fn changes(&self) -> &[Change] {
         match self {
             Value::Many(many) => many,
@@ -205,12 +205,12 @@ impl Value {
 }
 
 impl Axis {
-    /// How many values it has.
+    /// Number of values.
     pub fn len(&self) -> usize {
         self.seeds.map_or(self.values.len(), |s| s.count)
     }
 
-    /// True without any.
+    /// True without any value.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -235,7 +235,7 @@ impl Plan {
         }
     }
 
-    /// What is wrong with it, if anything.
+    /// The first fault of the plan in one line; `None` if it is valid.
     pub fn problem(&self) -> Option<String> {
         if self.format != FORMAT || self.version != VERSION {
             let found = scene::message::quoted(&self.format, 60);
@@ -286,20 +286,20 @@ impl Plan {
         (self.pack == Some(0)).then(|| "pack is 0, expected at least 1".into())
     }
 
-    /// Combinations of all axes; none beyond what a number holds.
+    /// Number of combinations of all axes; `None` if it does not fit into `usize`.
     fn count_all(&self) -> Option<usize> {
         self.sweep
             .iter()
             .try_fold(1usize, |n, axis| n.checked_mul(axis.len()))
     }
 
-    /// How many variants there are.
+    /// Number of variants.
     pub fn count(&self) -> usize {
         let all = self.count_all().unwrap_or(0);
         self.sample.map_or(all, |n| n.min(all))
     }
 
-    /// Which value of each axis a variant takes.
+    /// The index of the value that a variant takes, for each axis.
     pub fn values_of(&self, variant: usize) -> Vec<usize> {
         let all = self.count_all().unwrap_or(1).max(1);
         let mut rest = match self.sample.is_some_and(|n| n < all) {
@@ -315,8 +315,8 @@ impl Plan {
     }
 }
 
-/// A place that every number below `n` has for its own: a bijection drawn by the seed (a Feistel network of four rounds,
-/// walked until it falls below `n`).
+/// A permutation of the numbers below `n`, drawn by the seed: a Feistel network of four rounds, repeated until the
+/// result is below `n`.
 fn shuffled(i: usize, n: usize, seed: u64) -> usize {
     let bits = (usize::BITS - (n - 1).leading_zeros()).max(2);
     let half = bits.div_ceil(2);

@@ -1,4 +1,5 @@
-//! Batches that wait, run and are done: one at a time, the most urgent first. A batch that has to wait goes on by file.
+//! Queue of batches. One batch runs at a time, the most urgent first. A batch that was stopped goes on from the files
+//! it has written.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,7 +19,7 @@ pub enum Priority {
     /// In the order in which they were added.
     #[default]
     Normal,
-    /// Before the others: a batch that runs makes way after the variant at hand.
+    /// Before the others: the batch that runs stops after its current variant.
     High,
 }
 
@@ -26,7 +27,7 @@ impl Priority {
     /// All of them, the most urgent first.
     pub const ALL: [Self; 3] = [Self::High, Self::Normal, Self::Low];
 
-    /// Name for a person.
+    /// Name shown to the user.
     pub fn label(self) -> &'static str {
         match self {
             Self::Low => "Low",
@@ -36,49 +37,49 @@ impl Priority {
     }
 }
 
-/// How far a batch is.
+/// State of a batch.
 #[derive(Clone, Debug, PartialEq)]
 pub enum State {
-    /// For its turn.
+    /// Waits for its turn.
     Waiting,
-    /// On the thread.
+    /// Runs on the thread.
     Running,
-    /// Until somebody lets it go on.
+    /// Paused until it is resumed.
     Paused,
     /// All variants are ready or failed.
     Done(Report),
-    /// It cannot be run.
+    /// The batch cannot be run.
     Failed(String),
 }
 
 /// A batch of the queue.
 pub struct Item {
-    /// Tells it from the others.
+    /// Id that tells it from the others.
     pub id: u64,
     /// Name of its folder.
     pub name: String,
-    /// What is made.
+    /// Plan of the batch.
     pub plan: Plan,
-    /// Where to.
+    /// Output folder.
     pub output: PathBuf,
     /// How urgent it is.
     pub priority: Priority,
-    /// How far it is.
+    /// Its state.
     pub state: State,
-    /// Variants that are ready or failed.
+    /// Number of variants that are ready or failed.
     pub done: usize,
-    /// What its variants failed by.
+    /// Variants that failed, with the reason of each.
     pub failed: Vec<(usize, String)>,
     /// Stars and discarded variants.
     pub marks: Marks,
-    /// The index does not have the marks yet.
+    /// True while the index lacks the newest marks.
     is_index_old: bool,
     /// The folder to which the plan's paths are relative.
     folder: PathBuf,
 }
 
 impl Item {
-    /// The batch itself.
+    /// The batch, ready to run.
     pub fn batch(&self) -> anyhow::Result<Batch> {
         Batch::new(self.plan.clone(), &self.folder, &self.output)
     }
@@ -93,11 +94,11 @@ struct Running {
     id: u64,
     stop: Arc<AtomicBool>,
     news: Receiver<News>,
-    /// Only the index is written again.
+    /// True if the run only writes the index again.
     is_index: bool,
 }
 
-/// The queue. Dropped, it stops after the variant at hand.
+/// The queue. When it is dropped, it stops after the current variant.
 #[derive(Default)]
 pub struct Queue {
     items: Vec<Item>,
@@ -111,7 +112,7 @@ impl Queue {
         &self.items
     }
 
-    /// That batch.
+    /// The batch of an id.
     pub fn item(&self, id: u64) -> Option<&Item> {
         self.items.iter().find(|i| i.id == id)
     }
@@ -120,8 +121,8 @@ impl Queue {
         self.items.iter_mut().find(|i| i.id == id)
     }
 
-    /// Adds a batch at the end. `folder` is that of the plan. Errors if the output folder belongs to another plan, cannot be
-    /// written, or is in the queue already.
+    /// Adds a batch at the end. `folder` is the folder of the plan. Errors if the output folder belongs to another
+    /// plan, cannot be written, or is in the queue already.
     pub fn add(&mut self, plan: Plan, folder: &Path, output: &Path) -> anyhow::Result<u64> {
         if let Some(problem) = plan.problem() {
             anyhow::bail!("{problem}");
@@ -149,7 +150,7 @@ impl Queue {
         Ok(id)
     }
 
-    /// Takes a batch out of the queue; its files stay.
+    /// Removes a batch from the queue; its files stay.
     pub fn remove(&mut self, id: u64) {
         self.stop(id);
         self.items.retain(|i| i.id != id);
@@ -162,14 +163,14 @@ impl Queue {
         }
     }
 
-    /// The batch that runs when the one at hand is over: of those that wait the first of the most urgent.
+    /// The batch that runs after the current one: of the most urgent that wait, the first.
     pub fn next_up(&self) -> Option<u64> {
         let waiting = self.items.iter().filter(|i| i.state == State::Waiting);
-        // Of equals the last one is taken: from the back that is the first one.
+        // `max_by_key` takes the last of equals: searched from the back, that is the first of the queue.
         waiting.rev().max_by_key(|i| i.priority).map(|i| i.id)
     }
 
-    /// Puts a batch that waits before all others that do. The one that runs goes on.
+    /// Moves a waiting batch before all others that wait. The batch that runs goes on.
     pub fn run_next(&mut self, id: u64) {
         let waits = |i: &&Item| i.state == State::Waiting;
         let most = self.items.iter().filter(waits).map(|i| i.priority).max();
@@ -183,7 +184,7 @@ impl Queue {
         }
     }
 
-    /// Stops a batch after the variant at hand until it is resumed.
+    /// Stops a batch after its current variant until it is resumed.
     pub fn pause(&mut self, id: u64) {
         self.stop(id);
         if let Some(item) = self.item_mut(id)
@@ -193,7 +194,7 @@ impl Queue {
         }
     }
 
-    /// Lets a batch wait for its turn again; one that failed, or whose variants did, is tried again.
+    /// Lets a batch wait for its turn again. A batch that failed, or that has failed variants, is tried again.
     pub fn resume(&mut self, id: u64) {
         let runs = self.running.as_ref().is_some_and(|r| r.id == id);
         if let Some(item) = self.item_mut(id)
@@ -219,7 +220,7 @@ impl Queue {
         }
     }
 
-    /// Takes news from the thread and starts what is next; `wake` is called from the thread when there is more. Returns the
+    /// Takes news from the thread and starts the next batch. The thread calls `wake` when there is more. Returns the
     /// batches that ended.
     pub fn tick(&mut self, wake: impl Fn() + Clone + Send + 'static) -> Vec<u64> {
         let ended = self.take_news();
@@ -247,7 +248,7 @@ impl Queue {
         for news in running.news.try_iter().collect::<Vec<_>>() {
             let Some(item) = self.item_mut(id) else {
                 is_over |= matches!(news, News::Ended(_));
-                continue; // it was taken out of the queue
+                continue; // the batch was taken out of the queue
             };
             match news {
                 News::At(progress) => {
@@ -298,7 +299,7 @@ impl Queue {
         let (stopped, progress, wake_up) = (stop.clone(), tell.clone(), wake.clone());
         let work = move || {
             Batch::new(plan, &folder, &output)?.run(Shard::default(), &mut |at| {
-                // Nobody listens if the window has closed.
+                // Sending fails if the window has closed.
                 let _ = progress.send(News::At(at.clone()));
                 wake_up();
                 !stopped.load(Ordering::Relaxed)
@@ -379,7 +380,7 @@ mod tests {
             panic!("not done");
         };
         assert!(report.kept >= 1 && report.kept + report.made == 6, "{report:?}");
-        // A folder of another plan.
+        // The folder belongs to another plan.
         queue.remove(long);
         let line = queue
             .add(plan(2), dir.path(), &dir.path().join("long"))
@@ -405,7 +406,7 @@ mod tests {
         queue.run_next(third);
         assert_eq!(queue.next_up(), Some(third));
         assert_eq!(queue.item(third).map(|i| i.priority), Some(Priority::Normal));
-        // One that runs cannot come next.
+        // A running batch cannot be moved to run next.
         queue.run_next(first);
         let ended = until(&mut queue, "all done", |q| {
             q.items().iter().all(|i| matches!(i.state, State::Done(_)))
@@ -438,12 +439,12 @@ mod tests {
         assert_ne!(std::fs::read(&index).expect("an index"), before);
         let marks = Marks::read(&dir.path().join("a")).expect("marks");
         assert!(marks.starred.contains(&1) && marks.discarded.contains(&2));
-        // A variant cannot be both, and all can be taken back.
+        // A variant is never both starred and discarded, and each mark can be removed.
         queue.mark(id, |marks| marks.star(2)).expect("written");
         queue.mark(id, |marks| marks.star(1)).expect("written");
         let marks = &queue.item(id).expect("there").marks;
         assert_eq!((marks.starred.len(), marks.discarded.len()), (1, 0));
-        // Marks that are no marks are told, and the batch is not added.
+        // Invalid marks are reported, and the batch is not added.
         queue.remove(id);
         std::fs::write(dir.path().join("a/marks.json"), "{").expect("written");
         assert!(queue.add(plan(4), dir.path(), &dir.path().join("a")).is_err());

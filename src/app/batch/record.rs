@@ -1,4 +1,4 @@
-//! What is known of a variant that was made: a line of the index.
+//! The record of a variant that was made: a row of the index.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::plan::Change;
 use scene::{Conditions, SceneBox};
 
-/// Name of its file in the variant's folder.
+/// Name of the record's file in the variant's folder.
 pub const FILE: &str = "variant.json";
 
-/// A variant.
+/// The record of a variant.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// Its number in the plan.
@@ -23,12 +23,12 @@ pub struct Record {
     pub scene_sha256: String,
     /// Boxes at the first moment, ego frame.
     pub boxes: Vec<SceneBox>,
-    /// Light and air.
+    /// Conditions: time of day and weather.
     pub conditions: Conditions,
-    /// How often each check found something, where checks were asked for.
+    /// Counts of the findings; `None` if no checks were asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub findings: Option<Findings>,
-    /// Moments that were written.
+    /// Number of written moments.
     pub frames: usize,
     /// The files, relative to the variant's folder, in order.
     pub files: Vec<FileRecord>,
@@ -37,17 +37,17 @@ pub struct Record {
     pub failed: Option<String>,
 }
 
-/// What the checks found.
+/// Findings of the checks, counted.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Findings {
-    /// Of severity error.
+    /// Findings of severity error.
     pub errors: usize,
-    /// Of severity warning.
+    /// Findings of severity warning.
     pub warnings: usize,
-    /// Worth knowing and no mistakes: what no sensor sees.
+    /// Findings of severity info, such as objects that no sensor sees. They are no mistakes.
     #[serde(default)]
     pub infos: usize,
-    /// By the name of the check.
+    /// Counts by the name of the check.
     pub by_check: BTreeMap<String, usize>,
 }
 
@@ -56,7 +56,7 @@ pub struct Findings {
 pub struct FileRecord {
     /// Its path in the variant's folder, with `/`.
     pub path: String,
-    /// Its length.
+    /// Its length, bytes.
     pub bytes: u64,
     /// SHA-256.
     pub sha256: String,

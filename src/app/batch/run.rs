@@ -1,4 +1,5 @@
-//! Runs a plan: what is there already is kept, what fails is noted, what a killed run left half done is made again.
+//! Runs a plan. Variants that exist are kept, failures are recorded, and variants that a killed run left incomplete are
+//! made again.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -17,17 +18,17 @@ use scene::Scene;
 /// Name of the plan's copy in the output folder.
 const PLAN: &str = "plan.json";
 
-/// A part of a batch: every so manieth variant (of packs: every so manieth pack).
+/// A part of a batch: every `of`th variant, or with packs every `of`th pack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// From 0.
+    /// Number of the shard, from 0.
     pub number: usize,
-    /// How many there are.
+    /// Number of shards.
     pub of: usize,
 }
 
 impl Default for Shard {
-    /// All of it.
+    /// The whole batch.
     fn default() -> Self {
         Self { number: 0, of: 1 }
     }
@@ -36,7 +37,7 @@ impl Default for Shard {
 impl std::str::FromStr for Shard {
     type Err = String;
 
-    /// `I/N`, I from 0.
+    /// Parses `I/N`, I from 0.
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text
             .split_once('/')
@@ -48,45 +49,45 @@ impl std::str::FromStr for Shard {
     }
 }
 
-/// How far a run is.
+/// Progress of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// The variant that was looked at.
+    /// The variant that was just handled.
     pub variant: usize,
-    /// Variants of this shard that are ready or failed.
+    /// Number of variants of this shard that are ready or failed.
     pub done: usize,
-    /// All of this shard.
+    /// Number of variants of this shard.
     pub of: usize,
-    /// Why it failed, if it did.
+    /// The reason why it failed, if it did.
     pub failed: Option<String>,
 }
 
-/// What came of a run.
+/// The result of a run.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Report {
-    /// Variants of the plan.
+    /// Number of variants of the plan.
     pub variants: usize,
-    /// Made in this run.
+    /// Variants made in this run.
     pub made: usize,
-    /// There already.
+    /// Variants that were there already.
     pub kept: usize,
-    /// Could not be made: number and reason.
+    /// Variants that could not be made: number and reason.
     pub failed: Vec<(usize, String)>,
-    /// Variants of other shards, or left by a stop, that are not ready yet.
+    /// Number of variants that are not ready yet: of other shards, or left by a stop.
     pub open: usize,
-    /// The index, where all variants are ready or failed.
+    /// The index, once all variants are ready or failed.
     pub index: Option<PathBuf>,
 }
 
-/// A plan and where its variants go.
+/// A plan and the folder of its variants.
 pub struct Batch {
     maker: Maker,
     output: PathBuf,
 }
 
 impl Batch {
-    /// Of a plan in a folder. Makes the output folder and keeps a copy of the plan there. Errors if the folder belongs to
-    /// another plan.
+    /// A batch for a plan. `folder` is the folder of the plan. Makes the output folder and keeps a copy of the plan
+    /// there. Errors if the output folder belongs to another plan.
     pub fn new(plan: Plan, folder: &Path, output: &Path) -> anyhow::Result<Self> {
         let maker = Maker::new(plan, folder)?;
         claim(maker.plan(), output)?;
@@ -115,8 +116,8 @@ impl Batch {
         self.output.join(format!("{variant:06}.failed.json"))
     }
 
-    /// Makes what a shard lacks; `tell` hears of each variant and says whether to go on. Variants that failed before are tried
-    /// again. Errors where files cannot be written.
+    /// Makes the variants that a shard lacks. `tell` is called after each variant and returns whether to go on.
+    /// Variants that failed before are tried again. Errors if files cannot be written.
     pub fn run(&self, shard: Shard, tell: &mut dyn FnMut(&Progress) -> bool) -> anyhow::Result<Report> {
         let plan = self.plan();
         let size = plan.pack.unwrap_or(1);
@@ -162,7 +163,7 @@ impl Batch {
         Ok(report)
     }
 
-    /// Makes one variant; the reason if it cannot be made. Errors if files cannot be written.
+    /// Makes one variant. Returns the reason if it cannot be made. Errors if files cannot be written.
     fn variant(&self, variant: usize) -> anyhow::Result<Option<String>> {
         let (folder, half) = (
             self.folder_of(variant),
@@ -199,7 +200,7 @@ impl Batch {
         Ok(None)
     }
 
-    /// What is known of variants that are ready or failed, in folders.
+    /// Reads the records of variants that are ready or failed and lie in folders.
     fn records(&self, variants: std::ops::Range<usize>) -> anyhow::Result<Vec<Record>> {
         let read = |variant| {
             let own = self.folder_of(variant).join(FILE);
@@ -214,7 +215,7 @@ impl Batch {
         variants.map(read).collect()
     }
 
-    /// Writes the index and the contact sheet once everything is ready or failed.
+    /// Writes the index and the contact sheet once every variant is ready or failed.
     fn finish(&self, report: &mut Report) -> anyhow::Result<()> {
         let plan = self.plan();
         let ready = |v: usize| match plan.pack {
@@ -259,7 +260,7 @@ pub fn claim(plan: &Plan, output: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What a panic said.
+/// The message of a panic, on one line.
 fn said(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     let text = text

@@ -11,12 +11,12 @@ use scene::Scene;
 use sensors::appearance::{Appearance, Quality};
 use sensors::cameras::Detail;
 
-/// Its name in the variant's folder.
+/// Name of its file in the variant's folder.
 pub const FILE: &str = "thumb.png";
 /// Size of the camera's part, pixels; the map is a square of the same height.
 const SIZE: [u32; 2] = [213, 120];
 
-/// Draws and writes it.
+/// Draws and writes the picture.
 pub fn write(scene: &Scene, path: &Path) -> anyhow::Result<()> {
     let picture = draw(scene);
     let bytes = png::rgba(
@@ -28,7 +28,7 @@ pub fn write(scene: &Scene, path: &Path) -> anyhow::Result<()> {
     atomic::write(path, &bytes).with_context(|| format!("write {}", path.display()))
 }
 
-/// The map from above, and beside it what the front camera sees, if the rig has a camera.
+/// The map from above and beside it the view of the front camera, if the rig has a camera.
 fn draw(scene: &Scene) -> Picture {
     let scene = scene.with_rig_in_world();
     let map = fitted(picture::layout_top(scene.frame(), 1), SIZE[1]);
@@ -47,7 +47,7 @@ fn draw(scene: &Scene) -> Picture {
     Picture::sheet(&[vec![map, seen]], 2)
 }
 
-/// A picture made so small that neither side is longer.
+/// A picture shrunk so that neither side is longer than `side`.
 fn fitted(picture: Picture, side: u32) -> Picture {
     let (width, height) = (picture.width as u32, picture.height as u32);
     let Some(image) = image::RgbaImage::from_raw(width, height, picture.rgba.clone()) else {

@@ -1,4 +1,4 @@
-//! Pictures of a scene from above, ahead is up: as large as fits the frame, in its middle.
+//! Pictures of a scene from above, ahead is up: as large as fits the frame, centred.
 
 use anyhow::Context;
 use image::imageops::{FilterType, resize};
@@ -10,9 +10,9 @@ use sensors::rolling;
 use super::{BEHIND, Subject};
 use crate::picture::{self, Picture};
 
-/// Of scenery so much of its colour is seen beside the road, of 255.
+/// Brightness of scenery on the map, of 255.
 const SCENERY: u16 = 150;
-/// Of the ego vehicle.
+/// Colour of the ego vehicle.
 pub(super) const EGO_COLOR: [u8; 3] = [235, 238, 242];
 
 /// Pixels per metre of a map that fills a frame.
@@ -25,7 +25,7 @@ fn per_column(extent: Extent, [width, height]: [u32; 2]) -> f64 {
     (f64::from(width) / extent.ny() as f64).min(f64::from(height) / extent.nx() as f64)
 }
 
-/// A picture of a size, pixels. Cells are drawn at a whole number of pixels, then made smaller.
+/// A picture of the size `size`, pixels. Cells are drawn at a whole number of pixels, then scaled down.
 pub(super) fn picture(scene: &Scene, subject: Subject, size: [u32; 2]) -> anyhow::Result<Picture> {
     let frame = scene.frame();
     let extent = frame.extent();
@@ -60,7 +60,7 @@ pub(super) fn picture(scene: &Scene, subject: Subject, size: [u32; 2]) -> anyhow
     Ok(out)
 }
 
-/// Layout and boxes, what stands beside the road, and the ego vehicle.
+/// The layout, the boxes, the scenery and the ego vehicle.
 fn map(scene: &Scene, scale: usize) -> Picture {
     let frame = scene.frame();
     let extent = frame.extent();
@@ -81,12 +81,12 @@ fn map(scene: &Scene, scale: usize) -> Picture {
     out
 }
 
-/// How what stands beside the road is shown.
+/// The colour of scenery of a class.
 pub(super) fn scenery_color(class: Class) -> [u8; 3] {
     class.color().map(|c| (u16::from(c) * SCENERY / 255) as u8)
 }
 
-/// What stands beside the road anywhere.
+/// The scenery classes that top at least one column of the map.
 pub(super) fn sceneries(scene: &Scene) -> Vec<Class> {
     let frame = scene.frame();
     let tops = frame.extent().all_columns();
@@ -98,7 +98,7 @@ pub(super) fn sceneries(scene: &Scene) -> Vec<Class> {
     all
 }
 
-/// What stands in a column beside the road.
+/// The scenery class on top of a column; `None` if another class is on top.
 fn scenery(column: &[u8; Extent::NZ]) -> Option<Class> {
     let top = column.iter().rev().find(|v| **v != Class::FREE)?;
     Class::from_id(*top).filter(|c| matches!(c, Class::Manmade | Class::Vegetation))

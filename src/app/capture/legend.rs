@@ -1,4 +1,4 @@
-//! What stands beside the pixels of a picture: names of cameras, what colours mean, how long a metre is.
+//! Annotations of a picture: names of cameras, legend of colours, scale bar.
 
 use std::collections::BTreeSet;
 
@@ -16,9 +16,9 @@ use crate::picture::Picture;
 
 /// Height of a line, points.
 const LINE: f32 = 20.0;
-/// Around what is below a picture, points.
+/// Margin around the legend, points.
 const EDGE: f32 = 10.0;
-/// A picture up to so wide has a pixel per point, a wider one more, so that letters keep their share of it.
+/// Widest picture with one pixel per point. A wider one has more, so that letters keep their share of it.
 const WIDE_PX: f32 = 1200.0;
 const LETTERS: f32 = 13.0;
 const DIM: Color32 = Color32::from_rgb(170, 176, 186);
@@ -26,12 +26,12 @@ const DIM: Color32 = Color32::from_rgb(170, 176, 186);
 /// A colour and what it means.
 type Entry = (Color32, String);
 
-/// Pixels per point on a picture so many pixels wide.
+/// Pixels per point on a picture of a width, pixels.
 fn pixels_per_point(width: usize) -> f32 {
     (width as f32 / WIDE_PX).max(1.0)
 }
 
-/// Drawn by egui: `show` on so many points, each so many pixels.
+/// A picture drawn by egui: `show` on `size` points, with `pixels_per_point`.
 fn drawn(size: [f32; 2], pixels_per_point: f32, show: impl FnMut(&mut Ui)) -> Picture {
     let ctx = egui::Context::default();
     theme::apply(&ctx, theme::Theme::Dark);
@@ -65,7 +65,7 @@ pub(super) fn name(picture: &mut Picture, name: &str) {
     }
 }
 
-/// The legend of a picture so many pixels wide; a map has so many pixels per metre.
+/// The legend below a picture of a width, pixels. `per_m` is the number of pixels per metre of a map.
 pub(super) fn below(width: usize, per_m: Option<f32>, scene: &Scene, options: &CaptureOptions) -> Picture {
     let (pixels, scale) = (width, pixels_per_point(width));
     let width = pixels as f32 / scale;
@@ -73,7 +73,7 @@ pub(super) fn below(width: usize, per_m: Option<f32>, scene: &Scene, options: &C
     let depths = options.subject == Subject::Cameras && options.view == ViewId::DEPTH;
     let entries = entries(scene, options);
     let mut height = LINE + 2.0 * EDGE;
-    // Once to see how high it is, once to draw it.
+    // The first pass measures the height, the second draws.
     let mut below = drawn([width, height], scale, |_| {});
     for _ in 0..2 {
         below = drawn([width, height], scale, |ui| {
@@ -97,7 +97,7 @@ pub(super) fn below(width: usize, per_m: Option<f32>, scene: &Scene, options: &C
     below
 }
 
-/// What the colours of a picture mean.
+/// The entries of the legend: each colour and its meaning.
 fn entries(scene: &Scene, options: &CaptureOptions) -> Vec<Entry> {
     let frame = scene.frame();
     let of_class = |c: Class| (theme::class_color(c), theme::sentence(t(&c.label())));
@@ -149,14 +149,14 @@ fn entries(scene: &Scene, options: &CaptureOptions) -> Vec<Entry> {
     }
 }
 
-/// A text, and where the next one begins.
+/// Writes a text and returns its rectangle.
 fn write(ui: &Ui, at: Pos2, text: &str, color: Color32) -> Rect {
     let font = FontId::proportional(LETTERS);
     ui.painter()
         .text(at + vec2(0.0, LINE / 2.0), Align2::LEFT_CENTER, text, font, color)
 }
 
-/// The scene and the moment.
+/// Writes the name of the scene and the moment. Returns where the next entry begins.
 fn caption(ui: &Ui, at: Pos2, scene: &Scene) -> Pos2 {
     let text = match scene.clip().length_s > 0.0 {
         true => format!("{}   {:.1} s", scene.name, scene.time_s()),
@@ -165,7 +165,7 @@ fn caption(ui: &Ui, at: Pos2, scene: &Scene) -> Pos2 {
     pos2(write(ui, at, &text, Color32::WHITE).right() + 24.0, at.y)
 }
 
-/// Where something so wide begins: on this line, or on the next.
+/// The place of an entry of a width: on this line, or on the next.
 fn fit(at: Pos2, wide: f32, width: f32) -> Pos2 {
     match at.x + wide > width - EDGE && at.x > EDGE {
         true => pos2(EDGE, at.y + LINE),

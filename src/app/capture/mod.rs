@@ -1,5 +1,5 @@
-//! Pictures of a scene for people, of any size: the 3D view, the map, voxels, all cameras on one sheet, LiDAR; with names, legend
-//! and scale. And the 3D view turned once around what it looks at.
+//! Pictures of a scene for people, of any size: the 3D view, the map, voxels, all cameras on one sheet, LiDAR; with
+//! names, legend and scale. Also a turntable: the 3D view turned once around its target.
 
 mod above;
 mod legend;
@@ -15,7 +15,7 @@ use sensors::cameras::{self, Detail, Ready, RenderOptions, SourceId, ViewId, bou
 use crate::camera_views::{camera_input, camera_label};
 use crate::picture::{Picture, SHEET_COLOR, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
 
-/// What is shown.
+/// Subject of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Subject {
     /// The 3D view.
@@ -32,7 +32,7 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// All of them, with the names that the command line takes and what they are called for a person.
+    /// All subjects, with the name on the command line and the label for the user.
     pub const ALL: [(Self, &'static str, &'static str); 5] = [
         (Self::View, "view", "3D view"),
         (Self::Map, "map", "Map"),
@@ -42,20 +42,20 @@ impl Subject {
     ];
 }
 
-/// How a picture is taken.
+/// Options of a picture.
 #[derive(Clone, Debug)]
 pub struct CaptureOptions {
-    /// What is shown.
+    /// The subject.
     pub subject: Subject,
-    /// The 3D view; its size is also the frame that a map is to fill, pixels.
+    /// The 3D view. Its size is also the frame that a map fills, pixels.
     pub shot: ShotOptions,
     /// Size of each camera on the sheet, pixels.
     pub camera_size: [u32; 2],
-    /// What cameras show.
+    /// View of the cameras.
     pub view: ViewId,
-    /// What classes and depths are rendered from.
+    /// Source that classes and depths are rendered from.
     pub source: SourceId,
-    /// With names, a legend and a scale.
+    /// True: with names, a legend and a scale.
     pub legend: bool,
 }
 
@@ -74,10 +74,10 @@ impl Default for CaptureOptions {
 
 /// Columns of a sheet of cameras.
 const COLUMNS: usize = 3;
-/// Between the pictures of a sheet, pixels.
+/// Gap between the pictures of a sheet, pixels.
 const MARGIN: usize = 6;
 
-/// Takes a picture. Errors in one line: of a size that does not fit into memory, or where the 3D view finds no adapter.
+/// Takes a picture. Errors in one line if the size does not fit into memory, or if the 3D view finds no adapter.
 pub fn capture(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Picture> {
     const BYTES_PER_PIXEL: u64 = 16;
     let legend = options.legend && !(options.subject == Subject::View && options.shot.transparent);
@@ -89,7 +89,7 @@ pub fn capture(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Pictur
     bounds::check(options.shot.size, BYTES_PER_PIXEL, 0)?;
     let [width, height] = options.shot.size;
     let below = legend.then(|| below(scene, options));
-    // The legend is within the size that was asked for, where there is room for it.
+    // The legend lies within the requested size, if there is room for it.
     let left = height.saturating_sub(below.as_ref().map_or(0, |b| b.height as u32));
     let size = [width, if left < height / 2 { height } else { left }];
     let picture = match options.subject {
@@ -103,8 +103,8 @@ pub fn capture(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Pictur
     Ok(stacked(picture, below))
 }
 
-/// The legend below a picture of the size that is asked for. How long a metre is follows from the height that is left for the
-/// picture, and that from the lines of the legend: these hardly ever change by it.
+/// The legend below a picture of the requested size. The scale bar depends on the height left for the picture, and that
+/// height on the lines of the legend; the number of lines hardly ever changes by it.
 fn below(scene: &Scene, options: &CaptureOptions) -> Picture {
     let [width, height] = options.shot.size;
     let drawn = |left: u32| {
@@ -126,12 +126,12 @@ fn stacked(picture: Picture, below: Option<Picture>) -> Picture {
     out
 }
 
-/// The bytes of a PNG that also tells how the picture came to be, and holds the scene.
+/// The bytes of a PNG that also holds the recipe of the picture and the scene.
 pub fn to_png(scene: &Scene, picture: &Picture) -> anyhow::Result<Vec<u8>> {
     to_png_made_with(scene, picture, serde_json::Value::Null)
 }
 
-/// The same, with what the scene was made with.
+/// The bytes of a PNG, as from [`to_png`], with the parameters that the scene was made with.
 pub fn to_png_made_with(
     scene: &Scene,
     picture: &Picture,
@@ -183,12 +183,12 @@ fn title(camera: &Camera) -> String {
     camera_label(&camera.name)
 }
 
-/// A turn around what the 3D view looks at.
+/// A turn of the 3D view around its target.
 #[derive(Clone, Debug)]
 pub struct Turntable {
-    /// The 3D view; its camera is where the turn begins.
+    /// The 3D view; the turn begins at its camera.
     pub shot: ShotOptions,
-    /// How long one turn takes, s.
+    /// Duration of the turn, s.
     pub seconds: f64,
     /// Frames per second.
     pub rate_hz: f64,
@@ -198,7 +198,7 @@ impl Turntable {
     /// Longest turn, s.
     pub const MAX_S: f64 = 60.0;
 
-    /// How many frames a turn has.
+    /// Number of frames of the turn.
     pub fn frames(&self) -> u32 {
         (self.seconds * self.rate_hz)
             .round()
@@ -206,8 +206,8 @@ impl Turntable {
     }
 }
 
-/// The file of a turn. `go_on` is told how many of how many frames are done, and says whether to go on. Errors in one line, also
-/// where it was told not to.
+/// The file of a turn. `go_on` is told the number of finished frames and of all frames, and returns whether to go on.
+/// Errors in one line, also when `go_on` stops it.
 pub fn turntable(
     scene: &Scene,
     turn: &Turntable,
@@ -225,7 +225,7 @@ pub fn turntable(
     }
     let frames = turn.frames();
     let mut view = View3d::new()?;
-    // MP4 wants even sides.
+    // MP4 needs even sides.
     let size = turn.shot.size.map(|s| s.next_multiple_of(2));
     bounds::check(size, SHOT_BYTES_PER_PIXEL, 0)?;
     let mut writer = VideoWriter::new(kind, size, frames, turn.rate_hz)?;
@@ -241,7 +241,7 @@ pub fn turntable(
     Ok(writer.finish()?)
 }
 
-/// Behind names and legends.
+/// Background colour of names and legends.
 const BEHIND: [u8; 3] = SHEET_COLOR;
 
 #[cfg(test)]
@@ -269,17 +269,17 @@ mod tests {
             asked.shot.size = [500, 400];
             let with = capture(&scene, &asked).expect("small");
             assert_eq!([with.width, with.height], [500, 400], "{subject:?}");
-            // Letters are there, and all is opaque.
+            // There are letters, and every pixel is opaque.
             let last = &with.rgba[360 * 500 * 4..];
             assert!(last.chunks_exact(4).any(|p| p[0] > 150) && last.chunks_exact(4).all(|p| p[3] == 255));
             asked.legend = false;
             let bare = capture(&scene, &asked).expect("small");
             assert_eq!([bare.width, bare.height], [500, 400]);
-            // The map is square, and stands in the middle.
+            // The map is square and centred.
             let color = |x: usize| bare.rgba[(200 * 500 + x) * 4..][..3].to_vec();
             assert!(color(20) == BEHIND && color(480) == BEHIND && color(250) != BEHIND);
         }
-        // What is too low for a legend becomes higher by it.
+        // A picture too low for its legend becomes higher by the legend.
         let mut low = options(Subject::Map);
         low.shot.size = [300, 30];
         assert!(capture(&scene, &low).expect("small").height > 30);

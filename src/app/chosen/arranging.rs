@@ -1,4 +1,4 @@
-//! Groups, hidden and locked objects: what is asked of the selection, and what locks keep from edits.
+//! Groups, hidden and locked objects: commands for the selection, and edits that locks prevent.
 
 use language::{t, tf};
 
@@ -15,7 +15,7 @@ impl SceneloomApp {
         Members::of(self.state.chosen(), things)
     }
 
-    /// Arranges what is chosen. What is locked already is unlocked by the same key.
+    /// Arranges the selection. Locking a selection that is locked already unlocks it.
     pub(super) fn arrange(&mut self, how: Arrangement) {
         let chosen = self.members();
         let arranged = self.document.settled_scene().arranged.clone();
@@ -65,7 +65,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Edits without those of locked objects; says what they leave as it is.
+    /// The edits that do not change locked objects. With `says`, a toast tells which objects stay as they are.
     pub(crate) fn unlocked(&mut self, edits: Vec<Edit>, says: bool) -> Vec<Edit> {
         let (open, kept) = arranged::unlocked(self.document.settled_scene(), edits);
         if says && !kept.is_empty() {

@@ -1,5 +1,5 @@
-//! Commands for what is chosen where things are among it: removed, copied, moved, turned, set to the kerb, together with
-//! the chosen boxes, as one undo step.
+//! Commands for a selection that holds things: removed, copied, moved, turned, set to the kerb, together with the
+//! chosen boxes, as one undo step.
 
 use glam::DVec2;
 
@@ -13,11 +13,11 @@ use scene::{BoxId, Form, Scene, ThingId};
 
 use crate::tools::things::words;
 
-/// How far a kerb may be from what is set to it, m.
+/// Farthest distance of a kerb to which an object is set, m.
 const KERB_REACH_M: f64 = 12.0;
 
 impl SceneloomApp {
-    /// Carries out a command of boxes for things too; false if it concerns no thing.
+    /// Carries out a command of boxes for the chosen things too. Returns false if no thing is chosen.
     pub(crate) fn carry(&mut self, command: &ToolCommand, ctx: &egui::Context) -> bool {
         let scene = self.document.settled_scene().clone();
         if *command == ToolCommand::Paste && !self.state.tools.things.clipboard.is_empty() {
@@ -128,7 +128,7 @@ impl SceneloomApp {
         true
     }
 
-    /// What is done something to, for the name of its step.
+    /// The objects of an edit in words, for the name of the undo step.
     fn named(&self, forms: &[&Form], boxes: &[BoxId]) -> String {
         match boxes.is_empty() {
             true => words::count(forms),
@@ -136,7 +136,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Copies beside the originals.
+    /// Copies the selection beside the originals.
     fn duplicate(&mut self, scene: &Scene, boxes: &[BoxId], forms: &[Form]) {
         let by_m = beside_m(forms);
         let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
@@ -150,7 +150,7 @@ impl SceneloomApp {
             return self.note(t("All of them would lie outside the map"));
         }
         if forms.is_empty() {
-            // The things would lie outside, the boxes do not.
+            // The things would lie outside the map, the boxes do not.
             return self.add_boxes("Row of boxes", added);
         }
         self.add_things(label, forms, added.edits);
@@ -163,13 +163,13 @@ impl SceneloomApp {
         edits.push(Edit::AddThings {
             forms: forms.to_vec(),
         });
-        // Without a text on its clipboard the window system would not tell of the chord that pastes.
+        // Without a text on the clipboard the window system would not report the chord that pastes.
         ctx.copy_text(serde_json::to_string(&edits).unwrap_or_default());
         self.state.tools.clipboard = clipboard;
         self.state.tools.things.clipboard = forms.to_vec();
     }
 
-    /// At the pointer over the bird's-eye view, else beside where they were; boxes come along.
+    /// Pastes things at the pointer over the bird's-eye view, else beside the originals. Boxes come along.
     fn paste_things(&mut self, scene: &Scene) {
         let frame = scene.frame();
         let over_bev = self.state.pointed.pane == Some(PaneId::BEV);
@@ -180,7 +180,7 @@ impl SceneloomApp {
             Some(at_m) => at_m - middle,
             None => beside_m(&forms),
         };
-        // Boxes and things keep their places to each other.
+        // Boxes and things keep their relative places.
         let mut boxes = self.state.tools.clipboard.clone();
         for b in &mut boxes.boxes {
             b.center_m += by_m.extend(0.0);
@@ -198,7 +198,7 @@ fn shifted(form: &Form, by_m: DVec2) -> Form {
     out
 }
 
-/// The way to a free place beside forms, across their longer extent, m.
+/// The offset to a free place beside the forms, across their longer extent, m.
 fn beside_m(forms: &[Form]) -> DVec2 {
     const GAP_M: f64 = 1.0;
     const MOST_M: f64 = 20.0;

@@ -1,4 +1,4 @@
-//! Carries out what is asked of the tools, and of what is chosen.
+//! Carries out commands of the tools and of the selection.
 
 mod arranging;
 mod carry;
@@ -21,7 +21,7 @@ use language::{t, tf};
 use scene::Extent;
 
 impl SceneloomApp {
-    /// Deletes what is chosen of the roads; false if nothing is, or their tool is not in hand.
+    /// Deletes the chosen parts of roads. Returns false if none is chosen, or if their tool is not in hand.
     fn delete_road(&mut self) -> bool {
         let tools = &mut self.state.tools.hand;
         let Some(part) = tools.road.chosen.filter(|_| tools.tool == road::ID) else {
@@ -139,7 +139,7 @@ impl SceneloomApp {
                     true => self.note(t("It fits its voxels, or has too few of them")),
                     false => {
                         self.apply_some("Fit to voxels", edits);
-                        // What the source was inverted under is another box.
+                        // The source was inverted for the box as it was; the box has changed.
                         self.generation.live.source_changed();
                     }
                 }
@@ -190,8 +190,8 @@ impl SceneloomApp {
         }
     }
 
-    /// Keeps the chosen boxes, and gives the window system the edits that add them: without a text on its clipboard it
-    /// would not tell of the chord that pastes.
+    /// Copies the chosen boxes, and puts the edits that add them on the system's clipboard. Without a text there the
+    /// window system would not report the chord that pastes.
     fn copy(&mut self, ctx: &egui::Context) {
         let clipboard = Clipboard::of(self.document.settled_scene(), &self.state.chosen());
         if !clipboard.boxes.is_empty() {
@@ -202,11 +202,11 @@ impl SceneloomApp {
         }
     }
 
-    /// Does what a tool made of an event.
+    /// Carries out an act of a tool.
     fn act(&mut self, act: Act, ctx: &Context) {
         match act {
             Act::Preview(edits) => self.execute(Command::Preview(edits), ctx),
-            // What cannot be is said when the button comes up.
+            // An edit that fails is reported only when the button is released.
             Act::Try(edits) => {
                 let edits = self.unlocked(edits, false);
                 if self.document.preview_all(&edits).is_err() {
@@ -239,12 +239,12 @@ impl SceneloomApp {
     }
 }
 
-/// The name of a step for one box or for several.
+/// The name of an undo step for one object or for several.
 pub(crate) fn of<T>(ids: &[T], one: &'static str, several: &'static str) -> &'static str {
     if ids.len() > 1 { several } else { one }
 }
 
-/// True if an edit adds a box whose middle is beside the map.
+/// True if an edit adds a box whose centre is outside the map.
 fn lies_outside(extent: Extent, edit: &Edit) -> bool {
     match edit {
         Edit::AddBox { center_m, .. } => extent.column_at(center_m.x, center_m.y).is_none(),

@@ -9,7 +9,7 @@ use scene::{Background, Form, ThingId};
 
 use crate::tools::things::{ThingCommand, words};
 
-/// By how much a step makes things higher that have no storeys, m.
+/// Step in height for things that have no storeys, m.
 const STEP_M: f64 = 0.5;
 
 impl SceneloomApp {
@@ -39,7 +39,7 @@ impl SceneloomApp {
         self.forget_closed();
     }
 
-    /// What cannot be seen or changed is not chosen either.
+    /// Clears the selection of things while they are hidden or locked, and puts their tool down.
     fn forget_closed(&mut self) {
         if !self.state.tools.things.is_open() {
             self.state.tools.things.chosen.clear();
@@ -47,8 +47,8 @@ impl SceneloomApp {
         }
     }
 
-    /// Adds things (world frame), with other edits, as one undo step, and chooses them. The step is called `label`: English,
-    /// with a place for `{things}`.
+    /// Adds things (world frame), with other edits, as one undo step, and chooses them. `label` names the step:
+    /// English, with a place for `{things}`.
     pub(crate) fn add_things(&mut self, label: &str, forms: Vec<Form>, mut edits: Vec<Edit>) {
         let named: Vec<&Form> = forms.iter().collect();
         let label = filled(t(label), &[("things", &words::count(&named))]);
@@ -59,7 +59,7 @@ impl SceneloomApp {
         self.state.choose_things(&new, Choose::Only);
     }
 
-    /// Brings the chosen things into the middle of both large views.
+    /// Centres the chosen things in both large views.
     pub(crate) fn frame_things(&mut self) {
         let scene = self.document.scene();
         let chosen = self.state.tools.things.chosen_in(&scene.background);

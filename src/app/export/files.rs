@@ -1,4 +1,4 @@
-//! The files of an export on the disk.
+//! Writes the files of an export to the disk.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,11 +11,11 @@ use formats::export::OutFile;
 use formats::out_folder::OutFolder;
 use scene::plain_name::folded;
 
-/// Files that were written, and their sizes in bytes.
+/// Files that were written, with their sizes in bytes.
 type Written = Vec<(PathBuf, u64)>;
 
-/// Writes what the formats made: one file to `path`, or all of them into the folder `path`. None is written before it is known
-/// that all of them may be.
+/// Writes the files of the formats: one file to `path`, or all of them into the folder `path`. Before the first is
+/// written, all names are checked.
 pub(super) fn write(formats: &[Format], ready: &[Vec<OutFile>], path: &Path) -> anyhow::Result<Written> {
     if !fills_a_folder(formats, path) {
         return write_one(path, ready);
@@ -27,7 +27,7 @@ pub(super) fn write(formats: &[Format], ready: &[Vec<OutFile>], path: &Path) -> 
     laid.iter().map(&mut one).collect()
 }
 
-/// True unless there is one format of one file, and the path is no folder.
+/// True unless there is one format of one file and the path is not a folder.
 fn fills_a_folder(formats: &[Format], path: &Path) -> bool {
     match formats {
         [format] if format.file_name.is_some() => {
@@ -37,7 +37,7 @@ fn fills_a_folder(formats: &[Format], path: &Path) -> bool {
     }
 }
 
-/// Writes the file of a format; no folder is made.
+/// Writes the file of a format. No folder is made.
 fn write_one(path: &Path, ready: &[Vec<OutFile>]) -> anyhow::Result<Written> {
     let one = |file: &OutFile| {
         atomic::write(path, &file.bytes).with_context(|| format!("write {}", path.display()))?;
@@ -46,9 +46,9 @@ fn write_one(path: &Path, ready: &[Vec<OutFile>]) -> anyhow::Result<Written> {
     ready.iter().flatten().map(one).collect()
 }
 
-/// Where the files of each format lie in their common folder, and what is in them. A file that formats share, as the calibration,
-/// lies there once. A format that would put something else into a file of an earlier one gets a folder of its own, called as the
-/// format. Errors if two different files of one format have one name, or that folder is taken.
+/// Path of each file in the common folder, with its bytes. A file that formats share, such as the calibration, is there
+/// once. A format that would give other contents to a file of an earlier one gets a folder of its own, named after the
+/// format. Errors if two different files of one format have one name, or if a file of that folder is taken.
 fn laid<'a>(formats: &[Format], ready: &'a [Vec<OutFile>]) -> anyhow::Result<Vec<(String, &'a [u8])>> {
     let mut known: BTreeMap<String, (&str, &[u8])> = BTreeMap::new();
     let mut out = Vec::new();

@@ -1,4 +1,4 @@
-//! How a view is divided when two states are compared.
+//! Division of a view when two states are compared.
 
 use egui::{Rect, Ui, UiBuilder, pos2, vec2};
 
@@ -13,18 +13,18 @@ pub(crate) fn halves(area: Rect) -> (Rect, Rect) {
     )
 }
 
-/// What lies on the left of the line of the wipe.
+/// The part of an area to the left of the wipe line; `at` is the line's place, 0 to 1.
 pub(crate) fn left_part(area: Rect, at: f32) -> Rect {
     area.with_max_x(area.left() + area.width() * at)
 }
 
-/// Names the two halves.
+/// Writes the names of the two states into the two halves.
 pub(crate) fn sides(ui: &Ui, left: Rect, right: Rect, [other, now]: [&str; 2]) {
     tag(ui, left.left_top() + vec2(8.0, 8.0), other, false);
     tag(ui, right.left_top() + vec2(8.0, 8.0), now, false);
 }
 
-/// Draws within a rectangle.
+/// Draws within a rectangle, clipped to it.
 pub(crate) fn in_rect(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         ui.set_clip_rect(ui.clip_rect().intersect(rect));
@@ -32,7 +32,7 @@ pub(crate) fn in_rect(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// Draws where one stands, cut to a rectangle.
+/// Draws at the present place, clipped to a rectangle.
 pub(crate) fn clipped(ui: &mut Ui, clip: Rect, add: impl FnOnce(&mut Ui)) {
     ui.scope(|ui| {
         ui.set_clip_rect(ui.clip_rect().intersect(clip));

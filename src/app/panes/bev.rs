@@ -1,4 +1,4 @@
-//! The bird's-eye view, with the state before on it or beside it.
+//! The bird's-eye view, with the compared state on it or beside it.
 
 use egui::{Rect, Ui};
 

@@ -1,4 +1,4 @@
-//! What a right click offers: for the box under the pointer, or for the place.
+//! The menu of a right click: on the box under the pointer, or on the place.
 
 use egui::{Layout, PointerButton, Popup, PopupKind, Response, SetOpenCommand, Ui};
 use glam::DVec2;
@@ -15,16 +15,17 @@ use editor::tools::{Act, lane_heading};
 use scene::{Arrangement, BoxId, Class, Scene, SceneBox};
 use widgets::theme;
 
-/// What was under the pointer when the right button was clicked.
+/// The box and the place under the pointer at a right click.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Under {
     /// The box.
     pub id: Option<BoxId>,
-    /// The place on the ground, world frame, m; none where the view shows none.
+    /// The place on the ground, world frame, m; `None` where the view shows no ground.
     pub at_m: Option<DVec2>,
 }
 
-/// Opens the menu of a view where the right button is clicked without being dragged, and draws it. `under` tells what is there.
+/// Opens the menu of a view at a right click without a drag, and draws it. `under` gives the box and the place at a
+/// point.
 pub(super) fn of_view(
     ui: &Ui,
     response: &Response,
@@ -58,7 +59,7 @@ fn open_id(pane: PaneId) -> egui::Id {
     egui::Id::unique(("a menu is open over", pane))
 }
 
-/// While the menu of a view is open its view answers nothing: the press that ends the menu does no more.
+/// Disables a view while its menu is open: the press that closes the menu has no other effect.
 pub(super) fn hold(ui: &mut Ui, pane: PaneId) {
     if ui.data(|d| d.get_temp(open_id(pane))).unwrap_or(false) {
         ui.visuals_mut().disabled_alpha = 1.0;
@@ -84,7 +85,7 @@ pub(super) fn of_row(
     response.context_menu(|ui| entries(ui, scene, state, under, commands));
 }
 
-/// What is under the right button is chosen, unless it is one of several that are.
+/// Chooses the box under the right button, unless it is chosen already.
 fn choose(state: &mut UiState, id: Option<BoxId>) {
     if let Some(id) = id.filter(|id| !state.is_chosen(*id)) {
         state.choose(&[id], Choose::Only);
@@ -163,7 +164,7 @@ fn of_box(ui: &mut Ui, scene: &Scene, state: &UiState, b: &SceneBox, commands: &
     );
 }
 
-/// Groups, hidden and locked: of what is chosen.
+/// Entries to group, hide and lock the selection.
 fn arranging(ui: &mut Ui, scene: &Scene, state: &UiState, b: &SceneBox, commands: &mut Vec<Command>) {
     let arrange = |how| Command::Tools(ToolCommand::Arrange(how));
     let chosen = state.chosen().len() + state.tools.things.chosen.len();

@@ -12,8 +12,8 @@ use sensors::rays::CameraRays;
 use viewport::GROUND_TOP_M;
 use widgets::theme;
 
-/// How far below the physical ground the picture shows what stands on it, m: pictures of voxels have the ground where
-/// labels have it.
+/// How far below the physical ground the pictures show objects, m. Pictures of voxels have the ground at the height of
+/// the labels.
 pub fn drop_m(shown: &CamerasShown) -> f64 {
     match shown.shown_source().about().ground {
         GroundHeight::Physical => 0.0,
@@ -21,7 +21,7 @@ pub fn drop_m(shown: &CamerasShown) -> f64 {
     }
 }
 
-/// The edges of a box in pixels of the camera, cut at its near plane; those behind it are left out.
+/// The edges of a box in pixels of the camera, clipped at its near plane. Edges behind the camera are left out.
 pub fn edges(camera: &Camera, b: &SceneBox, drop_m: f64) -> Vec<[[f64; 2]; 2]> {
     let pose = camera.ego_from_camera();
     let corner = |i: usize| {
@@ -31,7 +31,7 @@ pub fn edges(camera: &Camera, b: &SceneBox, drop_m: f64) -> Vec<[[f64; 2]; 2]> {
     };
     let rays = CameraRays::new(camera, camera.width, camera.height);
     if !rays.is_plain() {
-        // A lens bends edges: short pieces of them.
+        // A lens bends edges, so they are drawn in short pieces.
         let velocity = b.velocity_mps.extend(0.0);
         let pieces = EDGES
             .iter()
@@ -55,7 +55,7 @@ pub fn edges(camera: &Camera, b: &SceneBox, drop_m: f64) -> Vec<[[f64; 2]; 2]> {
 pub fn draw(painter: &Painter, rect: Rect, camera: &Camera, scene: &Scene, state: &UiState) {
     let painter = painter.with_clip_rect(painter.clip_rect().intersect(rect));
     let part = |[x, y]: [f64; 2]| -> Pos2 {
-        // Far outside is outside; huge numbers would only upset the tessellation.
+        // Points far outside are clamped: huge numbers would only upset the tessellation.
         let at = |v: f64, size: u32| (v / f64::from(size.max(1))).clamp(-20.0, 20.0) as f32;
         rect.min + pos2(at(x, camera.width), at(y, camera.height)).to_vec2() * rect.size()
     };
@@ -101,10 +101,10 @@ mod tests {
             (0.0..f64::from(front.width)).contains(&p[0]) && (0.0..f64::from(front.height)).contains(&p[1])
         };
         assert!(seen.iter().flatten().all(inside), "{seen:?}");
-        // Lower in the world is lower in the picture.
+        // A lower box in the world is lower in the picture.
         let lowered = edges(front, &b, 0.6);
         assert!(seen.iter().zip(&lowered).all(|(a, b)| b[0][1] > a[0][1]));
-        // Around the camera: cut at the near plane, nothing infinite.
+        // A box around the camera is clipped at the near plane, and no coordinate is infinite.
         b.center_m = front.ego_from_camera().translation_m;
         b.size_m = DVec3::splat(3.0);
         let around = edges(front, &b, 0.0);

@@ -1,4 +1,4 @@
-//! The chosen box from above, from its left and from behind, with the voxels and returns around it; its faces can be
+//! The chosen box from above, from its right and from behind, with the voxels and returns around it. Its faces can be
 //! dragged.
 
 use egui::accesskit::Role;
@@ -16,15 +16,15 @@ use viewport::GROUND_TOP_M;
 use widgets::icons::Icon;
 use widgets::theme;
 
-/// What is shown around the box, m.
+/// Margin around the box, m.
 const MARGIN_M: f64 = 1.6;
 /// Smallest edge that dragging leaves, m.
 const MIN_SIZE_M: f64 = 0.2;
-/// How far from a face the pointer takes hold of it, points.
+/// Distance from a face within which the pointer grabs it, points.
 const REACH: f32 = 7.0;
-/// The ground of labels lies this far below the physical one, on which boxes stand, m: it is shown lifted by that.
-/// Objects reach down to it in labels, but their tops are where they are: what of them is below the physical ground is
-/// shown faintly.
+/// Height by which the ground of the labels is lifted in these views, m: it lies this far below the physical ground, on
+/// which boxes stand. In labels, objects reach down to the lower ground, but their tops are at the true height. The
+/// part of an object below the physical ground is drawn faintly.
 const LIFT_M: f64 = -GROUND_TOP_M;
 
 /// A view: its name, and the box axes (0 along the heading, 1 left, 2 up) that run right and up on the screen.
@@ -63,7 +63,7 @@ struct Held {
     scale: f64,
 }
 
-/// The chosen box from three sides, and the edge of it that is held.
+/// The chosen box from three sides, and the face that is dragged.
 #[derive(Default)]
 pub struct BoxViews {
     held: Option<Held>,
@@ -89,7 +89,7 @@ impl Pane for BoxViews {
 }
 
 impl BoxViews {
-    /// Draws the three views side by side, in a narrow pane one over the other.
+    /// Draws the three views side by side, or one below the other in a narrow pane.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -140,7 +140,7 @@ impl BoxViews {
             view = t(view.name).to_lowercase()
         );
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, label.as_str()));
-        // While a face is held the picture keeps the frame of the box that the drag began with.
+        // While a face is dragged the picture keeps the frame of the box at the start of the drag.
         let frame = self.held.filter(|h| h.start.id == b.id).map_or(*b, |h| h.start);
         let size = |axis: usize| frame.size_m[axis] + 2.0 * MARGIN_M;
         let scale = (f64::from(rect.width()) / size(view.right.0))
@@ -154,7 +154,7 @@ impl BoxViews {
         };
         let painter = ui.painter_at(rect);
         let reach = frame.size_m / 2.0 + DVec3::splat(MARGIN_M);
-        // Far ones first, as a painter would.
+        // Far voxels first: painter's algorithm.
         let depth_axis = 3 - view.right.0 - view.up.0;
         let toward = if depth_axis == 2 { 1.0 } else { -1.0 };
         let mut seen: Vec<(f64, Pos2, Color32)> = voxels(scene, &frame, reach)
@@ -178,7 +178,7 @@ impl BoxViews {
         }
         let physical = sweep.is_some_and(|s| s.physical);
         for point in sweep.map_or(&[][..], |s| &s.points) {
-            // The exact sweep meets the ground where labels have it; the learned one knows the physical ground.
+            // The exact sweep meets the ground at the height of the labels; the learned one uses the physical ground.
             let lifted = !physical && point.class.is_ground();
             let lift = DVec3::Z * if lifted { LIFT_M } else { 0.0 };
             let local = frame.to_local(DVec3::from_array(point.position_in_ego.map(f64::from)) + lift);
@@ -275,7 +275,7 @@ impl BoxViews {
 }
 
 impl Held {
-    /// The box with the held face under the pointer; the opposite face stays.
+    /// The box with the dragged face at the pointer; the opposite face stays.
     fn edit(&self, view: &View, p: Pos2) -> Edit {
         let travel = p - self.from;
         let moved_m = if self.axis == view.right.0 {
@@ -365,7 +365,7 @@ mod tests {
     use super::*;
     use scene::BoxId;
 
-    /// The voxels of a car end at its roof; the ground around it ends where it stands.
+    /// The voxels of a car end at its roof, and the ground around it at the height on which it stands.
     #[test]
     fn voxels_lie_in_their_box() {
         use scene::draft::draft;
@@ -405,7 +405,7 @@ mod tests {
             label: Default::default(),
         };
         for (axis, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (2, -1.0)] {
-            // Along the axis by half a metre: with sign -1 that makes it smaller.
+            // The face moves by half a metre along the axis; with sign -1 the box becomes smaller.
             let Edit::MoveBox {
                 center_m: Some(center_m),
                 size_m: Some(size_m),

@@ -1,4 +1,4 @@
-//! One camera of the rig, as large as its pane, with what it shows chosen by itself.
+//! One camera of the rig, as large as its pane, with a view of its own.
 
 use egui::Ui;
 
@@ -16,17 +16,17 @@ use language::{t, tf};
 use sensors::cameras;
 use widgets::icons::{self, Icon};
 
-/// A pane that was not drawn for so many frames is not rendered for.
+/// Frames after which a pane that was not drawn is no longer rendered for.
 const FRAMES: u8 = 3;
-/// So much room the light's menu needs with its name, points.
+/// Width of the light menu with its name, points.
 const LIGHT_POINTS: f32 = 72.0;
-/// So much an icon takes with its distance to the next, points.
+/// Width of an icon with its distance to the next, points.
 const ICON_POINTS: f32 = 32.0;
-/// So much the list of what the camera shows takes, and what it can be read in, points.
+/// Width of the list of views, and its least readable width, points.
 const MODES_POINTS: f32 = 124.0;
 const LEAST_MODES_POINTS: f32 = 56.0;
 
-/// The camera of this index, unless another was taken in its pane.
+/// The pane of a camera index. The user can show another camera in it.
 pub struct Camera {
     index: u8,
     strip: CameraStrip,
@@ -34,7 +34,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The pane of that index.
+    /// The pane of a camera index.
     pub fn new(index: u8) -> Self {
         Self {
             index,
@@ -80,15 +80,15 @@ impl Pane for Camera {
             Some(id) => t(title(id)).to_owned(),
             None => tf!("{view} (all)", view = t(title(strip))),
         };
-        // From the right to the left.
-        // The camera of the pane may be another than that of its name.
+        // Laid out from right to left. The pane may show another camera than the one in its name.
         let name = rig
             .cameras
             .get(camera)
             .map_or(String::new(), |c| camera_label(&c.name));
         let source = cameras::source_of(view, cx.state.cameras.source);
         let lit = source.about().needs.conditions;
-        // The title comes first: what has no room beside it is left out, what can be done elsewhere before the rest.
+        // The title comes first. Buttons without room beside it are left out; those that are also found elsewhere go
+        // first.
         let mut room = ui.available_width() - MODES_POINTS - if lit { ICON_POINTS } else { 0.0 };
         let mut fits = |n: f32| {
             room -= n * ICON_POINTS;
@@ -153,7 +153,7 @@ impl Pane for Camera {
         let room = ui.available_size();
         own.large = is_large(ui, room.x.min(room.y * 16.0 / 9.0));
         self.strip.set_legend(own.legend.then_some(camera));
-        // A camera that the vehicle has not is said to be missing.
+        // A camera index beyond the rig is reported as missing.
         let camera = if usize::from(self.index) < count {
             camera
         } else {
@@ -169,7 +169,7 @@ impl Pane for Camera {
     }
 }
 
-/// One camera on, or back.
+/// The next camera, or the previous one.
 fn step(on_by: u8, count: usize, forward: bool) -> u8 {
     let count = count.clamp(1, 255) as u8;
     let by = if forward { 1 } else { count - 1 };

@@ -1,4 +1,4 @@
-//! Where pictures of two states differ: what is alike is grey and dim.
+//! Differences between pictures of two states: equal parts are grey and dim.
 
 use std::sync::Arc;
 
@@ -7,10 +7,11 @@ use egui::{Color32, ColorImage, TextureHandle, TextureOptions, Ui};
 use crate::camera_views::CameraView;
 use sensors::cameras::ViewId;
 
-/// Steps of a colour below which pixels count as alike: a coarse picture is not quite a fine one.
+/// Largest difference of a colour channel at which pixels count as equal; a coarse picture differs slightly from a fine
+/// one.
 const ALIKE: u8 = 10;
 
-/// Pictures of differences, and what they were made from.
+/// Pictures of differences, and the pictures that they were made from.
 #[derive(Default)]
 pub(super) struct Differing {
     textures: Vec<Option<TextureHandle>>,
@@ -19,7 +20,7 @@ pub(super) struct Differing {
 }
 
 impl Differing {
-    /// Brings them up to date.
+    /// Updates the pictures.
     pub fn refresh(
         &mut self,
         ui: &Ui,
@@ -54,14 +55,14 @@ impl Differing {
         (self.made_from, self.shown) = (Some([now.clone(), before.clone()]), Some((view, plane_m)));
     }
 
-    /// Of one camera.
+    /// The texture of one camera; `None` if there is none.
     pub fn texture(&self, camera: usize) -> Option<&TextureHandle> {
         self.textures.get(camera).and_then(Option::as_ref)
     }
 }
 
-/// The later picture in its colours where it differs from the earlier one, elsewhere grey and dim. Pictures of other sizes
-/// differ everywhere.
+/// The later picture, in its colours where it differs from the earlier one, elsewhere grey and dim. Pictures of
+/// different sizes differ everywhere.
 fn difference(now: &ColorImage, before: &ColorImage) -> ColorImage {
     if now.size != before.size {
         return now.clone();

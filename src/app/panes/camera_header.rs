@@ -1,4 +1,4 @@
-//! The row above the camera strip: what the pictures show, and the knob that belongs to it.
+//! The row above the camera strip: the view, and the control that belongs to it.
 
 use egui::Ui;
 
@@ -13,28 +13,28 @@ use widgets::theme;
 use super::camera_strip::{CamerasInput, thousands};
 use super::conditions::conditions;
 
-/// Width that the button of the sensors takes, points.
+/// Width of the button of the sensors, points.
 const SENSORS_BUTTON: f32 = 84.0;
-/// Width that the number of LiDAR returns takes, points.
+/// Width of the number of LiDAR returns, points.
 const LIDAR_TEXT: f32 = 130.0;
 
-/// Width of the row of sources, and of the list that takes its place, points.
+/// Width of the row of sources, and of the list that replaces it, points.
 const SOURCES: f32 = 270.0;
 const FOLDED: f32 = 130.0;
-/// Widths of the fields for light and weather, of a menu with them, and of a short one, points.
+/// Widths of the fields for light and weather, of the menu with them, and of the short menu, points.
 const LIGHT: [f32; 3] = [310.0, 76.0, 36.0];
-/// Width that how far pictures are takes, of those that are painted with the button that stops it, points.
+/// Width of the progress of pictures; the second is for painted pictures, with the button that stops them, points.
 const UPDATING: f32 = 90.0;
 const PAINTING: f32 = 170.0;
 
 /// Size of the spinner, points.
 const SPINNER: f32 = 12.0;
 
-/// That newer pictures are on their way, and how far those are that are painted, which can be stopped.
+/// Draws the progress of newer pictures. Painting can be stopped, and resumed.
 pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec<Command>) {
     let weak = |text: String| egui::RichText::new(text).small().color(theme::text_weak());
     let paints = input.view == learned::VIEW.id;
-    // Buttons come before texts that change: they stay under the pointer.
+    // Buttons come before texts that change, so they stay under the pointer.
     if paints && input.stopped {
         ui.allocate_exact_size(egui::Vec2::splat(SPINNER), egui::Sense::hover());
         if ui.small_button(t("Go on")).clicked() {
@@ -61,7 +61,7 @@ pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec
     ui.label(weak(text));
 }
 
-/// The menu with time of day and weather; short: its sign in place of its name.
+/// The menu with time of day and weather; if `short`, with an icon in place of its name.
 pub(super) fn light_menu(ui: &mut Ui, short: bool, content: impl FnOnce(&mut Ui)) {
     let (name, hint) = (t("Light…"), t("Time of day and weather of the scene"));
     if short {
@@ -73,11 +73,11 @@ pub(super) fn light_menu(ui: &mut Ui, short: bool, content: impl FnOnce(&mut Ui)
     }
 }
 
-/// How the row is shared.
+/// Division of the row.
 struct Room {
-    /// Width of the views, points; they fold into a list where it is too small for them.
+    /// Width of the views, points; they fold into a list if it is too small for them.
     views: f32,
-    /// Which of [`LIGHT`].
+    /// Index into [`LIGHT`].
     light: usize,
 }
 
@@ -95,7 +95,7 @@ impl Room {
             _ => FOLDED,
         };
         let left = |light: usize| all - from - if lit { LIGHT[light] } else { 0.0 };
-        // Views side by side come before fields for the light, and those before their menu.
+        // First all views side by side, then the fields for the light, then the menu for the light.
         let fits = |views: f32| (0..LIGHT.len()).find(|light| left(*light) >= views);
         let light = fits(side_by_side).or_else(|| fits(FOLDED));
         let light = light.unwrap_or(LIGHT.len() - 1);
@@ -153,14 +153,14 @@ pub fn header(
             progress(ui, input, commands);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            // The menu has it too.
+            // The button is left out in a narrow row; the menu has it too.
             if ui.available_width() > SENSORS_BUTTON && ui.button(t("Sensors…")).clicked() {
                 commands.push(Command::Toggle(Window::Sensors));
             }
             let text = input
                 .lidar_points
                 .map(|n| tf!("LiDAR  {n} returns", n = thousands(n)));
-            // Only where it hides no button.
+            // Drawn only where it hides no button.
             if let Some(text) = text.filter(|_| ui.available_width() > LIDAR_TEXT) {
                 ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
             }

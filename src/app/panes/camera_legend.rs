@@ -1,4 +1,4 @@
-//! What the colours of a camera picture mean: the classes that it shows, or the scale of its depths.
+//! The legend of a camera picture: the classes in it, or the scale of depths.
 
 use egui::{Color32, Rect, Ui, pos2, vec2};
 
@@ -9,12 +9,12 @@ use sensors::color::ramp;
 use sensors::perceived::{GHOST, MISSED};
 use widgets::theme;
 
-/// Classes that are named at most.
+/// Most classes in the legend.
 const MOST: usize = 9;
 /// Depths at which the scale has a mark, m.
 const MARKS_M: [f32; 5] = [2.0, 5.0, 10.0, 25.0, 60.0];
 
-/// Draws it into the lower right corner of a picture; nothing for pictures whose colours speak for themselves.
+/// Draws the legend into the lower right corner of a picture. Views without a legend get none.
 pub(super) fn draw(ui: &Ui, over: Rect, picture: &CameraPicture, view: ViewId) {
     match picture {
         CameraPicture::Maps(_) if view == ViewId::DEPTH => depths(ui, over),
@@ -28,7 +28,7 @@ pub(super) fn draw(ui: &Ui, over: Rect, picture: &CameraPicture, view: ViewId) {
     }
 }
 
-/// The classes of a picture, that of most pixels first; 0 is where nothing was drawn.
+/// The classes of a picture, the most frequent first. Pixels without a class are left out.
 fn shown(labels: &[u8]) -> Vec<Class> {
     let mut counts = [0u32; 256];
     labels.iter().for_each(|l| counts[usize::from(*l)] += 1);
@@ -47,7 +47,7 @@ fn classes(ui: &Ui, over: Rect, classes: &[Class]) {
     named(ui, over, rows.collect());
 }
 
-/// Colours and what they mean.
+/// Draws colours with their names.
 fn named(ui: &Ui, over: Rect, rows: Vec<(Color32, String)>) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let painter = ui.painter_at(over);

@@ -27,7 +27,7 @@ use sensors::march::{MarchHit, MarchScene};
 use sensors::rays::CameraRays;
 use widgets::theme;
 
-/// Share of the window's width from which a picture is large enough to choose boxes in it; smaller ones are enlarged by a click.
+/// Share of the window's width from which boxes can be chosen in a picture. A click on a smaller picture enlarges it.
 const LARGE: f32 = 0.5;
 
 /// True if a picture so wide, points, is large enough to choose boxes in it.
@@ -38,44 +38,44 @@ pub(crate) fn is_large(ui: &Ui, width: f32) -> bool {
 /// Textures of the pictures.
 #[derive(Default)]
 pub struct CameraStrip {
-    /// One for each camera that was ever shown.
+    /// One for each camera that was shown.
     textures: Vec<Option<TextureHandle>>,
     made_from: Option<(Arc<Vec<CameraView>>, ViewId, f64)>,
     probe: Option<(SceneRev, MarchScene)>,
     stale_since_s: Option<f64>,
-    /// Pictures of another state, shown up to this part of the width of each.
+    /// Pictures of another state, shown over the left part of each picture, and the width of that part, 0 to 1.
     before: Option<(Vec<Option<TextureHandle>>, f32)>,
-    /// Shown in place of the pictures: where they differ from those of another state.
+    /// Difference pictures, shown in place of the pictures.
     differing: Option<Differing>,
     differs: bool,
     looks_stale: bool,
     legend_of: Option<usize>,
 }
 
-/// What the strip shows.
+/// Input of the strip.
 pub struct CamerasInput<'a> {
     /// The scene shown.
     pub scene: &'a Scene,
-    /// Its sensors where the ego vehicle is, world frame.
+    /// The sensors where the ego vehicle is, world frame.
     pub rig: Arc<SensorRig>,
     /// The newest pictures, in the rig's order.
     pub views: Option<&'a Arc<Vec<CameraView>>>,
-    /// The pictures belong to an earlier state.
+    /// True if the pictures belong to an earlier state.
     pub stale: bool,
-    /// How far pictures are that are being painted.
+    /// Progress of the pictures that are being painted.
     pub paint_stage: Option<PaintStage>,
-    /// That painting was stopped, or failed.
+    /// True if the painting was stopped, or failed.
     pub stopped: bool,
-    /// Returns of the newest sweep.
+    /// Number of returns of the newest sweep.
     pub lidar_points: Option<usize>,
-    /// What they show.
+    /// View of the pictures.
     pub view: ViewId,
     /// Depth of the plane that is shown, m.
     pub plane_m: f64,
 }
 
 impl<'a> CamerasInput<'a> {
-    /// Of a scene and what its sensors returned; `rev` is the state that they should show.
+    /// The input for a scene and the results of its sensors. `rev` is the state that they should show.
     pub(crate) fn of(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing, shown: &CamerasShown) -> Self {
         Self {
             scene,
@@ -90,7 +90,7 @@ impl<'a> CamerasInput<'a> {
         }
     }
 
-    /// The same of another view than the strip's.
+    /// The input for another view than the strip's.
     pub(crate) fn of_view(
         self,
         rev: SceneRev,
@@ -121,7 +121,7 @@ impl CameraStrip {
         commands: &mut Vec<Command>,
     ) {
         self.refresh(ui, input);
-        // Pictures of a clip that plays follow as fast as they can.
+        // Pictures of a playing clip always lag behind; they are not marked as stale.
         self.note_stale(ui, input.stale && !state.playback.playing);
         let cameras = &input.rig.cameras;
         let shown: Vec<usize> = (0..cameras.len())
@@ -150,13 +150,13 @@ impl CameraStrip {
         }
     }
 
-    /// The pictures as textures, brought up to date.
+    /// The textures of the pictures, updated.
     pub fn textures(&mut self, ui: &Ui, input: &CamerasInput<'_>) -> Vec<Option<TextureHandle>> {
         self.refresh(ui, input);
         self.textures.clone()
     }
 
-    /// Shows where the pictures differ from those of another state; none: the pictures.
+    /// Shows the differences from the pictures of another state; `None` shows the pictures.
     pub fn differ(&mut self, ui: &Ui, input: &CamerasInput<'_>, other: Option<&CamerasInput<'_>>) {
         self.differs = match (input.views, other.and_then(|o| o.views)) {
             (Some(now), Some(before)) => {
@@ -168,12 +168,13 @@ impl CameraStrip {
         };
     }
 
-    /// Shows these pictures of another state on the left of each, up to a part of its width; none: not at all.
+    /// Shows pictures of another state over the left part of each picture, up to a share of its width; `None` shows
+    /// none.
     pub fn wipe(&mut self, before: Option<(Vec<Option<TextureHandle>>, f32)>) {
         self.before = before;
     }
 
-    /// What the header of the strip offers.
+    /// Draws the controls in the header of the strip.
     pub fn controls(
         &self,
         ui: &mut Ui,
@@ -184,7 +185,7 @@ impl CameraStrip {
         header(ui, input, self.looks_stale, shown, commands);
     }
 
-    /// Draws one camera into all the space there is.
+    /// Draws one camera into all the available space.
     pub fn single(
         &mut self,
         ui: &mut Ui,
@@ -194,7 +195,7 @@ impl CameraStrip {
         commands: &mut Vec<Command>,
     ) {
         self.refresh(ui, input);
-        // Pictures of a clip that plays follow as fast as they can.
+        // Pictures of a playing clip always lag behind; they are not marked as stale.
         self.note_stale(ui, input.stale && !state.playback.playing);
         let area = ui.available_rect_before_wrap();
         let Some(camera) = input.rig.cameras.get(index) else {
@@ -207,7 +208,7 @@ impl CameraStrip {
         let rect = Rect::from_center_size(area.center(), vec2(width, width / aspect));
         if let Some(part) = self.picture(ui, rect, index, input, state, commands) {
             let text = self.pixel_text(input.scene, camera, part, state);
-            // The name of the camera stands in the title.
+            // The title already shows the name of the camera.
             let short = text.split_once("  ·  ").map_or(&*text, |(_, rest)| rest);
             beside_pointer(ui, rect, rect.min + part * rect.size(), short);
             state.pointed.readout = text;
@@ -220,12 +221,12 @@ impl CameraStrip {
         }
     }
 
-    /// The camera beside whose picture stands what the colours mean.
+    /// Sets the camera whose picture has a legend.
     pub fn set_legend(&mut self, camera: Option<usize>) {
         self.legend_of = camera;
     }
 
-    /// Pictures that are renewed at once should not flicker: only what stays stale looks so.
+    /// Marks pictures as stale only after a delay, so that pictures that are renewed at once do not flicker.
     fn note_stale(&mut self, ui: &Ui, stale: bool) {
         const AFTER_S: f64 = 0.35;
         let now_s = ui.input(|i| i.time);
@@ -243,7 +244,7 @@ impl CameraStrip {
 
     fn refresh(&mut self, ui: &Ui, input: &CamerasInput<'_>) {
         let Some(views) = input.views else {
-            // What was drawn is of another scene.
+            // The old textures are of another scene.
             (self.made_from, self.textures) = (None, Vec::new());
             return;
         };
@@ -275,7 +276,7 @@ impl CameraStrip {
         march.cast(camera.ego_from_camera().translation_m, ray_of(camera, part))
     }
 
-    /// What lies behind a place of a picture: class, box, distance from the camera, position. `part` runs from 0 to 1
+    /// The text for a place of a picture: class, box, distance from the camera, position. `part` runs from 0 to 1
     /// across the picture.
     fn pixel_text(
         &mut self,
@@ -391,7 +392,7 @@ impl CameraStrip {
         differing.or_else(|| self.textures.get(camera).and_then(Option::as_ref))
     }
 
-    /// One camera large, over the views; its pixels can be read.
+    /// Draws one camera large, over the views. Its pixels can be read.
     pub fn enlarged(
         &mut self,
         ui: &Ui,
@@ -403,7 +404,7 @@ impl CameraStrip {
         let Some(index) = state.cameras.enlarged else {
             return;
         };
-        // Without the strip on screen nobody else keeps its pictures up to date.
+        // If the strip is not on screen, nothing else updates its pictures.
         self.refresh(ui, input);
         let texture = self.textures.get(index).and_then(Option::as_ref).cloned();
         let (Some(texture), Some(camera)) = (texture, input.rig.cameras.get(index)) else {
@@ -448,12 +449,12 @@ impl CameraStrip {
     }
 }
 
-/// The window of an enlarged camera.
+/// Id of the window of an enlarged camera.
 pub(crate) fn enlarged_id() -> egui::Id {
     egui::Id::unique("enlarged camera")
 }
 
-/// Where in a picture a place of the world is, from 0 to 1 across it; `None` if the camera does not look there.
+/// The place of a point of the world in a picture, from 0 to 1 across it; `None` if it is outside the picture.
 fn place_in(camera: &Camera, place_m: DVec3, drop_m: f64) -> Option<egui::Vec2> {
     let px = CameraRays::new(camera, camera.width, camera.height).project(place_m - DVec3::Z * drop_m);
     let part = vec2(
@@ -464,7 +465,8 @@ fn place_in(camera: &Camera, place_m: DVec3, drop_m: f64) -> Option<egui::Vec2> 
     (px.z > 0.0 && within(part.x) && within(part.y)).then_some(part)
 }
 
-/// The way a place of a picture looks, ego frame, zero where the lens sees nothing; `part` runs from 0 to 1 across it.
+/// Direction of the ray through a place of a picture, in the frame of the camera's pose; zero where the lens has no
+/// ray. `part` runs from 0 to 1 across the picture.
 fn ray_of(camera: &Camera, part: egui::Vec2) -> DVec3 {
     let at = |size: u32, part: f32| f64::from(part) * f64::from(size);
     let (u, v) = (at(camera.width, part.x), at(camera.height, part.y));
@@ -478,7 +480,7 @@ fn unit() -> Rect {
     Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0))
 }
 
-/// Text beside the pointer, within a picture.
+/// Draws text beside the pointer, within a picture.
 fn beside_pointer(ui: &Ui, within: Rect, at: egui::Pos2, text: &str) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let galley = ui
@@ -508,7 +510,7 @@ fn badge(ui: &Ui, painter: &egui::Painter, left_bottom: egui::Pos2, text: &str, 
     painter.galley(rect.min + vec2(5.0, 2.0), galley, color);
 }
 
-/// 34567 as `34,567`.
+/// A number with commas between thousands: 34567 as `34,567`.
 pub fn thousands(n: usize) -> String {
     let digits = n.to_string();
     let mut out = String::new();

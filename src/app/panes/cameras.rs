@@ -46,19 +46,19 @@ impl Pane for Cameras {
     }
 }
 
-/// Pictures of one camera's pane.
+/// Picture strips of one camera's pane.
 pub(super) struct Strips<'a> {
-    /// Of the present state.
+    /// Strip of the present state.
     pub now: &'a mut CameraStrip,
-    /// Of the state before.
+    /// Strip of the compared state.
     pub before: &'a mut CameraStrip,
-    /// Which camera.
+    /// Index of the camera.
     pub camera: usize,
-    /// What it shows.
+    /// View of the camera.
     pub view: ViewId,
 }
 
-/// Draws one camera, or all of them: the present state, the one before it, both, or where they differ.
+/// Draws one camera or all of them: the present state, the compared one, both, or the differences.
 pub(super) fn compared(
     ui: &mut Ui,
     cx: &mut PaneContext<'_>,
@@ -124,7 +124,7 @@ pub(super) fn compared(
             }
         }
     }
-    // The row above the strip tells it; a camera in a pane of its own has none.
+    // The row above the strip shows the progress; the pane of a single camera has no such row.
     if single && now.stale && now.view == learned::VIEW.id {
         let line = Rect::from_min_max(area.left_bottom() - egui::vec2(0.0, 24.0), area.right_bottom());
         in_rect(ui, line, |ui| {

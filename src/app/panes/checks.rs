@@ -1,4 +1,4 @@
-//! The list of what the quality checks found: a click leads there, a button repairs it.
+//! The list of the findings of the quality checks. A click goes to a finding, a button repairs it.
 
 mod row;
 mod triage;
@@ -23,7 +23,7 @@ use waived::{reason_ui, waived_ui};
 use widgets::icons::{self, Icon};
 use widgets::theme;
 
-/// What the quality checks found.
+/// The pane of the quality checks.
 pub struct Checks;
 
 impl Pane for Checks {
@@ -57,23 +57,23 @@ impl Pane for Checks {
             .inner;
         if cx.state.shown.finding_marks.as_deref() != marks.as_ref() {
             cx.state.shown.finding_marks = marks.map(Arc::new);
-            // The views are drawn before this pane or after it.
+            // Some views are drawn before this pane, so another frame is needed.
             ui.ctx().request_repaint();
         }
     }
 }
 
-/// What the pane shows.
+/// Input of the pane.
 pub struct ChecksInput<'a> {
     /// The newest findings, errors first; `None` before the first check is done.
     pub findings: Option<&'a [Finding]>,
-    /// They belong to an earlier state of the scene.
+    /// True if the findings belong to an earlier state of the scene.
     pub stale: bool,
     /// The chosen box.
     pub selected: Option<BoxId>,
-    /// What the findings are about; its frame holds the waivers.
+    /// The scene that was checked; its frame holds the waivers.
     pub scene: &'a Scene,
-    /// Things move in the scene: most findings are of the moment shown alone.
+    /// True if the scene is a clip: most findings concern only the moment shown.
     pub lasts: bool,
 }
 
@@ -102,7 +102,7 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
     marks
 }
 
-/// The marks of a finding, made once for a state of the scene.
+/// The marks of a finding, computed once per state of the scene.
 pub(super) fn marks_of(ui: &Ui, finding: &Finding, scene: &Scene) -> FindingMarks {
     type Kept = (String, scene::SceneRev, FindingMarks);
     let (id, of) = (egui::Id::unique("marks of a finding"), key(finding));
@@ -117,13 +117,13 @@ pub(super) fn marks_of(ui: &Ui, finding: &Finding, scene: &Scene) -> FindingMark
     }
 }
 
-/// Which finding the user points at.
+/// The finding under the pointer, and the one clicked last.
 pub(super) struct Pointed {
     clicked: Option<String>,
     hovered: Option<FindingMarks>,
 }
 
-/// Forgets which finding was clicked and what was begun with one: another scene is shown.
+/// Forgets the clicked finding and a waiver that is being typed, because another scene is shown.
 pub(crate) fn forget(ctx: &egui::Context) {
     ctx.data_mut(|d| d.remove_temp::<Option<String>>(clicked_id()));
     waived::forget(ctx);
@@ -197,7 +197,7 @@ fn all_is_well(ui: &mut Ui, counts: Counts, waived: &[&Finding]) {
     });
 }
 
-/// What is listed and how; repairs of all.
+/// The bar above the list: severities, grouping, filter, and the button that repairs all findings.
 fn bar(
     ui: &mut Ui,
     input: &ChecksInput<'_>,
@@ -237,7 +237,7 @@ fn bar(
     });
 }
 
-/// How many there are of a severity; a click leaves them out of the list, or takes them in.
+/// The number of findings of a severity; a click removes them from the list, or adds them.
 fn severity_button(ui: &mut Ui, severity: Severity, n: usize, hidden: &mut bool) {
     let text = words(severity, n);
     let color = if *hidden {
@@ -319,7 +319,7 @@ fn group_row(
     );
 }
 
-/// A triangle that points to the right where a group is folded, else down.
+/// A triangle: to the right for a folded group, else down.
 fn fold_sign(ui: &mut Ui, folded: bool) {
     let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), egui::Sense::hover());
     let turn = match folded {
@@ -331,7 +331,7 @@ fn fold_sign(ui: &mut Ui, folded: bool) {
     ui.painter().add(shape);
 }
 
-/// `2 errors`, `1 warning`, `3 infos`
+/// Text such as `2 errors`, `1 warning`, `3 infos`.
 fn words(severity: Severity, n: usize) -> String {
     match (severity, n) {
         (Severity::Info, _) => tf!("{n} info", n = n),
@@ -342,7 +342,7 @@ fn words(severity: Severity, n: usize) -> String {
     }
 }
 
-/// `2 errors, 1 warning`
+/// Text such as `2 errors, 1 warning`.
 pub fn in_words(counts: Counts) -> String {
     let some = Severity::ALL.into_iter().filter(|s| counts.count(*s) > 0);
     let all: Vec<String> = some.map(|s| words(s, counts.count(s))).collect();

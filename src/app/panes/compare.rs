@@ -1,5 +1,5 @@
-//! Before and after: two states of the scene in every view at once, by holding a key, by a line that is dragged, side by
-//! side, or as what differs.
+//! Comparison of two states of the scene in every view at once: by holding a key, by a wipe line, side by side, or by
+//! marked differences.
 
 use std::sync::Arc;
 
@@ -20,22 +20,22 @@ use language::{t, tf};
 use viewport::BrushCells;
 use widgets::theme;
 
-/// What differs between two grids.
+/// Voxels that differ between two grids.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Difference {
-    /// Voxels that are there and were not, `[x, y, z]`.
+    /// Voxels that are occupied only in the later grid, `[x, y, z]`.
     pub added: Vec<[usize; 3]>,
-    /// Voxels that were there and are not.
+    /// Voxels that are occupied only in the earlier grid.
     pub removed: Vec<[usize; 3]>,
-    /// Voxels of another class.
+    /// Voxels whose class differs.
     pub changed: Vec<[usize; 3]>,
 }
 
-/// Colours of voxels that came, went, and are of another class.
+/// Colours of added voxels, removed voxels, and voxels of another class.
 pub(crate) const DIFFERENCE_COLORS: [[u8; 3]; 3] = [[70, 205, 110], [235, 70, 60], [240, 180, 60]];
 
 impl Difference {
-    /// Between two grids, on the map of the later one.
+    /// Compares two grids, on the map of the later one.
     pub fn between(before: &VoxelGrid, after: &VoxelGrid) -> Self {
         let (before, mut out) = (before.crop(after.extent()), Self::default());
         for [x, y] in after.extent().all_columns() {
@@ -56,7 +56,7 @@ impl Difference {
         out
     }
 
-    /// What each colour means, and how many there are of it; nothing that is not there.
+    /// The legend: each colour with its number of voxels. Colours without voxels are left out.
     pub(crate) fn legend(&self) -> Vec<(Color32, String)> {
         let counts = [&self.added, &self.removed, &self.changed].map(|list| list.len());
         let texts = [
@@ -71,7 +71,7 @@ impl Difference {
             .collect()
     }
 
-    /// The same for a picture of the voxels in space.
+    /// The differing voxels with their colours, for the 3D view.
     pub(crate) fn marked(&self) -> [BrushCells<'_>; 3] {
         let lists = [&self.added, &self.removed, &self.changed];
         std::array::from_fn(|i| BrushCells {
@@ -80,7 +80,8 @@ impl Difference {
         })
     }
 
-    /// From above: green where something came, red where something went, amber where only classes changed.
+    /// Difference from above: green for columns with added voxels, red for removed voxels, amber where only classes
+    /// changed.
     fn image(before: &VoxelGrid, after: &VoxelGrid) -> ColorImage {
         let (before, free) = (before.crop(after.extent()), scene::Class::FREE);
         from_above(after.extent(), |x, y| {
@@ -101,10 +102,10 @@ impl Difference {
     }
 }
 
-/// The other state, and its own copies of what draws it.
+/// The compared state, with its own canvas, 3D view, camera strip and sensors.
 #[derive(Default)]
 pub struct Compare {
-    /// What the user chose to compare with; none: the version before the present one.
+    /// The version that the user chose to compare with; `None`: the one before the present version.
     pub chosen: Option<Arc<Scene>>,
     /// The state compared with, while there is a comparison.
     pub(crate) before: Option<Arc<Scene>>,
@@ -113,13 +114,13 @@ pub struct Compare {
     pub(crate) strip: CameraStrip,
     pub(crate) sweep: SweepPicture,
     pub(crate) sensing: Option<Sensing>,
-    /// The state whose sensors were asked last.
+    /// The state whose sensors were requested last.
     sensed: Option<SceneRev>,
     difference: Option<(SceneRev, SceneRev, Difference, egui::TextureHandle)>,
 }
 
 impl Compare {
-    /// Notes what to compare with and asks its sensors, or lets go of it.
+    /// Sets the compared state and requests its sensors; without one, stops them.
     pub(crate) fn prepare(
         &mut self,
         before: Option<Arc<Scene>>,
@@ -140,11 +141,11 @@ impl Compare {
             }
         };
         if self.sensing.is_none() {
-            // Without a thread the cameras of the other state stay empty; the views do not need it.
+            // Without a thread the cameras of the other state stay empty; the views do not need them.
             self.sensing = Sensing::spawn(std::time::Duration::ZERO, wake).ok();
         }
         if let Some(sensing) = &mut self.sensing {
-            // Pictures of one version are none of another: until they are there, there are none.
+            // Pictures of another version are dropped before new ones come.
             if self.sensed.replace(scene.rev) != Some(scene.rev) {
                 sensing.forget();
             }
@@ -154,7 +155,7 @@ impl Compare {
         }
     }
 
-    /// Lets go of what was compared with and of what its sensors returned: another scene is opened.
+    /// Forgets the compared state and the results of its sensors, because another scene is opened.
     pub(crate) fn forget(&mut self) {
         (self.chosen, self.before, self.sensed) = (None, None, None);
         (self.strip, self.sweep, self.difference) = Default::default();
@@ -163,7 +164,8 @@ impl Compare {
         }
     }
 
-    /// What differs from `after`, with a picture of it; none without a comparison.
+    /// The voxels that differ between the compared state and `after`, with a picture of them; `None` without a
+    /// comparison.
     pub(crate) fn difference(&mut self, ui: &Ui, after: &Scene) -> Option<(&Difference, egui::TextureId)> {
         let before = self.before.as_ref()?;
         let known = |(a, b, ..): &(SceneRev, SceneRev, _, _)| *a == before.rev && *b == after.rev;
@@ -181,7 +183,7 @@ impl Compare {
             .map(|(_, _, found, texture)| (found, texture.id()))
     }
 
-    /// The way to compare, if there is something to compare with and no key is held that shows it alone.
+    /// The compare mode; off without a compared state, or while the key is held that shows that state alone.
     pub(crate) fn mode(&self, how: &Comparing) -> CompareMode {
         match &self.before {
             Some(_) if !how.holding_before => how.mode,
@@ -189,13 +191,13 @@ impl Compare {
         }
     }
 
-    /// The state before is shown alone: its key is held.
+    /// True if the compared state is shown alone, because its key is held.
     pub(crate) fn shows_before(&self, how: &Comparing, scene: &Arc<Scene>) -> bool {
         how.holding_before && self.before.as_ref().is_some_and(|b| Arc::ptr_eq(b, scene))
     }
 }
 
-/// The line of the wipe over a view, which can be dragged.
+/// The wipe line over a view; it can be dragged.
 pub(crate) fn wipe_line(ui: &Ui, rect: Rect, how: &mut Comparing) {
     let at = &mut how.wipe_at;
     let x = rect.left() + rect.width() * *at;
@@ -226,7 +228,7 @@ pub(crate) fn wipe_line(ui: &Ui, rect: Rect, how: &mut Comparing) {
     tag(ui, rect.right_top() + vec2(-8.0, 8.0), now, true);
 }
 
-/// What the colours of a view mean, in its upper left corner, in as many rows as the view is narrow.
+/// Draws a legend in the upper left corner of a view, with as many rows as its width needs.
 pub(crate) fn legend(ui: &Ui, at: egui::Pos2, entries: &[(Color32, String)]) {
     const SWATCH: f32 = 10.0;
     if entries.is_empty() {
@@ -263,7 +265,7 @@ pub(crate) fn legend(ui: &Ui, at: egui::Pos2, entries: &[(Color32, String)]) {
     }
 }
 
-/// A word in a corner of a view.
+/// A label in a corner of a view.
 pub(crate) fn tag(ui: &Ui, at: egui::Pos2, text: &str, from_right: bool) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let galley = ui
@@ -283,7 +285,7 @@ mod tests {
     use super::*;
     use scene::Class;
 
-    /// Pictures and sweep of the state compared with are of no other, however long theirs take.
+    /// Pictures and sweep are never of another state than the compared one, even if theirs take long.
     #[test]
     fn another_state_has_no_pictures_of_the_one_before() {
         use crate::open;
@@ -339,7 +341,7 @@ mod tests {
         assert_eq!(found.changed, [[4, 5, 6]]);
         let legend: Vec<String> = found.legend().into_iter().map(|(_, text)| text).collect();
         assert_eq!(legend, ["1 added", "1 removed", "1 of another class"]);
-        // A column's colour is that of its voxels in space.
+        // The colour of a column matches that of its voxels in 3D.
         let image = Difference::image(&before, &after);
         let drawn = |color: [u8; 3]| {
             let [r, g, b] = color;

@@ -1,4 +1,4 @@
-//! How two states are compared, as the user chose it.
+//! Compare mode that the user chose.
 
 use language::t;
 
@@ -25,28 +25,28 @@ impl CompareMode {
         (CompareMode::Difference, "Diff", "voxels that differ"),
     ];
 
-    /// The next one.
+    /// The next mode.
     pub fn next(self) -> Self {
         let at = Self::ALL.iter().position(|(mode, ..)| *mode == self).unwrap_or(0);
         Self::ALL[(at + 1) % Self::ALL.len()].0
     }
 }
 
-/// The way to compare, and what the user holds and drags for it.
+/// The compare mode, and the state of its key and its wipe line.
 #[derive(Clone, Debug)]
 pub struct Comparing {
     /// How the present state is compared with the version before.
     pub mode: CompareMode,
-    /// The key that shows the version before is held.
+    /// True while the key that shows the version before is held.
     pub holding_before: bool,
-    /// Where the line of the wipe stands, 0 to 1.
+    /// Place of the wipe line, 0 to 1.
     pub wipe_at: f32,
-    /// What the version is called that the user chose to compare with; none: the one before.
+    /// Name of the version that the user chose to compare with; `None`: the one before.
     pub with: Option<String>,
 }
 
 impl Comparing {
-    /// What the two states are called, the other one first.
+    /// Names of the two states, the compared one first.
     pub fn names(&self) -> [&str; 2] {
         match &self.with {
             Some(name) => [name, t("now")],

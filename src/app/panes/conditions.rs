@@ -1,4 +1,4 @@
-//! The fields for light and air of the scene: time of day, weather, wetness, visibility, sun and seed.
+//! Fields for the conditions of the scene: time of day, weather, wetness, visibility, sun and seed.
 
 use egui::containers::menu::is_in_menu;
 use egui::{DragValue, Ui};
@@ -13,7 +13,7 @@ use widgets::theme;
 /// Name of the undo step.
 const STEP: &str = "Change weather";
 
-/// Draws time and weather in a row, and a menu with the rest.
+/// Draws time and weather in a row, and a menu with the other fields.
 pub fn conditions(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
     let now = scene.conditions;
     let (mut time, mut weather) = (now.time, now.weather);
@@ -29,7 +29,8 @@ pub fn conditions(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         .on_hover_text(t("Wet ground, visibility, sun and seed of the pictures"));
 }
 
-/// Every time of day and every weather, each a click away. In a menu no list can drop down: only one of both is open at a time.
+/// Lists every time of day and every weather, each one click away. A menu cannot hold a drop-down list: only one of the
+/// two can be open.
 fn listed(ui: &mut Ui, time: &mut TimeOfDay, weather: &mut Weather) {
     widgets::menu::side_by_side(
         ui,
@@ -68,7 +69,7 @@ fn dropped_down(ui: &mut Ui, time: &mut TimeOfDay, weather: &mut Weather) {
         });
 }
 
-/// What gives a scene another time of day and weather, the words of its style with them.
+/// The command that sets time of day and weather, also in the words of the scene's style.
 pub fn becomes(scene: &Scene, time: TimeOfDay, weather: Weather) -> Command {
     let prompt = with_conditions(&scene.prompt, time.name(), weather.name());
     let conditions = scene.conditions.at(time).under(weather);
@@ -78,7 +79,7 @@ pub fn becomes(scene: &Scene, time: TimeOfDay, weather: Weather) -> Command {
     )
 }
 
-/// The numbers behind the names.
+/// Fields for the numbers behind time of day and weather.
 fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
     let mut new = now;
     let mut response = number(
@@ -146,7 +147,7 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
     fields(&response, STEP, vec![edit], commands);
 }
 
-/// The style text with its phrases about time and weather replaced; the others stay as they are.
+/// The style text with its phrases about time and weather replaced; other phrases stay as they are.
 fn with_conditions(prompt: &str, time: &str, weather: &str) -> String {
     let speaks = |phrase: &&str| words::conditions::read(phrase) != words::conditions::Said::default();
     let phrases = prompt.split(',').map(str::trim).filter(|p| !p.is_empty());

@@ -1,4 +1,4 @@
-//! Rows of the list of objects: groups, which fold, the boxes in them, and the boxes in none.
+//! Rows of the list of objects: groups that fold, the boxes in them, and the boxes without a group.
 
 use std::collections::BTreeSet;
 
@@ -15,11 +15,11 @@ use scene::{Arranged, Arrangement, Group, Members, Scene, SceneBox};
 use widgets::icons;
 use widgets::theme;
 
-/// A row.
+/// A row of the list.
 pub(super) enum Row<'a> {
-    /// A group, by its place among them.
+    /// A group with its index.
     Group(usize, &'a Group),
-    /// A box; true if it is in the group above.
+    /// A box; true if it belongs to the group above.
     Box(&'a SceneBox, bool),
 }
 
@@ -27,7 +27,7 @@ fn folded_id() -> egui::Id {
     egui::Id::unique("folded groups")
 }
 
-/// Groups first, each with those of its boxes that are listed, then the other boxes.
+/// Rows of the list: first the groups, each with its listed boxes, then the other boxes.
 pub(super) fn rows<'a>(ui: &Ui, arranged: &'a Arranged, boxes: &[&'a SceneBox]) -> Vec<Row<'a>> {
     let folded: BTreeSet<usize> = ui.data(|d| d.get_temp(folded_id())).unwrap_or_default();
     let mut out = Vec::with_capacity(boxes.len() + arranged.groups.len());
@@ -49,7 +49,7 @@ pub(super) fn rows<'a>(ui: &Ui, arranged: &'a Arranged, boxes: &[&'a SceneBox]) 
     out
 }
 
-/// Draws the eye and the lock of a row, at its right end; `name` is what it is called.
+/// Draws the eye and the lock of a row, at its right end; `name` is the name of the row's object.
 pub(super) fn switches(
     ui: &mut Ui,
     members: &Members,
@@ -95,10 +95,10 @@ pub(super) fn switches(
     }
 }
 
-/// What the eye and the lock of a row take, points.
+/// Width of the eye and the lock of a row, points.
 pub(super) const SWITCHES: f32 = 16.0 + theme::ROW;
 
-/// The name of a group: its own, or by how many are in it.
+/// The name of a group: its own, or one with the number of its members.
 pub(super) fn title(group: &Group) -> String {
     match group.name.is_empty() {
         true => tf!("Group of {n}", n = group.members.len()),
@@ -159,7 +159,7 @@ pub(super) fn group_ui(
     });
 }
 
-/// What a right click on a group offers.
+/// Draws the menu of a right click on a group.
 fn menu(row: &egui::Response, group: &Group, commands: &mut Vec<Command>) {
     widgets::menu::on_right_click(row, |ui| {
         let memory = row.id.with("name of the group");

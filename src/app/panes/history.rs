@@ -1,4 +1,4 @@
-//! The steps that can be undone and done again: every one is a click away.
+//! The undo steps. A click goes to any of them.
 
 use egui::Ui;
 
@@ -13,7 +13,7 @@ use widgets::theme;
 /// Height of a line, with the gap.
 const HISTORY_ROW: f32 = theme::ROW - 3.0;
 
-/// The steps that can be undone.
+/// The pane of the undo steps.
 pub struct History;
 
 impl Pane for History {
@@ -47,7 +47,7 @@ impl Pane for History {
     }
 }
 
-/// What the history takes of the memory that it may, for the header of its pane.
+/// Memory of the history and its limit, for the header of its pane.
 pub fn history_title(document: &Document) -> String {
     let mb = |bytes: usize| bytes as f64 / f64::from(1 << 20);
     let (used, limit) = (mb(document.history_bytes()), mb(document.history_limit()));
@@ -58,7 +58,7 @@ pub fn history_title(document: &Document) -> String {
     )
 }
 
-/// Draws every step; a click goes there.
+/// Draws every step; a click goes to its state.
 pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
     let (labels, at): (Vec<&str>, usize) = (document.history().collect(), document.position());
     ui.spacing_mut().item_spacing.y = HISTORY_ROW - (theme::ROW - 4.0);
@@ -66,11 +66,11 @@ pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>)
         .id_salt("history")
         .auto_shrink([false, false])
         .stick_to_bottom(at + 1 == labels.len());
-    // Another state is shown: its line comes into sight.
+    // When the state changes, the list scrolls to its line.
     let shown = ui.scope_id().with("history position");
     if ui.data_mut(|d| d.get_temp::<usize>(shown)) != Some(at) {
         ui.data_mut(|d| d.insert_temp(shown, at));
-        // In the middle; no further than the list goes, or it would jump back in the next frame.
+        // The line is centred, but the offset stays within the list, or the list would jump back in the next frame.
         let room = ui.available_height();
         let above = at as f32 * HISTORY_ROW - room / 2.0;
         let most = labels.len() as f32 * HISTORY_ROW - room;
@@ -84,7 +84,7 @@ pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>)
                 std::cmp::Ordering::Greater => theme::text_weak().gamma_multiply(0.7),
             };
             let size = egui::vec2(ui.available_width(), theme::ROW - 4.0);
-            // Known by its number, wherever the list is scrolled to.
+            // The id is the number of the step, whatever the scroll offset.
             let row = |ui: &mut Ui| ui.allocate_exact_size(size, egui::Sense::click());
             let (rect, response) = ui.push_id(i, row).inner;
             let name = tf!("History {number} {step}", number = i, step = t(labels[i]));

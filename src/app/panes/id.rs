@@ -1,4 +1,4 @@
-//! The name of a pane, as layouts keep it and commands carry it.
+//! The id of a pane, as saved layouts keep it and commands carry it.
 
 use serde::de::{Error, MapAccess, Visitor};
 use serde::ser::SerializeMap;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// Longest name, bytes.
 const LONGEST: usize = 22;
 
-/// Which pane is meant: a short name, and for the pane of one camera its index. In settings files it is the name
+/// The id of a pane: a short name, and for the pane of one camera its index. In settings files it is the name
 /// (`"bev"`), or `{"camera": 2}`.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct PaneId {
@@ -29,24 +29,24 @@ impl PaneId {
     pub const SPLATS: Self = Self::named("splats");
     /// The chosen box from above, from its side and from behind.
     pub const BOX_VIEWS: Self = Self::named("box_views");
-    /// Words that become a scene, or change it.
+    /// Prompt: words that become a scene or change it.
     pub const PROMPT: Self = Self::named("prompt");
-    /// What was generated so far.
+    /// Versions generated so far.
     pub const VERSIONS: Self = Self::named("versions");
-    /// Options of the tool in hand, map layers.
+    /// Options of the tool in hand, and the map layers.
     pub const TOOLS: Self = Self::named("tools");
-    /// The chosen box in numbers, all boxes.
+    /// The chosen box in numbers, and the list of boxes.
     pub const OBJECTS: Self = Self::named("objects");
-    /// The steps that can be undone.
+    /// The undo steps.
     pub const HISTORY: Self = Self::named("history");
-    /// The quality slider, its measurements, the receipt of the last edit.
+    /// The quality slider, its measurements, and the receipt of the last edit.
     pub const TRADE: Self = Self::named("trade");
     /// Time: play, keyframes, speeds.
     pub const TIMELINE: Self = Self::named("timeline");
-    /// What the quality checks found.
+    /// Findings of the quality checks.
     pub const CHECKS: Self = Self::named("checks");
 
-    /// Of a name; in a constant a name of more than 22 bytes does not compile.
+    /// The id of a name. In a constant, a name of more than 22 bytes does not compile.
     pub const fn named(name: &str) -> Self {
         match Self::read(name) {
             Some(id) => id,
@@ -61,7 +61,7 @@ impl PaneId {
         id
     }
 
-    /// Of a name from a file; none if it is too long for one.
+    /// The id of a name from a file; `None` if the name is too long.
     const fn read(name: &str) -> Option<Self> {
         let bytes = name.as_bytes();
         if bytes.len() > LONGEST {
@@ -80,7 +80,7 @@ impl PaneId {
         })
     }
 
-    /// Its name; all panes of one camera have the same.
+    /// The name; all camera panes have the same.
     pub fn name(&self) -> &str {
         let bytes = self.name.get(..usize::from(self.len)).unwrap_or_default();
         std::str::from_utf8(bytes).unwrap_or_default()

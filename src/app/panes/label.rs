@@ -10,7 +10,7 @@ use scene::{BoxLabel, BoxName, Paint, SceneBox};
 use widgets::icons;
 use widgets::theme;
 
-/// A field for the name and a list of paints; what is set holds for all of the boxes.
+/// A field for the name and a list of paints. A change applies to all of the boxes.
 pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {
     let Some(first) = boxes.first() else {
         return;
@@ -81,7 +81,7 @@ pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {
     });
 }
 
-/// The name as typed; given when it is done: by Enter or by going elsewhere.
+/// Field for a name. Returns the name when typing ends: with Enter or when the focus leaves.
 fn name_field(ui: &mut Ui, b: &SceneBox, name: &str, width: f32) -> Option<BoxName> {
     let memory = egui::Id::unique(("name of a box", b.id));
     let typed: Option<String> = ui.data(|d| d.get_temp(memory));

@@ -1,4 +1,4 @@
-//! The newest sweep unrolled: azimuth from left to right as the driver sees it, beams from top to bottom.
+//! The newest sweep, unrolled: azimuth from left to right as the driver sees it, beams from top to bottom.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use viewport::LidarColorMode;
 use widgets::icons::Icon;
 use widgets::theme;
 
-/// The newest sweep.
+/// The pane of the newest sweep.
 #[derive(Default)]
 pub struct Lidar {
     sweep: SweepPicture,
@@ -123,7 +123,7 @@ impl Pane for Lidar {
     }
 }
 
-/// Where two sweeps differ, and what the picture of it was made from.
+/// The difference of two sweeps, and the sweeps that its picture was made from.
 #[derive(Default)]
 struct SweepDifference {
     texture: Option<(Arc<LidarSweep>, Arc<LidarSweep>, TextureHandle)>,
@@ -156,7 +156,8 @@ impl SweepDifference {
     }
 }
 
-/// Returns that are alike are grey; green are those nearer than before, or where nothing returned; red those farther, or gone.
+/// Picture of a difference: equal returns are grey; returns nearer than before, or new, are green; returns farther than
+/// before, or gone, are red.
 fn difference(now: &LidarSweep, before: &LidarSweep, rings: usize, mount: &Mount) -> ColorImage {
     const ALIKE_M: f32 = 0.1;
     let ranges = |sweep: &LidarSweep| {

@@ -1,5 +1,5 @@
-//! The panes of the window, one file each, and the one table of them. Dock, menus, command palette and settings
-//! read it.
+//! The panes of the window, one file each, and the table of all panes. Dock, menus, command palette and settings read
+//! it.
 
 pub(crate) mod areas;
 mod bev;
@@ -45,7 +45,7 @@ use std::sync::LazyLock;
 
 use pane::{Pane, PaneInfo};
 
-/// Cameras that have a pane of their own.
+/// Number of cameras that have a pane of their own.
 const CAMERAS: u8 = 6;
 
 /// Every pane, in the order of the menus.
@@ -72,7 +72,7 @@ pub fn all() -> Vec<Box<dyn Pane>> {
     table
 }
 
-/// What there is to know about every pane, in the same order.
+/// The description of every pane, in the same order.
 pub fn infos() -> &'static [PaneInfo] {
     static INFOS: LazyLock<Vec<PaneInfo>> = LazyLock::new(|| {
         let info = |pane: &dyn Pane| PaneInfo {
@@ -87,7 +87,7 @@ pub fn infos() -> &'static [PaneInfo] {
     &INFOS
 }
 
-/// What there is to know about one pane; none if no pane has this name.
+/// The description of one pane; `None` if no pane has this name.
 pub fn info(id: id::PaneId) -> Option<&'static PaneInfo> {
     infos().iter().find(|info| info.id == id)
 }

@@ -1,5 +1,5 @@
-//! Draws over the bird's-eye view what was computed for the last edit: tokens of the network, columns that were inpainted,
-//! bricks that changed, pieces of LiDAR rays that were sampled. All else was left as it was, and cost nothing.
+//! Draws over the bird's-eye view the parts that were computed for the last edit: tokens of the network, inpainted
+//! columns, changed bricks, and sampled pieces of LiDAR rays. The rest was not computed.
 
 use egui::{Color32, Painter, Rect, Stroke, StrokeKind, pos2};
 use glam::dvec2;
@@ -15,7 +15,7 @@ use sensors::learned_caster::Sampled;
 /// Tokens along a side of the map.
 const TOKENS: usize = 25;
 
-/// Draws it, and a line that says how much it was.
+/// Draws these parts, and a line with their numbers.
 pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit, sampled: Option<&Sampled>) {
     let painter: Painter = ui.painter_at(area);
     let squares = |x: usize, y: usize, columns: usize| {

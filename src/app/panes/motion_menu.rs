@@ -1,4 +1,4 @@
-//! The menu that lets the chosen object, or the ego vehicle, move.
+//! The menu that gives the chosen object, or the ego vehicle, a motion.
 
 use egui::{DragValue, Ui};
 
@@ -12,7 +12,7 @@ use editor::traffic::{Template, Wish};
 use language::{t, tf};
 use widgets::theme;
 
-/// The button and what it opens.
+/// The button and its menu.
 pub(super) fn menu(ui: &mut Ui, scene: &Scene, state: &UiState, commands: &mut Vec<Command>) {
     let id = state.selected.filter(|id| scene.frame().boxes.contains_key(id));
     let chosen = id.and_then(|id| scene.frame().boxes.get(&id));
@@ -27,7 +27,7 @@ pub(super) fn menu(ui: &mut Ui, scene: &Scene, state: &UiState, commands: &mut V
     button.on_hover_text(t("How it moves from now on; choose an object for its motion"));
 }
 
-/// The ways to move that a box, or (`None`) the ego vehicle, can be given.
+/// The motions that a box, or the ego vehicle (`None`), can be given.
 pub(super) fn motions(
     ui: &mut Ui,
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! Which boxes the list of objects shows, and in what order.
+//! Filter and order of the list of objects.
 
 use egui::Ui;
 
@@ -29,7 +29,7 @@ const ORDERS: [(Order, &str); 4] = [
     (Order::Name, "By name"),
 ];
 
-/// What the list shows.
+/// Order and filter of the list.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Listing {
     order: Order,
@@ -40,7 +40,7 @@ fn kept() -> egui::Id {
     egui::Id::unique("listing of objects")
 }
 
-/// Draws the field and the order of the list, and keeps what was set.
+/// Draws the field for the filter and the choice of the order, and keeps both.
 pub(super) fn listing_ui(ui: &mut Ui) -> Listing {
     let mut listing: Listing = ui.data(|d| d.get_temp(kept())).unwrap_or_default();
     ui.horizontal(|ui| {
@@ -71,12 +71,12 @@ pub(super) fn listing_ui(ui: &mut Ui) -> Listing {
 }
 
 impl Listing {
-    /// True if words leave some out.
+    /// True if the words leave some boxes out.
     pub(super) fn filters(&self) -> bool {
         !self.words.trim().is_empty()
     }
 
-    /// The boxes that are shown, in order; `ego_m` is where the ego vehicle is, world frame, m.
+    /// The listed boxes, in order; `ego_m` is the position of the ego vehicle, world frame, m.
     pub(super) fn of<'a>(
         &self,
         boxes: impl Iterator<Item = &'a SceneBox>,

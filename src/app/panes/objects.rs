@@ -1,4 +1,4 @@
-//! The right pane: the chosen box in numbers, the list of boxes.
+//! The right pane: the chosen box in numbers, and the list of boxes.
 
 use egui::Ui;
 use glam::DVec3;
@@ -26,7 +26,7 @@ use widgets::icons::Icon;
 use widgets::icons::{self, section};
 use widgets::theme;
 
-/// The chosen box in numbers, all boxes.
+/// The pane of the chosen box in numbers, and of the list of boxes.
 pub struct Objects;
 
 impl Pane for Objects {
@@ -62,7 +62,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     let room = ui.available_height();
     let wanted: Option<f32> = ui.data(|d| d.get_temp(list_height_id()));
     let most = (room - LEAST_INSPECTOR).max(LEAST_LIST);
-    // The list stays where it is whatever the inspector shows: a second click is on what the first was on.
+    // The list does not move when the inspector changes, so a second click hits the same row.
     let below = wanted.unwrap_or(room - INSPECTOR).clamp(LEAST_LIST, most);
     let gap = theme::GAP / 2.0 + ui.spacing().item_spacing.y;
     egui::ScrollArea::vertical()
@@ -75,7 +75,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
             let things: Vec<&Thing> = state.tools.things.chosen_in(&scene.background).collect();
             let chosen = state.chosen().len();
             if chosen > 0 && !things.is_empty() {
-                // The things are below the numbers of the boxes, mostly out of sight.
+                // The fields of the things are below those of the boxes, mostly out of sight.
                 let text = tf!("{n} boxes and things", n = chosen + things.len());
                 ui.label(egui::RichText::new(text).color(theme::text_strong()));
                 let text = t("Move, delete, copy, mirror and rows take all of them.");
@@ -109,7 +109,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     let list_height = ui.available_height().max(80.0);
     let ego_m = frame.world_from_ego.translation_m.truncate();
     let boxes = listing.of(frame.boxes.values(), ego_m);
-    // Things beside the road have no place among what was looked for.
+    // Things beside the road are not searched, so a filtered list leaves them out.
     let rows = if listing.filters() { Vec::new() } else { rows };
     if boxes.is_empty() && listing.filters() {
         ui.weak(t("No object of that name, class, paint or number."));
@@ -136,18 +136,18 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     });
 }
 
-/// What the list of boxes keeps, its title included, however tall the inspector is; and the inspector, points.
+/// Least height of the list of boxes with its title, and of the inspector, points.
 const LEAST_LIST: f32 = 118.0;
 const LEAST_INSPECTOR: f32 = 60.0;
-/// What the inspector of a box takes, points.
+/// Height of the inspector of a box, points.
 const INSPECTOR: f32 = 178.0;
 
-/// How high the user wants the list to be; none: what the inspector leaves.
+/// Id of the list's height that the user set; unset, the inspector decides it.
 fn list_height_id() -> egui::Id {
     egui::Id::unique("height of the list of boxes")
 }
 
-/// The title of the list; dragged, it parts the room between inspector and list, and a double click lets go of that.
+/// The title of the list. Dragging it divides the height between inspector and list; a double click resets that.
 fn divide(ui: &mut Ui, title: &str, height: f32, most: f32) {
     ui.add_space(theme::GAP / 2.0);
     let top = ui.cursor().top();
@@ -167,7 +167,7 @@ fn divide(ui: &mut Ui, title: &str, height: f32, most: f32) {
     ui.painter()
         .hline(line.x_range(), line.top(), egui::Stroke::new(1.0, color));
     if response.dragged() {
-        // At first from what is shown, which may be more than was wanted.
+        // A drag starts from the height on screen, which may be more than the height asked for.
         let from = match response.drag_started() {
             true => ui.max_rect().bottom() - line.top(),
             false => height,
@@ -180,7 +180,7 @@ fn divide(ui: &mut Ui, title: &str, height: f32, most: f32) {
     }
 }
 
-/// Scrolls to the chosen box, once, when another one was chosen elsewhere.
+/// Scrolls to the chosen box once, when another box was chosen elsewhere.
 fn reveal(
     ui: &Ui,
     list: egui::ScrollArea,
@@ -204,7 +204,7 @@ fn reveal(
     }
 }
 
-/// What an imported frame did not carry and was guessed: how to correct and to confirm it.
+/// Lists the parts of an imported frame that were guessed, with buttons to correct and to confirm them.
 fn inferred(ui: &mut Ui, frame: &Frame, correcting: &mut bool, commands: &mut Vec<Command>) {
     if !frame.inferred.any() {
         return;
@@ -330,7 +330,7 @@ fn inspector(ui: &mut Ui, scene: &Scene, b: &SceneBox, hand: &Hand, commands: &m
     let local = hand.orientation == Orientation::Local;
     let [mut center, mut size] = [b.center_m, b.size_m];
     let limit = SceneBox::LIMIT_M;
-    // In the box's own axes there is no place but where it is: the fields shift it.
+    // In the box's own axes its position would always be zero; the fields shift the box instead.
     let position = match local {
         false => numbers(
             ui,
@@ -384,7 +384,7 @@ fn inspector(ui: &mut Ui, scene: &Scene, b: &SceneBox, hand: &Hand, commands: &m
     field(&turned, "Turn box", edit(None, Some(yaw_deg), None), commands);
 }
 
-/// Says of a box that stands with voxels of its own that it does, and takes them away.
+/// Tells that a box has the shape of a model, with a button that removes the shape.
 fn own_shape(ui: &mut Ui, scene: &Scene, id: BoxId, commands: &mut Vec<Command>) {
     let track = scene.clip().tracks.get(&id);
     if !track.is_some_and(|t| t.own_shape) {
@@ -408,15 +408,15 @@ fn own_shape(ui: &mut Ui, scene: &Scene, id: BoxId, commands: &mut Vec<Command>)
     });
 }
 
-/// A heading in degrees from -180 to 180. One beyond the range of a field would be brought into it as if it were typed,
-/// and turn every box that is chosen.
+/// A heading in degrees, from -180 to 180. A heading outside the range of the field would be clamped as if it were
+/// typed, and turn every chosen box.
 fn heading_deg(yaw_rad: f64) -> f64 {
     (yaw_rad.to_degrees() + 180.0).rem_euclid(360.0) - 180.0
 }
 
-/// How fast it is, which can be set where no keyframes and no other object say it, and its number.
+/// The speed of a box and its number. The speed can be set unless keyframes or another object decide it.
 fn speed(ui: &mut Ui, scene: &Scene, b: &SceneBox, commands: &mut Vec<Command>) {
-    /// Most of it, km/h.
+    /// Largest speed, km/h.
     const MOST_KMH: f64 = Path::MAX_MPS * 3.6;
     let mut kmh = b.velocity_mps.length() * 3.6;
     if arrange::with_speed(scene, b.id, b.velocity_mps.length()).is_some() {
@@ -446,7 +446,7 @@ fn speed(ui: &mut Ui, scene: &Scene, b: &SceneBox, commands: &mut Vec<Command>) 
     ui.label(egui::RichText::new(format!("#{}", b.id.0)).color(theme::text_weak()));
 }
 
-/// The box as it was when it was chosen: what shifts along its own axes are counted from.
+/// The box as it was when it was chosen: the origin of shifts along its own axes.
 fn shift_start(ui: &Ui, b: &SceneBox) -> SceneBox {
     let memory = egui::Id::unique("box when chosen");
     let kept: Option<SceneBox> = ui.data(|d| d.get_temp(memory)).flatten();
@@ -459,7 +459,7 @@ fn shift_start(ui: &Ui, b: &SceneBox) -> SceneBox {
     }
 }
 
-/// Several boxes in numbers: the middle between them shifts all, sizes and headings are set for all.
+/// Several boxes in numbers: a shift of their middle moves all, a size or heading is set for all.
 fn several(ui: &mut Ui, frame: &Frame, hand: &Hand, commands: &mut Vec<Command>) {
     let ids = hand.chosen();
     let boxes = arrange::boxes_of(frame, &ids);
@@ -544,7 +544,7 @@ fn several(ui: &mut Ui, frame: &Frame, hand: &Hand, commands: &mut Vec<Command>)
     );
 }
 
-/// The box after (1) or before (-1) the chosen one, by id, round about.
+/// The box after (1) or before (-1) the chosen one, by id, wrapping around.
 pub fn neighbour(ids: &[BoxId], chosen: Option<BoxId>, step: i32) -> Option<BoxId> {
     let count = ids.len() as i64;
     if count == 0 {

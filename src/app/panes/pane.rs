@@ -1,4 +1,4 @@
-//! What a pane is, and what it is given to draw from.
+//! The trait of a pane, and the context that it draws from.
 
 use std::sync::Arc;
 
@@ -25,48 +25,48 @@ use crate::view3d::View3d;
 use language::t;
 use widgets::icons::Icon;
 
-/// Where a pane opens that is nowhere yet.
+/// Place where a pane opens that is not in the dock yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Below the largest view.
     BelowView,
-    /// Under the row of large views, so that it hides nothing of what it speaks of.
+    /// Below the row of large views, so that it hides no part of them.
     BelowViews,
     /// In the column of the panes with lists and numbers.
     Column,
-    /// There too, and a layout that was kept before there was this pane gains it.
+    /// In that column too, and a layout that was saved before this pane existed gains it.
     ColumnAtOnce,
 }
 
 impl Place {
-    /// True if it is in the column of the panes with lists and numbers.
+    /// True if the place is in the column of the panes with lists and numbers.
     pub fn is_column(self) -> bool {
         matches!(self, Place::Column | Place::ColumnAtOnce)
     }
 }
 
-/// What there is to know about a pane before it is drawn.
+/// Description of a pane, known before it is drawn.
 #[derive(Clone, Debug)]
 pub struct PaneInfo {
-    /// Its name in files.
+    /// Its id in files.
     pub id: PaneId,
-    /// Its name for a person.
+    /// Its title for the user.
     pub title: String,
-    /// Stands beside its name in menus.
+    /// Icon beside its title in menus.
     pub icon: Icon,
-    /// Where it opens.
+    /// Place where it opens.
     pub place: Place,
     /// Width that a column of such panes needs for its texts, points; 0 for views, which take any.
     pub column_points: f32,
 }
 
-/// What every pane is given: the scene on screen, and the parts of the program that panes show or change.
+/// Context of every pane: the scene on screen, and the parts of the program that panes show or change.
 pub struct PaneContext<'a> {
-    /// The scene on screen: the document's, a preview of its generation, or the one before.
+    /// The scene on screen: the document's, a preview of its generation, or the compared one.
     pub scene: &'a Arc<Scene>,
-    /// What the large views show of it: without what is hidden.
+    /// The scene as the large views show it, without hidden objects.
     pub seen: SeenScene,
-    /// What is edited.
+    /// The document that is edited.
     pub document: &'a Document,
     /// Tools, layers, options.
     pub state: &'a mut UiState,
@@ -74,23 +74,23 @@ pub struct PaneContext<'a> {
     pub canvas: &'a mut Canvas,
     /// The 3D view.
     pub view3d: &'a mut View3d,
-    /// The camera pictures.
+    /// The strip of camera pictures.
     pub strip: &'a mut CameraStrip,
-    /// The prompt's field and what was read from it.
+    /// The prompt field and the reading of its words.
     pub prompt: &'a mut PromptField,
-    /// The state that is compared with.
+    /// The compared state.
     pub compare: &'a mut Compare,
-    /// What was generated so far.
+    /// Versions generated so far.
     pub versions: &'a mut Versions,
     /// The quality slider.
     pub tuning: &'a mut Tuning,
-    /// What the sensors returned last.
+    /// The newest results of the sensors.
     pub sensing: &'a Sensing,
     /// Findings of the quality checks.
     pub checking: &'a Checking,
-    /// How edits are generated.
+    /// Parameters of generation after an edit.
     pub params: &'a GenParams,
-    /// Columns that are to be generated.
+    /// Regions that are still to be generated.
     pub unsettled: &'a Arc<[Bounds]>,
     /// A generation runs.
     pub generating: bool,
@@ -98,23 +98,24 @@ pub struct PaneContext<'a> {
     pub render_state: Option<&'a egui_wgpu::RenderState>,
 }
 
-/// One pane of the window. It keeps what only itself needs; everything else comes with the context.
+/// One pane of the window. It keeps state that only itself needs; the rest comes with the context.
 pub trait Pane {
-    /// Its name in files.
+    /// Its id in files.
     fn id(&self) -> PaneId;
 
-    /// Its name for a person.
+    /// Its title for the user.
     fn title(&self) -> String;
 
-    /// Its name beside a scene, in the language that is shown: a camera carries the one that the rig gives it.
+    /// Its title for a scene, in the language of the interface. A camera pane shows the name that the rig gives its
+    /// camera.
     fn title_in(&self, _scene: &Scene) -> String {
         t(&self.title()).to_owned()
     }
 
-    /// Stands beside its name in menus.
+    /// Icon beside its title in menus.
     fn icon(&self) -> Icon;
 
-    /// Where it opens.
+    /// Place where it opens.
     fn place(&self) -> Place {
         Place::BelowView
     }
@@ -124,14 +125,14 @@ pub trait Pane {
         0.0
     }
 
-    /// True if it shows the state before while the key for that is held.
+    /// True if it shows the compared state while the key for that is held.
     fn shows_before(&self) -> bool {
         false
     }
 
-    /// What its header offers, from right to left.
+    /// Draws the controls of its header, from right to left.
     fn controls(&mut self, _ui: &mut Ui, _cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {}
 
-    /// Draws it below its header.
+    /// Draws the pane below its header.
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>);
 }

@@ -1,4 +1,4 @@
-//! The pane of the prompt: its field, what was read from the words, the plan of a new scene.
+//! The pane of the prompt: its field, the reading of its words, the plan of a new scene.
 
 mod completion;
 pub mod field;
@@ -18,7 +18,7 @@ use language::t;
 use widgets::icons::Icon;
 use widgets::theme;
 
-/// Words that become a scene, or change it.
+/// The pane of the prompt.
 pub struct Prompt;
 
 impl Pane for Prompt {

@@ -1,4 +1,4 @@
-//! Brushes that the user keeps, below the options of the brush in hand.
+//! Brushes saved by the user, below the options of the brush in hand.
 
 use egui::Ui;
 
@@ -11,7 +11,7 @@ use widgets::theme;
 /// Longest name of a brush, letters.
 const LONGEST: usize = 24;
 
-/// What a brush is called until the user gives it a name.
+/// The default name of a brush: its settings in words.
 fn named(held: &Held) -> String {
     fn of<T: PartialEq>(all: &[(T, &'static str, &'static str)], value: &T) -> &'static str {
         all.iter()
@@ -57,7 +57,7 @@ fn named(held: &Held) -> String {
     }
 }
 
-/// Draws them where a brush is in hand.
+/// Draws the saved brushes while a brush is in hand.
 pub(super) fn saved_brushes_ui(ui: &mut Ui, hand: &mut Hand, saved: &mut Vec<SavedBrush>) {
     let now = hand.brush_in_hand();
     if now.is_none() {

@@ -1,4 +1,4 @@
-//! The scene lifted to 3-D Gaussians, as a viewer of splats shows it, flown through from where the 3D view stands.
+//! The scene lifted to 3D Gaussians and drawn like in a splat viewer. Flight starts at the viewpoint of the 3D view.
 
 use std::sync::Arc;
 
@@ -31,13 +31,13 @@ const ORBIT_RAD: f64 = 0.006;
 /// Width of the picture while the view moves, and at rest, px.
 const MOVING_PX: f32 = 320.0;
 const STILL_PX: f32 = 960.0;
-/// Time without motion after which the picture is fine, s.
+/// Time without motion after which the fine picture is drawn, s.
 const SETTLE_S: f64 = 0.25;
 
 /// The pane.
 #[derive(Default)]
 pub struct Splats {
-    /// Counts scenes that were opened: what was baked of another one goes.
+    /// Last number of opened scenes; when it changes, the Gaussians of the other scene are dropped.
     opened: u64,
     baking: Option<Baking>,
     texture: Option<TextureHandle>,
@@ -109,7 +109,7 @@ impl Pane for Splats {
             None => painter.rect_filled(rect, 0.0, theme::well()),
         };
         let looks = Looks {
-            // Splats are drawn in perspective always.
+            // Splats are always drawn in perspective.
             camera: ViewCamera {
                 ortho: false,
                 ..cx.view3d.camera
@@ -152,7 +152,7 @@ impl Splats {
         )
     }
 
-    /// What is shown before anything was baked.
+    /// Draws the pane before anything was baked: a progress bar, or an explanation with the button that bakes.
     fn before(&mut self, ui: &mut Ui, rect: Rect, cx: &PaneContext<'_>) {
         if let Some(baking) = &mut self.baking {
             baking.update();
@@ -189,7 +189,7 @@ impl Splats {
     fn bake(&mut self, ui: &Ui, cx: &PaneContext<'_>) {
         if self.baking.is_none() {
             let wake = ui.ctx().clone();
-            // Without a thread the button does nothing; the log of the system says why.
+            // Without a thread the button has no effect.
             self.baking = Baking::spawn(Arc::new(move || wake.request_repaint())).ok();
         }
         if let Some(baking) = &mut self.baking {
@@ -197,7 +197,7 @@ impl Splats {
         }
     }
 
-    /// Has the picture drawn as the camera stands, coarse while it moves.
+    /// Requests a picture for the camera, coarse while it moves.
     fn look(&mut self, ui: &Ui, rect: Rect, camera: &ViewCamera) {
         let now_s = ui.input(|i| i.time);
         if self.camera != Some(*camera) {
@@ -237,7 +237,7 @@ impl Splats {
     }
 }
 
-/// From where the picture in a rectangle is seen.
+/// Viewpoint of the picture in a rectangle.
 struct Looks {
     camera: ViewCamera,
     rect: Rect,
@@ -249,13 +249,13 @@ impl Looks {
         [size.x, size.y].map(|v| v.round().max(1.0) as u32)
     }
 
-    /// Where a place appears; `None` behind the eye.
+    /// Screen position of a point; `None` behind the camera.
     fn project(&self, p_m: DVec3) -> Option<Pos2> {
         let at = self.camera.project(p_m, self.size())?;
         Some(self.rect.min + egui::vec2(at.x as f32, at.y as f32))
     }
 
-    /// The edges of the chosen boxes.
+    /// Draws the edges of the chosen boxes.
     fn outline_chosen(&self, painter: &Painter, scene: &Scene, state: &UiState) {
         for id in state.chosen() {
             let Some(b) = scene.frame().boxes.get(&id).filter(|b| b.problem().is_none()) else {
@@ -275,7 +275,7 @@ impl Looks {
         }
     }
 
-    /// What is under the pointer is said and marked elsewhere; a click chooses the box there.
+    /// Reports the place under the pointer to the status bar and to the other panes; a click chooses the box there.
     fn answer(&self, ui: &Ui, response: &Response, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
         if let Some(place_m) = place_marks::elsewhere(cx.state, PaneId::SPLATS)
             && let Some(at) = self.project(place_m)
@@ -311,8 +311,8 @@ impl Looks {
     }
 }
 
-/// The pointer as in the 3D view: drag turns, with Shift shifts; the right button looks around, and W A S D Q E fly; the
-/// wheel comes nearer.
+/// Navigation as in the 3D view: a drag orbits, with Shift it pans; the right button looks around while W A S D Q E
+/// fly; the wheel moves nearer.
 fn navigate(ui: &Ui, response: &Response, camera: &mut ViewCamera) {
     let delta = response.drag_delta();
     let (dx, dy) = (f64::from(delta.x), f64::from(delta.y));

@@ -1,4 +1,4 @@
-//! What the scene is made of, in numbers: voxels and boxes per class, the road, things beside it, the last sweep.
+//! Statistics of the scene: voxels and boxes per class, the road, things beside it, the last sweep.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use language::{t, tf};
 use widgets::icons::{Icon, section};
 use widgets::theme;
 
-/// Width of the names of classes, and of the numbers behind the bars, points.
+/// Width of the class names, and of the numbers behind the bars, points.
 const NAME_POINTS: f32 = 116.0;
 const NUMBER_POINTS: f32 = 62.0;
 
@@ -29,15 +29,15 @@ pub struct Statistics {
     counted: Option<(Arc<Scene>, Counts)>,
 }
 
-/// What was counted in one state of a scene.
+/// Counts of one state of a scene.
 #[derive(Clone, Debug, PartialEq)]
 struct Counts {
-    /// Voxels of each class, the class with most voxels first; empty space is not among them.
+    /// Voxels of each class, the most frequent class first, without empty space.
     voxels: Vec<(Class, usize)>,
     /// Boxes of each class, in the order of the classes.
     boxes: BTreeMap<Class, usize>,
     drivable_m2: f64,
-    /// Voxels that are not empty, of all that there are, 0 to 1.
+    /// Share of voxels that are not empty, 0 to 1.
     occupied: f64,
     things: usize,
 }
@@ -149,7 +149,7 @@ impl Pane for Statistics {
     }
 }
 
-/// A row: the class, a bar as long as its share of the most, how many there are; `what` says that in words.
+/// A row: the class, a bar in proportion to the largest number, and the number; `what` gives the number in words.
 fn bar(ui: &mut Ui, class: Class, n: usize, most: usize, what: &str) {
     let size = vec2(ui.available_width(), ROW_POINTS);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());

@@ -1,5 +1,5 @@
-//! A sweep as a picture: azimuth from left to right as the driver sees it, beams from top to bottom. A click chooses the box
-//! that returned the light.
+//! A sweep as a picture: azimuth from left to right as the driver sees it, beams from top to bottom. A click chooses
+//! the box that a return hit.
 
 use std::sync::Arc;
 
@@ -21,19 +21,20 @@ use widgets::theme;
 
 /// Columns of the picture.
 pub const COLUMNS: usize = 1080;
-/// Returns this far outside a box are still of it, m: the sides of voxels stand out.
+/// Margin around a box within which returns count as its own, m: the sides of voxels stick out of it.
 const MARGIN_M: f64 = 0.25;
-/// So far below it they are if they are of its class, m: labels have the ground, and what stands on it, two voxels lower.
+/// Depth below a box to which returns of its class count as its own, m: in labels, the ground and the objects on it are
+/// two voxels lower.
 const BELOW_M: f64 = 0.8;
 
-/// Where a sensor is: it sees directions as the vehicle does, while returns are in the world frame.
+/// Pose of a sensor. Azimuths and elevations are relative to the vehicle; returns are in the world frame.
 pub struct Mount {
     ego_from_world: Pose,
     at_m: DVec3,
 }
 
 impl Mount {
-    /// Of a sensor of the scene's vehicle.
+    /// The mount of a sensor on the scene's vehicle.
     pub fn of(scene: &Scene, lidar: &LidarPattern) -> Self {
         Self {
             ego_from_world: scene.frame().world_from_ego.inverse(),
@@ -47,8 +48,8 @@ impl Mount {
         d.y.atan2(d.x).to_degrees()
     }
 
-    /// Where in the picture a place of the world is, 0 to 1 from the left and from the top: at the beam that points there, or the
-    /// nearest one.
+    /// The place of a point of the world in the picture, 0 to 1 from the left and from the top, at the beam nearest to
+    /// its elevation.
     pub fn part_of(&self, p_m: DVec3, elevations_deg: &[f64]) -> [f64; 2] {
         let d = self.ego_from_world.apply(p_m) - self.at_m;
         let up_deg = d.z.atan2(d.truncate().length()).to_degrees();
@@ -59,7 +60,7 @@ impl Mount {
         [(180.0 - self.azimuth_deg(p_m)) / 360.0, down]
     }
 
-    /// The column of the picture in which a return is.
+    /// The column of a return in the picture.
     pub fn column(&self, point: &LidarPoint) -> usize {
         column(self.azimuth_deg(place_of(point)))
     }
@@ -73,17 +74,17 @@ fn column(azimuth_deg: f64) -> usize {
     (((180.0 - azimuth_deg) / 360.0 * COLUMNS as f64) as usize).min(COLUMNS - 1)
 }
 
-/// The picture and what it was made from.
+/// The picture and the sweep that it was made from.
 #[derive(Default)]
 pub struct SweepPicture {
     texture: Option<(Arc<LidarSweep>, LidarColorMode, usize, TextureHandle)>,
-    /// Outlines of the chosen boxes, and what they were made from.
+    /// Outlines of the chosen boxes, with the key that they were made from.
     outlined: Option<(OutlinesOf, Vec<Outline>)>,
 }
 
-/// Opposite corners of a rectangle, parts of the picture.
+/// Opposite corners of a rectangle, as parts of the picture.
 type Outline = [[f64; 2]; 2];
-/// The sweep, the state of the scene and the chosen boxes.
+/// Key of the outlines: the sweep, the state of the scene and the chosen boxes.
 type OutlinesOf = (Arc<LidarSweep>, SceneRev, Vec<BoxId>);
 
 fn same(a: &OutlinesOf, b: &OutlinesOf) -> bool {
@@ -91,7 +92,7 @@ fn same(a: &OutlinesOf, b: &OutlinesOf) -> bool {
 }
 
 impl SweepPicture {
-    /// Draws the sweep into all the space there is, and answers the pointer.
+    /// Draws the sweep into all the available space, and answers the pointer.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -135,7 +136,7 @@ impl SweepPicture {
         let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         painter.image(handle.id(), rect, unit, Color32::WHITE);
-        // Each box is looked for in all returns: not again in every frame.
+        // The outlines are kept: each box is searched for in all returns.
         let of = (sweep.clone(), scene.rev, state.chosen());
         if self.outlined.as_ref().is_none_or(|(known, _)| !same(known, &of)) {
             let boxes = of.2.iter().filter_map(|id| scene.frame().boxes.get(id));
@@ -190,13 +191,13 @@ impl SweepPicture {
     }
 }
 
-/// True if a return is of a box.
+/// True if a return belongs to a box.
 fn is_of(b: &SceneBox, point: &LidarPoint) -> bool {
     let p_m = place_of(point);
     b.contains(p_m, MARGIN_M) || point.class == b.class && b.contains(p_m + DVec3::Z * BELOW_M, MARGIN_M)
 }
 
-/// The box that a return is of; of several the smallest.
+/// The box that a return belongs to; the smallest of several.
 fn box_of<'a>(scene: &'a Scene, point: &LidarPoint) -> Option<&'a SceneBox> {
     let hidden = &scene.arranged.hidden.boxes;
     let holds = |b: &&SceneBox| !hidden.contains(&b.id) && is_of(b, point);
@@ -205,8 +206,8 @@ fn box_of<'a>(scene: &'a Scene, point: &LidarPoint) -> Option<&'a SceneBox> {
     all.min_by(|a, b| volume(a).total_cmp(&volume(b)))
 }
 
-/// Rectangles around the returns of a box, two opposite corners as parts of the picture: none without returns, two where it lies
-/// across the edge of the picture.
+/// Rectangles around the returns of a box, each with two opposite corners as parts of the picture: none without
+/// returns, two if the box crosses the edge of the picture.
 fn outlines(sweep: &LidarSweep, mount: &Mount, rings: usize, b: &SceneBox) -> Vec<Outline> {
     let middle_deg = mount.azimuth_deg(b.center_m);
     let mut low = [f64::INFINITY; 2];
@@ -246,7 +247,7 @@ fn picture(sweep: &LidarSweep, mode: LidarColorMode, rings: usize, mount: &Mount
     image
 }
 
-/// The return of a beam that is nearest to an azimuth, within a degree.
+/// The return of a beam that is nearest to an azimuth; `None` if none is within a degree.
 fn nearest<'a>(sweep: &'a LidarSweep, mount: &Mount, ring: usize, at_deg: f64) -> Option<&'a LidarPoint> {
     let off = |p: &LidarPoint| (mount.azimuth_deg(place_of(p)) - at_deg).abs();
     let found = sweep

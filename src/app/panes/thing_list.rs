@@ -1,4 +1,4 @@
-//! Rows of the list of objects that show things beside the road: kinds with their counts, unfolded one by one.
+//! Rows for things beside the road in the list of objects: kinds with their counts, each of which unfolds.
 
 use std::collections::BTreeMap;
 
@@ -15,15 +15,15 @@ use scene::{Background, Members, Scene, Thing, ThingId};
 use widgets::icons;
 use widgets::theme;
 
-/// A row.
+/// A row of the list.
 pub enum ThingRow<'a> {
-    /// A kind, and its things.
+    /// A kind with its things.
     Kind(&'static str, Vec<&'a Thing>),
     /// A thing of an unfolded kind.
     Thing(&'a Thing),
 }
 
-/// Rows for all things: kinds in the order of their names, each unfolded or not.
+/// Rows for all things: kinds in the order of their names, each followed by its things if it is unfolded.
 pub fn rows<'a>(background: &'a Background, hand: &Hand) -> Vec<ThingRow<'a>> {
     let mut kinds: BTreeMap<&'static str, Vec<&Thing>> = BTreeMap::new();
     for thing in background.iter() {
@@ -121,7 +121,7 @@ pub fn row_ui(ui: &mut Ui, row: &ThingRow<'_>, scene: &Scene, hand: &mut Hand, c
     }
 }
 
-/// A triangle that points right, or down where a kind is unfolded.
+/// A triangle: down if unfolded, else to the right. Returns the response.
 pub(super) fn fold(ui: &mut Ui, unfolded: bool, name: &str) -> egui::Response {
     let size = egui::vec2(theme::ROW * 0.8, theme::ROW);
     let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());

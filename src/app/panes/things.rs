@@ -1,4 +1,4 @@
-//! The chosen things beside the road in numbers: what all of them have can be set for all of them.
+//! The chosen things beside the road in numbers. A property that all of them have can be set for all of them.
 
 use egui::{Response, Ui};
 
@@ -20,14 +20,14 @@ fn send(command: ThingCommand, commands: &mut Vec<Command>) {
     commands.push(Command::Tools(ToolCommand::Thing(command)));
 }
 
-/// The chosen things: as they are shown, a drag in progress included, and as they were before it.
+/// The chosen things: as shown, a drag in progress included, and as they were before the drag.
 #[derive(Clone, Copy)]
 struct Chosen<'a> {
     shown: &'a [&'a Thing],
     settled: &'a [&'a Thing],
 }
 
-/// Edits that change every thing alike; things that stay as they are make none.
+/// Edits that make the same change to every thing. Things that the change leaves as they are get no edit.
 fn changes(settled: &[&Thing], change: impl Fn(&mut Form)) -> Vec<Edit> {
     let changed = settled.iter().filter_map(|t| {
         let mut form = t.form.clone();
@@ -37,7 +37,7 @@ fn changes(settled: &[&Thing], change: impl Fn(&mut Form)) -> Vec<Edit> {
     changed.collect()
 }
 
-/// Dragging previews, letting go commits, typing applies.
+/// Turns the response of a field into commands: dragging previews, releasing commits, typing applies.
 fn field(response: &Response, label: String, edits: Vec<Edit>, commands: &mut Vec<Command>) {
     if response.dragged() {
         if response.changed() {
@@ -53,7 +53,7 @@ fn field(response: &Response, label: String, edits: Vec<Edit>, commands: &mut Ve
     }
 }
 
-/// Draws the inspector of the chosen things; at least one.
+/// Draws the inspector of the chosen things, of which there is at least one.
 pub fn inspector(ui: &mut Ui, things: &[&Thing], settled: &Background, commands: &mut Vec<Command>) {
     let before: Vec<&Thing> = things.iter().filter_map(|t| settled.get(t.id)).collect();
     let (Some(first), Some(first_before)) = (things.first(), before.first()) else {
@@ -104,14 +104,14 @@ fn header(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command
     });
 }
 
-/// Choices with their texts in the language that is shown.
+/// Choices with their texts in the language of the interface.
 fn shown<T, const N: usize>(
     choices: [(T, &'static str, &'static str); N],
 ) -> [(T, &'static str, &'static str); N] {
     choices.map(|(value, name, hint)| (value, t(name), t(hint)))
 }
 
-/// Storeys by buttons, roof and facade.
+/// Fields of a building: buttons for storeys, roof and facade.
 fn building(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command>) {
     let of = |t: &Thing| match &t.form {
         Form::Building(b) => Some(b.clone()),
@@ -188,7 +188,7 @@ fn building(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Comma
     }
 }
 
-/// Lists of kinds, of things that are all trees, all lines or all posts.
+/// Lists of kinds for things that are all trees, all lines or all posts.
 fn kinds(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command>) {
     let mut apply = |edits| {
         send(
@@ -236,7 +236,7 @@ fn kinds(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command>
     }
 }
 
-/// A number that some forms have.
+/// A number field that some forms have.
 struct NumberField {
     title: &'static str,
     name: &'static str,
@@ -325,7 +325,7 @@ const NUMBERS: [NumberField; 5] = [
     },
 ];
 
-/// Numbers that all of the things have.
+/// Fields for the numbers that all of the things have.
 fn numbers(ui: &mut Ui, chosen: Chosen<'_>, what: &str, commands: &mut Vec<Command>) {
     let things = chosen.shown;
     for of in &NUMBERS {
@@ -360,7 +360,7 @@ fn numbers(ui: &mut Ui, chosen: Chosen<'_>, what: &str, commands: &mut Vec<Comma
     }
 }
 
-/// Sets the height; what is too low for the form is made as low as it can be.
+/// Sets the height; a height that is too low for the form becomes its least height.
 fn set_height(form: &mut Form, height_m: f64) {
     match form {
         Form::Building(b) => b.height_m = height_m.max(0.5),
@@ -405,7 +405,7 @@ mod tests {
         assert!(
             matches!(&edits[0], Edit::ChangeThing { id, form } if *id == hedge.id && form.height_m() == 5.0)
         );
-        // Every field sets what it gets.
+        // Every field sets the value that it reads.
         for of in &NUMBERS {
             for t in [&tree, &hedge] {
                 if (of.get)(&t.form).is_some() {

@@ -24,10 +24,10 @@ use widgets::icons::Icon;
 use widgets::icons::{self, section};
 use widgets::theme;
 
-/// Area of a cell that is inpainted, m².
+/// Area of a latent cell that is inpainted, m².
 const REGION_CELL_M2: f64 = 2.56;
 
-/// Options of the tool in hand, map layers.
+/// The pane of tool options and map layers.
 pub struct Tools;
 
 impl Pane for Tools {
@@ -93,7 +93,7 @@ pub fn layers_ui(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mut
     });
 }
 
-/// What kind of place, and the button that draws it.
+/// The choice of the kind of place, and the button that draws scenery.
 fn scenery_row(ui: &mut Ui, tools: &mut ToolState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let chosen = &mut tools.drawer;
@@ -123,11 +123,11 @@ fn scenery_row(ui: &mut Ui, tools: &mut ToolState, commands: &mut Vec<Command>) 
     caption(ui, place);
 }
 
-/// A number that generation is asked for, if it is ticked; `typical` is where it begins.
+/// A checkbox and a slider for a density of generation; `typical` is the value to begin with.
 fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
     ui.horizontal(|ui| {
         let mut on = value.is_some();
-        // A column of its own width: what a row asks for beyond the pane's would make the pane grow.
+        // The checkbox gets a fixed width: a row wider than the pane would make the pane grow.
         let (rect, _) = ui.allocate_exact_size(vec2(104.0, theme::ROW), Sense::hover());
         let left = egui::Layout::left_to_right(egui::Align::Center);
         let mut column = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(left));
@@ -147,7 +147,7 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
     });
 }
 
-/// The seed of what is generated on request.
+/// The seed of generation on request.
 fn seed_row(ui: &mut Ui, wish: &mut SeedWish, scene_seed: u64) {
     ui.horizontal_wrapped(|ui| {
         ui.label(t("Seed"));
@@ -233,7 +233,7 @@ fn layer_row(
     });
 }
 
-/// The layers that a layer can become part of.
+/// The menu of layers into which a layer can be merged.
 fn merge_menu(ui: &mut Ui, layout: &BevLayout, layer: BevLayer, commands: &mut Vec<Command>) {
     ui.label(egui::RichText::new(t("Merge into")).color(theme::text_weak()));
     for into in BevLayer::MAP.into_iter().filter(|other| *other != layer) {
@@ -245,7 +245,7 @@ fn merge_menu(ui: &mut Ui, layout: &BevLayout, layer: BevLayer, commands: &mut V
     }
 }
 
-/// Shows one layer alone, or if it is, what was shown before.
+/// Shows one layer alone; if it is alone already, shows the layers from before.
 fn solo(tools: &mut ToolState, layer: BevLayer) {
     match tools.before_solo {
         Some(before) if tools.layers_shown == layer.bit() => {
@@ -259,12 +259,12 @@ fn solo(tools: &mut ToolState, layer: BevLayer) {
     }
 }
 
-/// How much the chosen layer hides of those below it, and all of them of the voxels.
+/// Sliders for the opacity of the chosen layer, and of all layers over the voxels.
 fn opacity_rows(ui: &mut Ui, tools: &mut ToolState, over_voxels: bool) {
     let slider = |ui: &mut Ui, caption: &str, value: &mut f32, name: &str| {
         ui.horizontal(|ui| {
             ui.label(egui::RichText::new(caption).color(theme::text_weak()));
-            // (as much as the field beside it leaves)
+            // (the width that the field beside it leaves)
             ui.spacing_mut().slider_width = (ui.available_width() - 62.0).clamp(24.0, 74.0);
             let slider = egui::Slider::new(value, 0.0..=1.0).fixed_decimals(2);
             ui.add(slider).on_hover_text(name).accessible_name(name);
@@ -290,7 +290,7 @@ pub(super) fn lock(ui: &mut Ui, locked: bool, name: &str) -> egui::Response {
     let color = match (locked, response.hovered()) {
         (true, _) => theme::warn(),
         (false, true) => theme::text_weak(),
-        // Seen only where it is needed: a lock beside every layer would be noise.
+        // Nearly invisible unless it is locked or hovered: a lock beside every layer would be noise.
         (false, false) => theme::field_hover(),
     };
     Icon::Lock.paint(ui, rect.shrink2(vec2(2.0, 6.0)), color);
@@ -316,7 +316,7 @@ fn toggle_row(ui: &mut Ui, name: &str, on: &mut bool) {
     });
 }
 
-/// Outlines of things beside the road: shown or not, locked or not.
+/// Draws the switches for things beside the road: shown, locked.
 fn things_row(ui: &mut Ui, tools: &ToolState, commands: &mut Vec<Command>) {
     let mut send = |command| commands.push(Command::Tools(ToolCommand::Thing(command)));
     let things = &tools.things;

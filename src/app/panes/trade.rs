@@ -1,5 +1,5 @@
-//! Speed and accuracy: the slider of measured presets, the plot they lie on, the receipt of the last edit, what was
-//! computed for it, and what stability there was.
+//! Speed and accuracy: the slider of measured presets, their plot, the receipt of the last edit, the parts computed for
+//! it, and the stability since the start.
 
 use egui::{Align, Label, Layout, RichText, Slider, Ui, vec2};
 
@@ -17,7 +17,7 @@ use trade::Preset;
 use widgets::icons::Icon;
 use widgets::theme;
 
-/// The quality slider, its measurements, the receipt of the last edit.
+/// The pane of the quality slider, its measurements, and the receipt of the last edit.
 pub struct Trade;
 
 impl Pane for Trade {
@@ -42,7 +42,7 @@ impl Pane for Trade {
     }
 }
 
-/// Draws the pane. `params` are those of the next edit.
+/// Draws the pane. `params` are the parameters of the next edit.
 pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: &mut Vec<Command>) {
     egui::ScrollArea::vertical()
         .id_salt("trade")
@@ -71,7 +71,7 @@ pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: 
         });
 }
 
-/// A share as people read it.
+/// A share as text, percent.
 fn percent(share: f64) -> String {
     t(&figures::percent(share)).to_owned()
 }
@@ -182,7 +182,7 @@ fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
                     ),
                     theme::text_weak(),
                 ),
-                // (weights and program may be older than this one)
+                // (the times may be from other weights or an older program)
                 (false, _) if tuning.presets.machine == machine() => (
                     tf!(
                         "times of a machine like this one ({machine})",
@@ -206,7 +206,7 @@ fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
     }
 }
 
-/// A name and what is said of it, on as many lines as that takes.
+/// A name and its value, on as many lines as the value needs.
 fn row(ui: &mut Ui, name: &str, value: impl Into<RichText>) {
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.y = 2.0;

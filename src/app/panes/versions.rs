@@ -1,4 +1,4 @@
-//! The list of versions: looked at, compared with, named, starred, gone back to.
+//! The list of versions, to view, compare, name, star and restore them.
 
 use egui::accesskit::Role;
 use egui::{Color32, Rect, Sense, TextureOptions, Ui, WidgetInfo, pos2, vec2};
@@ -15,7 +15,7 @@ use widgets::icons;
 use widgets::icons::Icon;
 use widgets::theme;
 
-/// What the scene was so far.
+/// The pane of the versions.
 pub struct VersionsPane;
 
 impl Pane for VersionsPane {
@@ -60,7 +60,7 @@ impl Pane for VersionsPane {
 /// Height of an entry, points.
 const ENTRY: f32 = 52.0;
 
-/// Draws the list, the newest first. `shown` is the present state, `before` the one it is compared with.
+/// Draws the list, the newest first. `shown` is the present state, `before` the compared one.
 pub fn versions_ui(
     ui: &mut Ui,
     versions: &mut Versions,
@@ -91,7 +91,7 @@ pub fn versions_ui(
         });
 }
 
-/// What a version is called in the language that is shown; a name that was given to it stays as it is.
+/// The title of a version in the language of the interface; a name given by the user is not translated.
 fn title(version: &Version) -> &str {
     match version.name.is_empty() {
         true => t(version.title()),
@@ -99,7 +99,7 @@ fn title(version: &Version) -> &str {
     }
 }
 
-/// One version of the list.
+/// One entry of the list.
 struct Entry {
     rev: SceneRev,
     shown: SceneRev,
@@ -219,7 +219,7 @@ impl Entry {
         }
     }
 
-    /// The field in which the name is typed; false if that of another one is, or none.
+    /// The field for the version's name; returns false if this version is not being renamed.
     fn name_field(&self, ui: &mut Ui, rect: Rect, versions: &mut Versions) -> bool {
         let Some((_, text)) = versions.renaming.as_mut().filter(|(rev, _)| *rev == self.rev) else {
             return false;
@@ -252,7 +252,7 @@ fn thumbnail(ui: &Ui, rect: Rect, version: &mut Version) {
     ui.painter().image(texture.id(), rect, unit, Color32::WHITE);
 }
 
-/// Text on one line, cut where the room ends.
+/// Draws text on one line, cut at the available width.
 fn line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: egui::TextStyle, color: Color32) {
     let font = style.resolve(ui.style());
     let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
@@ -261,7 +261,7 @@ fn line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: egui::TextStyle, 
     ui.painter().galley(at, galley, color);
 }
 
-/// What the header of the list offers.
+/// Draws the controls in the header of the list.
 pub fn versions_controls(ui: &mut Ui, how: &mut Comparing) {
     let choices = CompareMode::ALL.map(|(mode, name, hint)| (mode, t(name), t(hint)));
     icons::choice(ui, &mut how.mode, &choices, t("Compare"));

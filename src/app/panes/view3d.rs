@@ -1,4 +1,4 @@
-//! The 3D view, with the state before on it or beside it.
+//! The 3D view, with the compared state on it or beside it.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
 use widgets::icons::{self, Icon};
 use widgets::theme;
 
-/// The 3D view.
+/// The pane of the 3D view.
 pub struct View3dPane;
 
 impl Pane for View3dPane {
@@ -150,7 +150,7 @@ impl Pane for View3dPane {
     }
 }
 
-/// What is under a point of the screen.
+/// The box or the place under a point of the screen.
 fn under(view: &View3d, scene: &Scene, at: egui::Pos2) -> Under {
     let ray = view.pointer(at).map(|p| p.ray);
     let hit = ray.and_then(|ray| pick::pick(scene.frame(), &ray).map(|hit| (ray, hit)));

@@ -1,4 +1,4 @@
-//! Pictures by the picture networks for the window: which weights, and the thread that paints.
+//! Learned camera pictures for the window: the weights, and the thread that paints.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -15,48 +15,48 @@ use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, learned};
 use sensors::painter::{Paint, PaintError, PaintModel, Progress};
 
-/// A scene to paint.
+/// A request to paint a scene.
 pub(super) struct Request {
-    /// The scene, its rig in the world.
+    /// The scene, with its rig in the world.
     pub scene: Arc<Scene>,
-    /// How.
+    /// Settings of the painting.
     pub settings: Arc<PaintWish>,
-    /// The scene still changes. Such a painting by the program's own weights goes on when a newer scene comes: giving way would leave
-    /// the strip without any news for as long as the user drags. Public weights take too long for that.
+    /// True if the scene is still changing. With the program's own weights such a painting goes on when a newer scene
+    /// comes; otherwise the strip would get no pictures while the user drags. Public weights take too long for that.
     pub moving: bool,
 }
 
-/// How far a painting has come.
+/// Progress of a painting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PaintStage {
     /// The weights are being opened.
     Opening,
     /// Steps done, and all steps.
     Step(usize, usize),
-    /// It ends after its present step.
+    /// The painting stops after its current step.
     Stopping,
 }
 
 /// News from the thread.
 pub(super) enum News {
-    /// How far it has come, and how a picture looks by now.
+    /// Progress, and a picture in its current state.
     Stage(PaintStage, Option<CameraView>),
     /// The pictures of all cameras.
     Painted(SceneRev, Vec<CameraView>),
-    /// The user stopped it.
+    /// The user stopped the painting.
     Stopped,
-    /// There are none; why.
+    /// No pictures could be made, for this reason.
     Problem(String),
-    /// A newer scene waits.
+    /// The painting was cancelled, because a newer scene waits.
     GivenUp,
 }
 
 impl Sensing {
-    /// Asks for learned pictures of a scene.
+    /// Requests learned pictures of a scene.
     pub(super) fn paint(&mut self, scene: Arc<Scene>, wanted: Wanted, moving: bool) {
         self.stop.store(false, Ordering::Relaxed);
         self.stopped = false;
-        // What is there already is shown at once; whether it is out of date shows by its state.
+        // Existing pictures are shown at once. Their state tells whether they are stale.
         if let Some((rev, views)) = self.painted.clone() {
             self.show_painted(rev, &views, Some(wanted));
         }
@@ -67,7 +67,7 @@ impl Sensing {
         });
     }
 
-    /// Shows learned pictures where the strip or panes want them.
+    /// Shows learned pictures in the strip or in panes.
     fn show_painted(&mut self, rev: SceneRev, views: &Arc<Vec<CameraView>>, wanted: Option<Wanted>) {
         self.version += 1;
         match wanted {
@@ -83,7 +83,7 @@ impl Sensing {
         }
     }
 
-    /// Takes in what has been painted.
+    /// Takes in the news of the painting thread.
     pub(super) fn drain_painting(&mut self) {
         let news = self.painting.updates().try_iter();
         let news: Vec<_> = news.filter(|event| event.id.0 > self.forgotten[1]).collect();
@@ -92,7 +92,7 @@ impl Sensing {
             match news {
                 News::Stage(stage, view) => {
                     self.stage = Some(stage);
-                    // A state that no scene has: the pictures stay out of date while one of them changes.
+                    // A fresh revision matches no scene, so the pictures stay stale while one of them changes.
                     let shown = self.painted.as_ref().map(|(_, views)| views);
                     if let Some(view) = view {
                         let shown = shown.or(self.cameras()).map_or(&[][..], |views| views);
@@ -117,18 +117,18 @@ impl Sensing {
     }
 }
 
-/// Paints scenes, with what its painter was made for.
+/// Painter of scenes, kept with the settings that it was made for.
 pub(super) struct Painting {
     settings: Arc<PaintWish>,
-    /// The weights of the settings, which take long to open.
+    /// The weights of the settings; they take long to open.
     model: Option<PaintModel>,
     painter: Option<Box<dyn Paint>>,
-    /// The user has enough of it.
+    /// Set when the user stops the painting.
     stop: Arc<AtomicBool>,
 }
 
 impl Painting {
-    /// Ends its present painting when `stop` is set.
+    /// A painter that stops its current painting when `stop` is set.
     pub fn new(stop: Arc<AtomicBool>) -> Self {
         Self {
             settings: Arc::default(),
@@ -138,7 +138,7 @@ impl Painting {
         }
     }
 
-    /// A painter for such settings; `opens` is called if weights must be opened for it.
+    /// The painter for some settings. Calls `opens` before weights are opened.
     fn painter(&mut self, settings: &Arc<PaintWish>, opens: impl FnOnce()) -> Result<&mut dyn Paint, String> {
         if self.settings.weights != settings.weights {
             self.model = None;
@@ -225,7 +225,7 @@ fn view(camera: usize, image: &CameraImage) -> CameraView {
     CameraView::new(camera, CameraPicture::Picture(image.clone())).colored(&learned::Learned)
 }
 
-/// Pictures with that of one camera exchanged; the order stays that of the rig.
+/// The pictures with one camera's picture replaced or added, in the order of the rig.
 pub(super) fn with(views: &[CameraView], view: CameraView) -> Vec<CameraView> {
     let mut views = views.to_vec();
     match views.binary_search_by_key(&view.camera, |v| v.camera) {

@@ -1,4 +1,4 @@
-//! The thread senses the newest scene, and goes on after a panic.
+//! Tests of the sensing thread: it senses the newest scene, and goes on after a panic.
 
 use std::time::Instant;
 
@@ -26,7 +26,7 @@ fn the_newest_scene_is_sensed_in_the_end() {
     }
     assert_eq!(sensing.cameras().map(|c| c.len()), Some(6));
     assert!(sensing.lidar().is_some_and(|l| l.points.len() > 1000));
-    // Asked for already: nothing new comes.
+    // The same request again brings no news.
     let version = sensing.version();
     sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
     std::thread::sleep(Duration::from_millis(50));
@@ -39,7 +39,7 @@ fn the_newest_scene_is_sensed_in_the_end() {
             hidden: 0b101,
             ..Wanted::default()
         };
-        // Nothing is painted while the user drags.
+        // No picture is painted while the user drags.
         let preview = source.id() != learned::ID;
         sensing.ask(&Arc::new(scene.clone()), wanted, preview);
         assert!(sensing.cameras_stale(scene.rev));
@@ -103,7 +103,7 @@ fn a_panic_is_told_once_and_the_next_scene_is_sensed() {
     assert_eq!(sensing.take_problem(), None);
 }
 
-/// Painted pictures come step by step; one that is stopped says so, and goes on when asked.
+/// Painted pictures come step by step. A stopped painting is reported, and goes on when requested.
 #[test]
 fn a_painting_is_told_step_by_step_and_can_be_stopped() {
     let world = World::random(3);
@@ -136,7 +136,7 @@ fn a_painting_is_told_step_by_step_and_can_be_stopped() {
     sensing.stop_painting();
     wait(&mut sensing, &|s| s.is_stopped());
     assert!(sensing.paint_stage().is_none() && sensing.cameras_stale(scene.rev));
-    // Fewer steps are asked for: it paints again, to the end.
+    // With fewer steps set, it paints again to the end.
     sensing.paint_with(&PaintWish {
         steps: Some(1),
         ..PaintWish::default()
@@ -144,13 +144,13 @@ fn a_painting_is_told_step_by_step_and_can_be_stopped() {
     wait(&mut sensing, &|s| !s.cameras_stale(scene.rev));
     assert_eq!(sensing.cameras().map(|c| c.len()), Some(6));
     assert!(!sensing.is_stopped());
-    // A folder without weights is one line.
+    // A folder without weights gives an error in one line.
     sensing.paint_with(&PaintWish {
         weights: Some("nowhere".into()),
         ..PaintWish::default()
     });
     sensing.ask(&scene, wanted, false);
-    // What was painted by others is no picture by these.
+    // Pictures painted with other weights are stale.
     assert!(sensing.cameras_stale(scene.rev));
     wait(&mut sensing, &|s| s.is_stopped());
     assert!(sensing.cameras_stale(scene.rev));

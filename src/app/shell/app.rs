@@ -1,5 +1,5 @@
 //! The application. It owns the document, the worker, the sensors' threads and the views. In each frame it draws the
-//! window, then carries out the commands that the user gave in it.
+//! window, then carries out the commands that the user gave.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -38,24 +38,24 @@ use crate::windows::shortcuts::Shortcuts;
 use language::tf;
 use widgets::{fonts, theme};
 
-/// Makes the pipeline, on the worker's thread.
+/// Builds the pipeline, on the worker's thread.
 pub type BuildPipeline = Box<dyn FnMut() -> Result<Box<dyn Pipeline>, GenError> + Send>;
 
-/// What the application starts with.
+/// Configuration of the application at the start.
 pub struct AppConfig {
     /// The scene to show.
     pub scene: Scene,
     /// Its file, if it has one.
     pub path: Option<PathBuf>,
-    /// The picture that it was in, if it was in one.
+    /// The picture that held the scene, if it was opened from a picture.
     pub picture: Option<PathBuf>,
-    /// Makes the pipeline.
+    /// Builds the pipeline.
     pub build_pipeline: BuildPipeline,
-    /// How to generate what was edited.
+    /// Parameters of generation after an edit.
     pub params: GenParams,
-    /// How to generate everything.
+    /// Parameters of generation of the whole scene.
     pub full_params: GenParams,
-    /// When a scene was opened, send a job that edits nothing, so that the pipeline gets ready for the first edit.
+    /// True: after a scene is opened, a job that edits nothing warms up the pipeline for the first edit.
     pub warm_up: bool,
     /// Opens files.
     pub open: OpenScene,
@@ -63,9 +63,9 @@ pub struct AppConfig {
     pub save: SaveScene,
     /// Makes new scenes.
     pub new_scene: NewScene,
-    /// Use the system's file dialogs; false: only a field for the path.
+    /// True: uses the system's file dialogs. False: a field for the path only.
     pub native_dialogs: bool,
-    /// File of the settings; none: standard settings, not saved.
+    /// File of the settings; `None`: default settings, not saved.
     pub settings_file: Option<PathBuf>,
 }
 
@@ -83,7 +83,7 @@ pub struct SceneThreads {
     pub(crate) sensing: Sensing,
     /// Findings of the quality checks.
     pub checking: Checking,
-    /// Repairs of them that are planned.
+    /// Repairs that are planned for them.
     pub planning: Planning,
 }
 
@@ -96,7 +96,7 @@ pub(crate) struct Overlays {
 
 /// State for drawing frames: the clock, the time they took, the window's title.
 pub struct Frames {
-    /// How fast the window is.
+    /// Performance measurements.
     pub perf: Perf,
     pub(crate) clock: Instant,
     pub(crate) title: String,
@@ -107,7 +107,7 @@ pub struct Frames {
 pub struct SceneloomApp {
     /// The scene with its history.
     pub document: Document,
-    /// What the window shows and holds in hand.
+    /// State of the views, the tools and the selection.
     pub state: UiState,
     /// Messages.
     pub toasts: Toasts,
@@ -124,7 +124,7 @@ pub struct SceneloomApp {
     pub preferences: Preferences,
     /// The window's frames.
     pub frames: Frames,
-    /// Assistants that were let in.
+    /// Assistants that may drive the editor.
     pub guests: Guests,
     ctx: egui::Context,
 }
@@ -168,7 +168,8 @@ impl SceneloomApp {
             },
             ..UiState::default()
         };
-        // On a software rasteriser a frame takes as long as a step of generation, so fewer frames are drawn then.
+        // On a software rasteriser a frame takes as long as a step of generation, so fewer frames are drawn during
+        // generation.
         let view3d = View3d::new(render_state.clone());
         let Opened {
             scene,
@@ -192,11 +193,11 @@ impl SceneloomApp {
         let mut build = config.build_pipeline;
         let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
         let tuning = Tuning::new(config.settings_file.as_deref());
-        // Without a file of settings the configuration's parameters are used.
+        // Without a settings file the configuration's parameters are used.
         let quality = tuning
             .presets
             .named(&settings.quality)
-            .or_else(|| tuning.presets.named(QUALITY)) // (settings of before may name one that is gone)
+            .or_else(|| tuning.presets.named(QUALITY)) // (old settings may name a removed preset)
             .filter(|_| config.settings_file.is_some());
         let params = quality.map_or(config.params.clone(), |preset| {
             preset.knobs.on(config.params.clone())
@@ -243,7 +244,7 @@ impl SceneloomApp {
         Ok(app)
     }
 
-    /// Which part of the ground the frame that is shown covers.
+    /// Extent of the frame on screen.
     pub(crate) fn extent(&self) -> Extent {
         self.document.scene().frame().extent()
     }
@@ -258,7 +259,7 @@ impl SceneloomApp {
         self.files.path.as_deref()
     }
 
-    /// What the sensors returned last.
+    /// The newest results of the sensors.
     pub fn sensing(&self) -> &Sensing {
         &self.threads.sensing
     }
@@ -280,13 +281,13 @@ impl SceneloomApp {
         }
     }
 
-    /// True if a preview of that state is of the state and the moment that are shown.
+    /// True if a preview of a state has the state and the moment on screen.
     fn shows(&self, content: SceneRev, preview: &Scene) -> bool {
         let shown = self.document.scene();
         shown.content() == content && shown.time_s() == preview.time_s()
     }
 
-    /// Does everything but drawing: takes updates of the worker, the sensors and the file threads.
+    /// Does all work except drawing: takes updates of the worker, the sensors and the file threads.
     pub fn update(&mut self, ctx: &egui::Context) {
         self.threads.sensing.drain();
         if let Some(problem) = self.threads.sensing.take_problem() {
@@ -312,7 +313,7 @@ impl SceneloomApp {
         if let Some((purpose, path)) = self.files.dialogs.poll() {
             self.file_chosen(purpose, path, ctx);
         }
-        // The first picture is drawn before anything else starts.
+        // The first picture is drawn before other work starts.
         if self.frames.passes > 1 {
             self.schedule(ctx);
         }
@@ -362,7 +363,7 @@ impl SceneloomApp {
     }
 }
 
-/// Asks for a frame when called, at once but at most one per `every_s`.
+/// A function that requests a frame: at once, but at most one per `every_s`.
 fn waker(ctx: &egui::Context, every_s: f64) -> impl Fn() + Clone + Send + Sync + 'static {
     let ctx = ctx.clone();
     let last: Arc<std::sync::Mutex<Option<Instant>>> = Arc::default();
@@ -387,7 +388,7 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
 
 impl eframe::App for SceneloomApp {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
-        // egui may lay a frame out twice and call this twice; it counts as one frame.
+        // egui may lay out a frame twice and call this twice; that counts as one frame.
         let first = ctx.current_pass_index() == 0;
         if first {
             self.frame_begins(frame.info().cpu_usage);

@@ -1,4 +1,4 @@
-//! What the window does about batches: the queue runs while the user goes on; variants are marked and opened.
+//! Batches in the window: the queue runs while the user works; variants are marked and opened.
 
 use std::path::{Path, PathBuf};
 
@@ -20,9 +20,9 @@ use language::tf;
 pub struct Batching {
     /// All batches of the session.
     pub queue: Queue,
-    /// What the window shows; `None` while it is closed.
+    /// State of the window; `None` while it is closed.
     pub(crate) window: Option<BatchesWindow>,
-    /// Kept while the window is closed.
+    /// State of the window, kept while it is closed.
     closed: Option<BatchesWindow>,
 }
 
@@ -52,7 +52,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Lets the queue go on, and tells which batches ended.
+    /// Advances the queue, and reports the batches that ended.
     pub(crate) fn update_batches(&mut self, ctx: &egui::Context) {
         let wake = ctx.clone();
         let ended = self.files.batching.queue.tick(move || wake.request_repaint());
@@ -90,7 +90,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Draws the window and does what it asks for.
+    /// Draws the window and carries out its requests.
     pub(crate) fn batches_ui(&mut self, ui: &Ui) {
         let Some(mut window) = self.files.batching.window.take() else {
             return;
@@ -143,7 +143,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Adds what the form says; of the open scene a copy lies in the folder.
+    /// Adds the batch of the form. For variants of the open scene, a copy of the scene is written into the folder.
     fn add_batch(&mut self, window: &BatchesWindow, chosen: Option<scene::BoxId>) -> anyhow::Result<u64> {
         let (form, output) = (&window.form, window.form.output());
         let queue = &mut self.files.batching.queue;
@@ -167,7 +167,7 @@ impl SceneloomApp {
         Ok(id)
     }
 
-    /// Opens a variant as a scene of its own; it is made anew.
+    /// Opens a variant as a new scene; it is made again.
     pub(super) fn open_variant(&mut self, id: u64, variant: usize, ctx: &egui::Context) {
         let Some(item) = self.files.batching.queue.item(id) else {
             return;
@@ -182,7 +182,7 @@ impl SceneloomApp {
     }
 }
 
-/// The folder itself if it is not there yet, else the next free one: `a_batch_2`, `a_batch_3` and so on.
+/// The folder itself if it does not exist yet, else the next free name: `a_batch_2`, `a_batch_3` and so on.
 fn free_folder(folder: &Path) -> PathBuf {
     let name = folder
         .file_name()

@@ -1,4 +1,4 @@
-//! Viewpoints that are kept under the numbers 1 to 9: of the 3D view and of the bird's-eye view together.
+//! Bookmarks: viewpoints kept under the numbers 1 to 9, each of the 3D view and the bird's-eye view together.
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -12,25 +12,25 @@ use viewport::ViewCamera;
 /// Numbers of bookmarks.
 pub const SLOTS: std::ops::RangeInclusive<u8> = 1..=9;
 
-/// Where both large views stand.
+/// Viewpoints of both large views.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bookmark {
-    /// Point in the middle of the 3D view, ego frame, m.
+    /// Target of the 3D view, ego frame, m.
     target_m: DVec3,
     distance_m: f64,
     yaw_rad: f64,
     pitch_rad: f64,
     fov_y_rad: f64,
     ortho: bool,
-    /// Point in the middle of the bird's-eye view, ego frame, m.
+    /// Centre of the bird's-eye view, ego frame, m.
     bev_center_m: DVec2,
-    /// Points per metre there.
+    /// Points per metre of the bird's-eye view.
     bev_scale: f64,
 }
 
 impl Bookmark {
-    /// Where the views stand now.
+    /// The present viewpoints.
     pub fn of(camera: &ViewCamera, canvas: &Canvas) -> Self {
         let (bev_center_m, bev_scale) = canvas.place();
         Self {
@@ -45,7 +45,7 @@ impl Bookmark {
         }
     }
 
-    /// The 3D view's camera; a file may hold any number, so it is made usable.
+    /// The camera of the 3D view, made valid since a file may hold any number.
     pub fn camera(&self) -> ViewCamera {
         ViewCamera {
             target_m: self.target_m,
@@ -60,7 +60,7 @@ impl Bookmark {
 }
 
 impl SceneloomApp {
-    /// Keeps where both views stand.
+    /// Keeps the viewpoints of both views.
     pub(crate) fn keep_bookmark(&mut self, slot: u8) {
         if SLOTS.contains(&slot) {
             let bookmark = Bookmark::of(&self.views.view3d.camera, &self.views.canvas);
@@ -69,7 +69,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Goes where both views stood when they were kept.
+    /// Restores the viewpoints of both views.
     pub(crate) fn go_to_bookmark(&mut self, slot: u8) {
         match self.preferences.settings.bookmarks.get(&slot).copied() {
             Some(bookmark) => {

@@ -1,4 +1,4 @@
-//! What the prompt asks of the document: edits by a sentence, and scenes made of words.
+//! Commands of the prompt for the document: edits by a sentence, and scenes made of words.
 
 use egui::Context;
 
@@ -12,12 +12,12 @@ use language::{t, tf};
 use scene::{BoxId, Frame};
 use sensors::cameras::pictures;
 
-/// Most boxes that are chosen after an edit; of more one sees no more than of none.
+/// Most boxes that are chosen after an edit; a larger selection would not help to see the change.
 const MOST_CHOSEN: usize = 12;
 
 impl SceneloomApp {
-    /// Applies what a sentence asked for as one undo step of its name. Chooses the boxes that came or changed, and lets the
-    /// cameras show pictures where time or weather changed: classes and depths do not know them.
+    /// Applies the edits of a sentence as one undo step named after it. Chooses the boxes that were added or changed.
+    /// If time or weather changed, the cameras show pictures, because classes and depths do not depend on them.
     pub(crate) fn apply_words(&mut self, words: &str, edits: &[Edit]) {
         let before = self.document.settled_scene().clone();
         let tools = &self.state.tools;
@@ -56,7 +56,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Makes a scene of words on a thread of its own; it becomes a step that can be undone.
+    /// Makes a scene of words on a thread of its own; it becomes an undo step.
     pub(crate) fn scene_from_words(&mut self, ask: Ask, ctx: &Context) {
         let told = self.views.prompt.told();
         let make = move || {
@@ -75,7 +75,7 @@ impl SceneloomApp {
 
 const SCENE_FROM_WORDS: &str = "Scene from words";
 
-/// Boxes of a frame that another lacks or holds otherwise.
+/// Boxes of `after` that `before` lacks or has with other values.
 fn changed_boxes(before: &Frame, after: &Frame) -> Vec<BoxId> {
     let changed = after
         .boxes

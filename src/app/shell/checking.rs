@@ -1,5 +1,5 @@
-//! Keeps the findings of the quality checks up to date with the scene: on a thread of its own, half a second after the
-//! last change, together with what the sensors see of each box.
+//! Keeps the findings of the quality checks up to date with the scene, on a thread of its own, half a second after the
+//! last change. The checks include how well the sensors see each box.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use job::guard::Panicked;
 use job::product::{Ctx, Product, Worker};
 use scene::{Scene, SceneRev};
 
-/// Quiet time before a scene is checked, s.
+/// Time without changes before a scene is checked, s.
 const AFTER_S: f64 = 0.5;
 
 /// The newest findings, and the thread that makes them.
@@ -18,7 +18,7 @@ pub struct Checking {
     changed: Option<(SceneRev, f64)>,
     asked: Option<SceneRev>,
     last: Option<(SceneRev, Arc<Vec<Finding>>)>,
-    /// Findings of this job and those before it are of a scene that was forgotten.
+    /// Last job for a forgotten scene: findings of it and of earlier jobs are dropped.
     forgotten: u64,
     problem: Option<String>,
 }
@@ -30,7 +30,7 @@ enum Checked {
     Failed(Panicked),
 }
 
-/// Findings as a product.
+/// The product of the thread: findings.
 struct Checker;
 
 impl Product for Checker {
@@ -69,8 +69,8 @@ impl Checking {
         })
     }
 
-    /// Takes in what has arrived, and has the scene checked once it has rested. Call it every frame; the answer is
-    /// after how many seconds it wants to be called again, if nothing else happens. `now_s` never runs backward.
+    /// Takes in the news, and requests a check once the scene has rested. To be called every frame. Returns the seconds
+    /// after which it wants to be called again, if no other event comes. `now_s` never runs backward.
     pub fn update(&mut self, scene: &Arc<Scene>, dragging: bool, now_s: f64) -> Option<f64> {
         let forgotten = self.forgotten;
         let events = self.worker.updates().try_iter();
@@ -96,24 +96,24 @@ impl Checking {
         None
     }
 
-    /// Forgets the findings, and those that are still on their way: another scene is shown.
+    /// Forgets the findings, and those that are still to come, because another scene is shown.
     pub fn forget(&mut self) {
         self.worker.cancel();
         self.forgotten = self.worker.newest().0;
         (self.last, self.asked) = (None, None);
     }
 
-    /// Why a scene could not be checked, told once. Later scenes are checked again.
+    /// The reason why a scene could not be checked; returned once. Later scenes are checked again.
     pub fn take_problem(&mut self) -> Option<String> {
         self.problem.take()
     }
 
-    /// The newest findings, errors first; none before the first check is done.
+    /// The newest findings, errors first; `None` before the first check is done.
     pub fn findings(&self) -> Option<&Arc<Vec<Finding>>> {
         self.last.as_ref().map(|(_, findings)| findings)
     }
 
-    /// True if the findings are not those of this state.
+    /// True if the findings are of another state.
     pub fn is_stale(&self, rev: SceneRev) -> bool {
         self.last.as_ref().is_none_or(|(of, _)| *of != rev)
     }

@@ -1,5 +1,4 @@
-//! Which pane stands where: the tree of panes, ready-made workspaces, and moving panes about. Drawing is in
-//! `dock_ui.rs`.
+//! The dock: the tree of panes, ready-made workspaces, and moving of panes. `dock_ui.rs` draws it.
 
 use std::collections::HashSet;
 
@@ -10,7 +9,7 @@ use crate::panes;
 use crate::panes::id::PaneId;
 use crate::panes::pane::Place;
 
-/// Which way a pane is divided.
+/// Direction in which a pane is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Split {
     /// The new pane stands to the right.
@@ -19,21 +18,21 @@ pub enum Split {
     Down,
 }
 
-/// How many times the width that its texts need a column of panels gets at most in a wide window.
+/// Largest width of a column of panels in a wide window, as a multiple of the width that its texts need.
 const WIDEST: f32 = 1.4;
 
-/// Share of a narrow window that columns of panels get together.
+/// Share of a narrow window that all columns of panels get together.
 const NARROW: f32 = 0.5;
 
-/// The panes of the window.
+/// The arrangement of the panes.
 #[derive(Clone, PartialEq)]
 pub struct Dock {
     pub(crate) tree: Tree<PaneId>,
-    /// Alone on screen, if any.
+    /// The tile that is alone on screen, if any.
     pub(crate) maximized: Option<TileId>,
     /// Width that the side columns were fitted to, points.
     fitted: f32,
-    /// True if it is as it came, not kept from an earlier session: nobody chose how wide its columns are.
+    /// True for a new arrangement, false for one from an earlier session, in which the user may have set the widths.
     fresh: bool,
 }
 
@@ -59,7 +58,7 @@ impl Dock {
                 let (bev, view, strip) = (
                     t.insert_pane(PaneId::BEV),
                     t.insert_pane(PaneId::VIEW3D),
-                    t.insert_pane(PaneId::of_camera(1)), // of the rigs that ship: to the front
+                    t.insert_pane(PaneId::of_camera(1)), // of the bundled rigs: the front camera
                 );
                 let side = join(&mut t, Vertical, &[(view, 1.0), (strip, 1.0)]);
                 let center = join(&mut t, Horizontal, &[(bev, 2.0), (side, 1.0)]);
@@ -76,7 +75,7 @@ impl Dock {
                 framed(&mut t, center)
             }
             Workspace::Sensors => {
-                let rows: Vec<TileId> = [[0, 1, 2], [5, 4, 3]] // in the order of the rig: forward, then back
+                let rows: Vec<TileId> = [[0, 1, 2], [5, 4, 3]] // order of the rig: front row, then back
                     .map(|cameras| row(&mut t, Horizontal, &cameras.map(|c| (PaneId::of_camera(c), 1.0))))
                     .to_vec();
                 let sweep = t.insert_pane(PaneId::LIDAR);
@@ -121,9 +120,9 @@ impl Dock {
         }
     }
 
-    /// From what was kept of an earlier session; none if it is not sound: empty, a pane twice, or no tree (a tile
-    /// within itself would be walked without end), or a share that is no number. Panes that this version does not
-    /// have are left out.
+    /// The dock of an earlier session. `None` if it is invalid: empty, a pane twice, not a tree (a tile within itself
+    /// would be walked without end), or a share that is not a number. Panes that this version does not have are left
+    /// out.
     pub fn from_kept(mut tree: Tree<PaneId>) -> Option<Self> {
         if !is_tree(&tree) {
             return None;
@@ -147,8 +146,9 @@ impl Dock {
         (!panes.is_empty() && distinct.len() == panes.len() && dock.tree.root.is_some()).then_some(dock)
     }
 
-    /// Gives columns of panels beside the views the width that their texts need, and in a fresh dock not much more, once for each width of the window: what the
-    /// user drags afterwards stays. In a narrow window they get half of it.
+    /// Fits the columns of panels to a width of the window, once for each width, so widths that the user drags
+    /// afterwards stay. A column gets at least the width that its texts need, and in a fresh dock not much more. In a
+    /// narrow window the columns share half of it.
     pub fn fit(&mut self, width: f32) {
         if width == self.fitted || width <= 0.0 {
             return;
@@ -166,7 +166,7 @@ impl Dock {
         let shares: Vec<f32> = children.iter().map(|c| root.shares[*c]).collect();
         let needed: Vec<f32> = children.iter().map(|c| self.width_needed(*c)).collect();
         let (all, sides): (f32, f32) = (shares.iter().sum(), needed.iter().sum());
-        // What a column gets if not its share: what it needs, or the most that it has use for.
+        // The width of a column that must change: the width it needs, or the largest useful width.
         let most = if self.fresh { WIDEST } else { f32::INFINITY };
         let given = |i: usize| {
             let (has, needs) = (shares[i] / all * width, needed[i]);
@@ -178,14 +178,14 @@ impl Dock {
         };
         let mut given: Vec<Option<f32>> = (0..children.len()).map(given).collect();
         if sides > NARROW * width {
-            // Half of a narrow window is theirs; what does not fit into them is scrolled to.
+            // In a narrow window the columns get half of it; wider contents are scrolled.
             let share = |needs: &f32| (*needs > 0.0).then_some(needs / sides * NARROW * width);
             given = needed.iter().map(share).collect();
         }
         if all <= 0.0 || given.iter().all(Option::is_none) || given.iter().all(Option::is_some) {
             return;
         }
-        // The others share the rest as they did.
+        // The other children keep their proportions in the rest.
         let taken: f32 = given.iter().flatten().sum();
         let left = given.iter().zip(&shares).filter(|(given, _)| given.is_none());
         let others: f32 = left.map(|(_, share)| share).sum();
@@ -203,7 +203,7 @@ impl Dock {
         }
     }
 
-    /// Width that a column needs if it holds panels only, points; 0 for views, which take any.
+    /// Width that a column of panels needs, points; 0 for views, which take any width.
     fn width_needed(&self, tile: TileId) -> f32 {
         let mut open = vec![tile];
         let mut needed: f32 = 0.0;
@@ -220,7 +220,7 @@ impl Dock {
         needed
     }
 
-    /// The tree, to be kept.
+    /// The tree, to be saved.
     pub fn tree(&self) -> &Tree<PaneId> {
         &self.tree
     }
@@ -246,7 +246,7 @@ impl Dock {
         })
     }
 
-    /// Puts a pane into a tile. If it stands elsewhere the two change places.
+    /// Puts a pane into a tile. If it is elsewhere already, the two panes swap.
     pub fn put(&mut self, tile: TileId, pane: PaneId) {
         let other = self.find(pane).filter(|id| *id != tile);
         let Some(Tile::Pane(here)) = self.tree.tiles.get_mut(tile) else {
@@ -258,7 +258,7 @@ impl Dock {
         }
     }
 
-    /// Lets two panes change places; one that is not there takes the other's place.
+    /// Swaps two panes. A pane that is not in the dock takes the other's place.
     pub fn swap(&mut self, a: PaneId, b: PaneId) {
         match (self.find(a), self.find(b)) {
             (Some(tile), _) => self.put(tile, b),
@@ -267,7 +267,7 @@ impl Dock {
         }
     }
 
-    /// Divides a tile; the new half shows a pane that is nowhere else.
+    /// Divides a tile. The new half shows a pane that is not in the dock yet.
     pub fn split(&mut self, tile: TileId, split: Split, pane: PaneId) {
         if self.find(pane).is_some() {
             return;
@@ -291,7 +291,7 @@ impl Dock {
         self.maximized = None;
     }
 
-    /// Takes a pane off the screen; the last one stays.
+    /// Closes a tile; the last one stays.
     pub fn close(&mut self, tile: TileId) {
         if self.all().count() > 1 {
             self.tree.remove_recursively(tile);
@@ -299,8 +299,8 @@ impl Dock {
         }
     }
 
-    /// Brings a pane to the front, or opens it: a panel in the column of its like, a list of findings below the views, all
-    /// else below the largest view.
+    /// Brings a pane to the front, or opens it: a panel in the column of panels, a list of findings below the views,
+    /// any other pane below the largest view.
     pub fn open(&mut self, pane: PaneId) {
         self.maximized = None;
         if self.find(pane).is_some() {
@@ -324,7 +324,7 @@ impl Dock {
         }
     }
 
-    /// Brings a pane into sight, or takes it off the screen if it is in sight.
+    /// Shows a pane, or closes it if it is on screen.
     pub fn toggle(&mut self, pane: PaneId) {
         match self.find(pane).filter(|_| self.is_shown(pane)) {
             Some(tile) => self.close(tile),
@@ -332,10 +332,10 @@ impl Dock {
         }
     }
 
-    /// Adds the panels that there were not yet when this dock was kept, if it has the column for them: an arrangement of
-    /// views alone stays one.
+    /// Adds panels that did not exist yet when this dock was saved, if it has the column for them. An arrangement of
+    /// views only is left as it is.
     pub fn with_new_panes(mut self, known: &[PaneId]) -> Self {
-        // Docks of the first versions do not say what they knew.
+        // Docks of the first versions do not say which panes they knew.
         let known = if known.is_empty() { &FIRST } else { known };
         for pane in panes::infos() {
             let is_new = pane.place == Place::ColumnAtOnce && !known.contains(&pane.id);
@@ -346,7 +346,7 @@ impl Dock {
         self
     }
 
-    /// In a column that holds panels of the right side already.
+    /// Opens a pane in the column that holds panels of the right side already. Returns false if there is none.
     fn open_in_column(&mut self, pane: PaneId) -> bool {
         let in_column = |p: &&panes::pane::PaneInfo| p.place.is_column();
         let places: Vec<(TileId, TileId)> = panes::infos()
@@ -354,7 +354,7 @@ impl Dock {
             .filter(in_column)
             .filter_map(|p| self.find(p.id).and_then(|id| self.vertical_over(id)))
             .collect();
-        // Under the lowest of them.
+        // Below the lowest of them.
         let row = |(column, child): &(TileId, TileId)| match self.tree.tiles.get(*column) {
             Some(Tile::Container(c)) => c.children().position(|id| id == child),
             _ => None,
@@ -366,7 +366,8 @@ impl Dock {
         true
     }
 
-    /// Under the row of large views, so that it hides nothing of what it speaks of.
+    /// Opens a pane below the row of large views, so that it hides no part of them. Returns false if there is no such
+    /// row.
     fn open_below_views(&mut self, pane: PaneId) -> bool {
         let of_views = |p: PaneId| self.find(p).and_then(|id| self.vertical_over(id));
         let Some((column, views)) = [PaneId::BEV, PaneId::VIEW3D].into_iter().find_map(of_views) else {
@@ -376,7 +377,7 @@ impl Dock {
         true
     }
 
-    /// The nearest container above a tile that stands its children one over the other, and which of them holds the tile.
+    /// The nearest vertical container above a tile, and its child that holds the tile.
     fn vertical_over(&self, tile: TileId) -> Option<(TileId, TileId)> {
         let mut child = tile;
         while let Some(parent) = self.tree.tiles.parent_of(child) {
@@ -390,7 +391,7 @@ impl Dock {
         None
     }
 
-    /// Puts a pane under another child of a column, with that share of its height.
+    /// Puts a pane below another child of a column, with this share of its height.
     fn insert_after(&mut self, column: TileId, child: TileId, pane: PaneId, share: f32) {
         let new = self.tree.tiles.insert_pane(pane);
         let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get_mut(column) else {
@@ -406,7 +407,7 @@ impl Dock {
         linear.shares.set_share(new, all * share / (1.0 - share));
     }
 
-    /// Tiles behind or among tabs: their names stand on the tabs.
+    /// Tiles that are tabs; the tab bar shows their names.
     pub(crate) fn tabbed(&self) -> HashSet<TileId> {
         let tabs = self.tree.tiles.tiles().filter_map(|tile| match tile {
             Tile::Container(Container::Tabs(tabs)) => Some(tabs.children.iter().copied()),
@@ -415,12 +416,12 @@ impl Dock {
         tabs.flatten().collect()
     }
 
-    /// Shows a tile alone, or all of them again.
+    /// Shows a tile alone, or all tiles again.
     pub fn toggle_maximized(&mut self, tile: TileId) {
         self.maximized = (self.maximized != Some(tile)).then_some(tile);
     }
 
-    /// A pane of this list that is nowhere yet.
+    /// The first pane of the table that is not in the dock.
     pub fn first_absent(&self) -> Option<PaneId> {
         panes::infos()
             .iter()
@@ -442,14 +443,14 @@ fn join(tiles: &mut Tiles<PaneId>, dir: LinearDir, parts: &[(TileId, f32)]) -> T
     tiles.insert_container(Container::Linear(linear))
 }
 
-/// Tools on the left and objects on the right of what stands in the middle.
+/// Puts the tools on the left and the objects on the right of `center`.
 fn framed(tiles: &mut Tiles<PaneId>, center: TileId) -> TileId {
     let tools = tiles.insert_pane(PaneId::TOOLS);
     let (objects, prompt) = (
         tiles.insert_pane(PaneId::OBJECTS),
         tiles.insert_pane(PaneId::PROMPT),
     );
-    // One of the two at a time: the objects and the prompt need the height.
+    // History and versions share tabs, because the objects and the prompt need the height.
     let past = [PaneId::HISTORY, PaneId::VERSIONS].map(|pane| tiles.insert_pane(pane));
     let past = tiles.insert_tab_tile(past.to_vec());
     let column = join(
@@ -461,10 +462,10 @@ fn framed(tiles: &mut Tiles<PaneId>, center: TileId) -> TileId {
     join(tiles, LinearDir::Horizontal, &parts)
 }
 
-/// Panes of the column that there always were.
+/// Panes of the column that existed in the first versions.
 const FIRST: [PaneId; 3] = [PaneId::OBJECTS, PaneId::PROMPT, PaneId::VERSIONS];
 
-/// True if every tile is reached from the root once at most, and every child is there.
+/// True if every tile is reached from the root at most once, and every child exists.
 fn is_tree(tree: &Tree<PaneId>) -> bool {
     let (mut seen, mut open) = (HashSet::new(), Vec::from_iter(tree.root));
     while let Some(id) = open.pop() {
@@ -544,7 +545,7 @@ mod tests {
             found[0] < most[0] && found[2] < most[1],
             "the views get the rest: {found:?}"
         );
-        // What a user left so wide stays.
+        // A width that the user left stays.
         let mut kept = Dock::from_kept(Dock::default().tree).expect("sound");
         kept.fit(2560.0);
         assert_eq!(widths(&kept, 2560.0), widths(&Dock::default(), 2560.0));

@@ -1,4 +1,4 @@
-//! Draws the dock: each pane with a header that names it, moves it, divides it and puts another in its place.
+//! Draws the dock: each pane with a header to name it, move it, divide it and replace it.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -22,16 +22,16 @@ use widgets::theme;
 /// Height of a pane's header, points.
 pub const HEADER: f32 = 30.0;
 
-/// A panel that lacks less than this of its width is not scrolled, points.
+/// Width that a panel may lack before it is scrolled, points.
 const NEARLY: f32 = 12.0;
 
-/// Width that controls get beside tabs, where choices fold into a list, points.
+/// Width of the controls beside tabs, where choices fold into a list, points.
 const BESIDE_TABS: f32 = 104.0;
-/// Room beside the title of a tab, and width of the menu of the pane with its distance to what is beside it, points.
+/// Margin beside the title of a tab, and width of the pane's menu with its distance to the next control, points.
 const TAB_SPACING: f32 = 10.0;
 const MENU: f32 = 40.0;
 
-/// What the user asked of the dock; done after it was drawn.
+/// Change of the dock that the user asked for, made after drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum DockAction {
     Put(TileId, PaneId),
@@ -40,7 +40,7 @@ enum DockAction {
     Close(TileId),
 }
 
-/// Draws panes for the tree.
+/// Draws the panes of the tree.
 struct Drawer<'a> {
     panes: &'a mut [Box<dyn Pane>],
     cx: PaneContext<'a>,
@@ -48,7 +48,7 @@ struct Drawer<'a> {
     actions: Vec<DockAction>,
     maximized: bool,
     tabbed: HashSet<TileId>,
-    /// Panes on a tab whose controls have no room beside the tabs.
+    /// Panes on a tab whose controls do not fit beside the tabs.
     below_tabs: HashSet<PaneId>,
 }
 
@@ -57,7 +57,7 @@ impl Behavior<PaneId> for Drawer<'_> {
         let rect = ui.max_rect();
         ui.set_clip_rect(ui.clip_rect().intersect(rect));
         ui.spacing_mut().item_spacing.y = 0.0;
-        // The tab names it already, and its bar holds what the header would.
+        // The tab shows the pane's name, and the tab bar its controls.
         let on_a_tab = !self.maximized && self.tabbed.contains(&tile);
         let dragged = !on_a_tab && self.header(ui, tile, *pane);
         if on_a_tab && self.below_tabs.contains(pane) {
@@ -122,7 +122,7 @@ impl Behavior<PaneId> for Drawer<'_> {
 }
 
 impl Drawer<'_> {
-    /// Title of a pane; cameras carry the names that the rig gives them.
+    /// Title of a pane; for cameras with the names from the rig.
     fn title(&self, id: PaneId) -> String {
         let pane = self.panes.iter().find(|p| p.id() == id);
         pane.map_or_else(
@@ -144,9 +144,10 @@ impl Drawer<'_> {
         galley.size().x + 2.0 * TAB_SPACING
     }
 
-    /// What a pane offers, beside the tabs if there is so much room (points); else in a row below them, so that no tab is covered.
+    /// Draws the controls of a pane beside the tabs if they fit into `room`, points; else they go into a row below, so
+    /// that no tab is covered.
     fn beside_tabs(&mut self, ui: &mut Ui, pane: PaneId, room: f32) {
-        // As wide as they were when they were last drawn here.
+        // The width is that of the last time they were drawn here.
         let language = language::chosen().map_or("en", |l| &l.code);
         let id = egui::Id::unique(("controls beside tabs", pane, language));
         let needed: Option<f32> = ui.data(|d| d.get_temp(id));
@@ -165,14 +166,14 @@ impl Drawer<'_> {
         }
     }
 
-    /// What a pane offers, in a row of its own.
+    /// Draws the controls of a pane in a row of its own.
     fn row(&mut self, ui: &mut Ui, pane: PaneId) {
         let size = vec2(ui.available_width(), HEADER);
         let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
         self.controls_within(ui, rect.shrink2(vec2(8.0, 2.0)), pane);
     }
 
-    /// What a pane offers, from the right to the left; what has no room is cut off.
+    /// Draws the controls of a pane from right to left; those that do not fit are cut off.
     fn controls_within(&mut self, ui: &mut Ui, room: egui::Rect, pane: PaneId) {
         if !room.is_positive() {
             return;
@@ -213,7 +214,8 @@ impl Drawer<'_> {
         }
     }
 
-    /// Title with its menu on the left, what the pane offers on the right. True if the user begins to drag it away.
+    /// Draws the header: title with its menu on the left, controls on the right. Returns true if the user begins to
+    /// drag the pane away.
     fn header(&mut self, ui: &mut Ui, tile: TileId, pane: PaneId) -> bool {
         let size = vec2(ui.available_width(), HEADER);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
@@ -225,7 +227,7 @@ impl Drawer<'_> {
                     ui.spacing_mut().item_spacing.x = 4.0;
                     let title = self.title(pane);
                     self.menu(ui, tile, pane, &title);
-                    // Not over the title, and not wider than the pane, which would be shifted below it.
+                    // The controls may not cover the title, nor be wider than the pane, or the pane would shift.
                     let room = ui.available_rect_before_wrap();
                     self.controls_within(ui, room, pane);
                 });
@@ -291,7 +293,7 @@ impl Drawer<'_> {
 }
 
 impl SceneloomApp {
-    /// Draws all panes and does what was asked of the dock.
+    /// Draws all panes and carries out the changes of the dock that the user asked for.
     pub(crate) fn dock_ui(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
         let views = &mut self.views;
         let dock = &mut views.dock;

@@ -80,9 +80,9 @@ impl SceneloomApp {
             Command::Time(command) => self.time_command(command),
             Command::Toggle(window) => self.toggle(window),
         }
-        // Without a guess there is nothing to correct, and no switch to see it by.
+        // Without guesses there is nothing to correct, and no switch that shows the mode.
         self.state.correcting &= self.document.scene().frame().inferred.any();
-        // What an edit or undo took away is not selected any more.
+        // Objects that an edit or undo removed are deselected.
         self.state.tidy_selection(self.document.scene());
         let after = self.document.settled_scene().content();
         if travels && after != before {
@@ -127,7 +127,7 @@ impl SceneloomApp {
         self.note_correction();
     }
 
-    /// A correction changes what the source was inverted under.
+    /// Notes that a correction changed the condition under which the source was inverted.
     pub(crate) fn note_correction(&mut self) {
         if self.state.correcting {
             self.generation.live.source_changed();
@@ -143,7 +143,7 @@ impl SceneloomApp {
         if self.document.is_dragging() {
             self.document.cancel_drag();
         } else if self.state.windows.close_one() {
-            // A window lies over everything else.
+            // Closed the window that lies over everything else.
         } else if self.state.cameras.enlarged.is_some() {
             self.state.cameras.enlarged = None;
         } else if !self.state.tools.voxels.is_empty() {

@@ -1,4 +1,4 @@
-//! The export that the window has under way: on a thread of its own, one at a time.
+//! The running export of the window: one at a time, on a thread of its own.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,15 +16,15 @@ use editor::checks::{Severity, waive};
 use formats::video::VideoKind;
 use language::{t, tf};
 
-/// Frames per second of a turn.
+/// Frames per second of a turntable.
 const TURN_HZ: f64 = 15.0;
 
 type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
 
-/// The dialog, and what it has started.
+/// The export dialog, and the export that is running.
 #[derive(Default)]
 pub struct Exporting {
-    /// What the dialog shows; `None` while it is closed.
+    /// State of the dialog; `None` while it is closed.
     pub dialog: Option<ExportDialog>,
     running: Option<Running>,
 }
@@ -36,7 +36,7 @@ struct Running {
 }
 
 impl Exporting {
-    /// What is being written, and how far it has come.
+    /// Name of the running export, and its progress.
     pub fn under_way(&self) -> Option<(&'static str, &ExportProgress)> {
         self.running.as_ref().map(|r| (r.name, &*r.progress))
     }
@@ -51,7 +51,7 @@ impl SceneloomApp {
         };
     }
 
-    /// Draws the dialog and starts what it asks for.
+    /// Draws the dialog and starts the export that it asks for.
     pub(crate) fn export_dialog(&mut self, ui: &egui::Ui) {
         let Some(mut dialog) = self.files.exporting.dialog.take() else {
             return;
@@ -106,7 +106,8 @@ impl SceneloomApp {
         });
     }
 
-    /// Writes the clip that the dialog of pictures describes: of the 3D view as it stands, the map or cameras.
+    /// Writes the clip that the dialog of pictures describes: the 3D view from its present viewpoint, the map or
+    /// cameras.
     pub(super) fn save_clip(&mut self, path: PathBuf, ctx: &egui::Context) {
         let kind = match VideoKind::of_path(&path) {
             Ok(kind) => kind,
@@ -117,7 +118,7 @@ impl SceneloomApp {
         let span_s = playback.span(scene.clip().length_s);
         let mut camera = self.views.view3d.camera;
         if playback.follow {
-            // The viewpoint goes along: where it would be at the first moment.
+            // A viewpoint that follows the vehicle is moved to its place at the first moment.
             let now = scene.frame().world_from_ego;
             camera.go_along(&now, &scene.at(span_s[0]).frame().world_from_ego);
         }
@@ -163,7 +164,7 @@ impl SceneloomApp {
         });
     }
 
-    /// Writes the picture, or the turn, that the dialog of pictures describes.
+    /// Writes the picture or the turntable that the dialog of pictures describes.
     pub(super) fn save_capture(&mut self, path: PathBuf, ctx: &egui::Context) {
         let dialog = self.state.windows.capture.clone();
         let scene = Arc::clone(self.document.settled_scene());
@@ -214,7 +215,7 @@ impl SceneloomApp {
         let told = progress.clone();
         let write = move || write(&told);
         let thread = job::guard::spawn("export", write, move |written| {
-            // Nobody listens if the window has closed.
+            // Sending fails if the window has closed.
             let _ = send.send(written.unwrap_or_else(|panic| Err(panic.into())));
             wake.request_repaint();
         });
@@ -234,7 +235,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Tells how an export ended.
+    /// Reports how an export ended.
     pub(crate) fn update_export(&mut self) {
         let Some(running) = &self.files.exporting.running else {
             return;

@@ -21,7 +21,7 @@ use scene::{Kept, Scene};
 use sensors::cameras::{self, ViewId};
 
 impl SceneloomApp {
-    /// Carries out one of them.
+    /// Carries out one file command.
     pub(crate) fn file_command(&mut self, command: FileCommand, ctx: &Context) {
         match command {
             FileCommand::New => self.guarded(Next::New, ctx),
@@ -61,7 +61,7 @@ impl SceneloomApp {
                 let mut commands = Vec::new();
                 self.views.prompt.describe(&words, &scene, &mut commands);
                 if commands.is_empty() {
-                    // What was not understood is said there.
+                    // The prompt shows which words were not understood.
                     self.views.dock.open(crate::panes::id::PaneId::PROMPT);
                     self.note(t("No scene was read from these words"));
                 }
@@ -90,7 +90,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Goes on at once if nothing is unsaved, else asks first.
+    /// Goes on at once if there are no unsaved changes, else asks first.
     pub(crate) fn guarded(&mut self, next: Next, ctx: &Context) {
         if self.document.is_dirty() {
             self.files.unsaved = Some(next);
@@ -145,7 +145,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Makes a scene on a thread of its own; the window goes on meanwhile.
+    /// Makes a scene on a thread of its own, while the window goes on.
     pub(crate) fn load<Read: Into<Opened>>(
         &mut self,
         what: String,
@@ -160,7 +160,7 @@ impl SceneloomApp {
             "open",
             move || make().map(Into::into),
             move |scene| {
-                // Nobody listens if something else was opened meanwhile.
+                // Sending fails if another scene was opened meanwhile.
                 let _ = send.send(scene.unwrap_or_else(|panic| Err(panic.into())));
                 wake.request_repaint();
             },
@@ -192,7 +192,7 @@ impl SceneloomApp {
             Purpose::ModelShape => self.read_model(path, true, ctx),
             Purpose::PictureWeights => {
                 let painting = &mut self.preferences.settings.painting;
-                // Other networks, other usual numbers.
+                // Other networks have other default values.
                 (painting.weights, painting.steps, painting.guidance) = (Some(path), None, None);
             }
             Purpose::ImportRig => self.import_rig(&path),
@@ -248,7 +248,7 @@ impl SceneloomApp {
         }
     }
 
-    /// A scene with what its file keeps beside it: versions, and what was typed.
+    /// A scene with the data that its file keeps beside it: versions, and typed prompts.
     pub(crate) fn with_kept(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         scene.kept = Arc::new(Kept {
@@ -292,10 +292,10 @@ impl SceneloomApp {
         let path = self.suggested("png");
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let path = free_name(&path.with_file_name(format!("{stem}_{tidy}_{}.png", view.name())));
-        // A scene that was never saved has no folder: one wants to know where the picture is.
+        // The message shows the absolute path, because a scene that was never saved has no folder.
         let path = std::path::absolute(&path).unwrap_or(path);
         let scene = self.document.scene().clone();
-        // A picture of the state before an edit does not lead back to the one after it.
+        // A picture of the state before an edit must not carry the scene after it.
         let is_of_it = !self.threads.sensing.is_stale(source, scene.rev);
         let picture = Picture { width, height, rgba };
         match save_png(is_of_it.then(|| (&*scene, self.parameters())), &picture, &path) {
@@ -342,7 +342,7 @@ impl SceneloomApp {
     }
 }
 
-/// Writes a picture, with the scene that it shows inside if that is known, whole or not at all.
+/// Writes a picture, with the scene inside if it is known. The file is written whole or not at all.
 fn save_png(
     scene: Option<(&Scene, serde_json::Value)>,
     picture: &Picture,
@@ -356,7 +356,7 @@ fn save_png(
     Ok(())
 }
 
-/// `a.png`, or if it is taken `a_1.png`, `a_2.png` and so on.
+/// The first free name: `a.png`, `a_1.png`, `a_2.png` and so on.
 fn free_name(path: &Path) -> PathBuf {
     let stem = path
         .file_stem()
@@ -395,7 +395,7 @@ mod tests {
         let recipe: formats::recipe::Recipe =
             serde_json::from_str(&recipe.expect("there").1).expect("as written");
         assert_eq!(recipe.parameters["params"]["seed"], 7);
-        // What cannot be written leaves nothing behind.
+        // A failed write leaves no file behind.
         let nowhere = folder.path().join("missing").join("shot.png");
         assert!(save_png(None, &picture, &nowhere).is_err() && !nowhere.exists());
     }

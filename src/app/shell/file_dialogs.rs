@@ -1,4 +1,4 @@
-//! Asking for a file: the system's dialog, and where none answers a path field of our own.
+//! File dialogs: the system's dialog, or a path field of the window if no system dialog answers.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use egui::{Ui, WidgetInfo};
 use language::{t, tf};
 use widgets::theme;
 
-/// What a file is asked for.
+/// Purpose of a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// A scene or a road to open.
@@ -19,23 +19,23 @@ pub enum Purpose {
     SaveAs,
     /// Where to save a picture.
     Screenshot,
-    /// Where to save a turn of the 3D view.
+    /// Where to save a turntable of the 3D view.
     Turn,
     /// Where to save moving pictures.
     Clip,
     /// A model to put into the scene.
     Model,
-    /// A model whose shape the chosen box gets.
+    /// A model that gives its shape to the chosen box.
     ModelShape,
-    /// Sensors to take.
+    /// A sensor rig to load.
     ImportRig,
-    /// Where to save the sensors.
+    /// Where to save the sensor rig.
     ExportRig,
     /// Weights that paint camera pictures.
     PictureWeights,
-    /// The file that an export is to write.
+    /// The file of an export.
     ExportFile,
-    /// The folder that an export is to fill.
+    /// The folder of an export.
     ExportFolder,
 }
 
@@ -83,7 +83,7 @@ impl Purpose {
     }
 }
 
-/// Nobody dismisses a dialog this fast: then there was none.
+/// Shortest time in which a user can dismiss a dialog. An earlier dismissal means that no dialog was shown.
 const NO_DIALOG_AFTER: Duration = Duration::from_millis(350);
 
 struct Waiting {
@@ -96,13 +96,13 @@ struct Waiting {
 struct Field {
     purpose: Purpose,
     text: String,
-    /// Frames in which it still asks for the focus: a dialog that closes may take the first.
+    /// Frames in which the field still requests the focus: a dialog that closes may take the first request.
     focus: u8,
     error: Option<String>,
-    confirmed: bool, // the user has agreed to replace the file
+    confirmed: bool, // the user agreed to replace the file
 }
 
-/// The file that is being asked for, if any.
+/// The file dialog that is open, if any.
 pub struct FileDialogs {
     native: bool,
     waiting: Option<Waiting>,
@@ -110,12 +110,12 @@ pub struct FileDialogs {
 }
 
 impl FileDialogs {
-    /// True if a dialog of the system is asked before a path field.
+    /// True if the system's dialog is tried before the path field.
     pub fn is_native(&self) -> bool {
         self.native
     }
 
-    /// With `native` false only the path field is used.
+    /// File dialogs of the system, or only the path field if `native` is false.
     pub fn new(native: bool) -> Self {
         Self {
             native: native && a_dialog_may_answer(),
@@ -129,7 +129,7 @@ impl FileDialogs {
         self.waiting.is_some() || self.field.is_some()
     }
 
-    /// Asks. `suggestion` is the file or folder to begin with.
+    /// Opens a dialog. `suggestion` is the file or folder to begin with.
     pub fn ask(&mut self, purpose: Purpose, suggestion: &Path, ctx: &egui::Context) {
         if self.is_open() {
             return;
@@ -163,7 +163,7 @@ impl FileDialogs {
         }
         let (send, answer) = bounded(1);
         let wake = ctx.clone();
-        // The dialog is made here, on the main thread, as macOS wants it; waiting is done elsewhere.
+        // The dialog is made here, on the main thread, as macOS requires; another thread waits for it.
         type Chosen = Option<rfd::FileHandle>;
         let chosen: std::pin::Pin<Box<dyn Future<Output = Chosen> + Send>> =
             if matches!(purpose, Purpose::ExportFolder | Purpose::PictureWeights) {
@@ -175,7 +175,7 @@ impl FileDialogs {
             };
         let wait = move || pollster::block_on(chosen).map(|file| file.path().to_path_buf());
         let thread = job::guard::spawn("file-dialog", wait, move |path| {
-            // Nobody listens if the window has closed. After a panic there is no answer, as if it had been dismissed.
+            // Sending fails if the window has closed. After a panic there is no answer, as after a dismissal.
             let _ = send.send(path.unwrap_or_default());
             wake.request_repaint();
         });
@@ -201,7 +201,7 @@ impl FileDialogs {
         });
     }
 
-    /// The system dialog's answer, once there is one.
+    /// Takes the answer of the system dialog, once there is one.
     pub fn poll(&mut self) -> Option<(Purpose, PathBuf)> {
         let waiting = self.waiting.as_ref()?;
         let answer = match waiting.answer.try_recv() {
@@ -217,7 +217,7 @@ impl FileDialogs {
         answer.map(|path| (waiting.purpose, with_extension(path, waiting.purpose)))
     }
 
-    /// Draws the path field, if it is open; the path once the user is done.
+    /// Draws the path field, if it is open. Returns the path once the user confirms it.
     pub fn show(&mut self, ui: &mut Ui) -> Option<(Purpose, PathBuf)> {
         let field = self.field.as_mut()?;
         let modal = egui::Modal::new(egui::Id::unique("path field")).frame(theme::dialog_frame(ui.style()));
@@ -232,7 +232,7 @@ impl FileDialogs {
         let path = with_extension(PathBuf::from(field.text.trim()), field.purpose);
         match problem(&path, field) {
             Some(text) => {
-                // Enter took the focus away: the next one is for this field, too.
+                // Enter took the focus away: the field takes it back for the next try.
                 (field.error, field.focus) = (Some(text), 3);
                 None
             }
@@ -311,7 +311,7 @@ fn problem(path: &Path, field: &mut Field) -> Option<String> {
     None
 }
 
-/// A name without an extension gets the one that fits.
+/// Adds the extension of the purpose to a name without one.
 fn with_extension(path: PathBuf, purpose: Purpose) -> PathBuf {
     let extension = match purpose {
         Purpose::Open
@@ -334,8 +334,8 @@ fn with_extension(path: PathBuf, purpose: Purpose) -> PathBuf {
     }
 }
 
-/// On Linux a dialog needs a session bus with a portal, or zenity; without either asking would only
-/// cost time.
+/// True if a dialog may answer. On Linux a dialog needs a session bus with a portal, or zenity; without either, asking
+/// would only cost time.
 fn a_dialog_may_answer() -> bool {
     if !cfg!(target_os = "linux") {
         return true;

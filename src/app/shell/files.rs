@@ -1,4 +1,4 @@
-//! The scene's file, and everything on its way to or from a disk.
+//! The scene's file, and all data on its way to or from the disk.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ pub type SaveScene = Arc<dyn Fn(&Scene, &Path) -> anyhow::Result<()> + Send + Sy
 /// Makes a new scene.
 pub type NewScene = Arc<dyn Fn() -> anyhow::Result<Scene> + Send + Sync>;
 
-/// How scenes are read, written and made.
+/// Functions that read, write and make scenes.
 pub struct Disk {
     /// Opens files.
     pub open: OpenScene,
@@ -31,7 +31,7 @@ pub struct Disk {
     pub new_scene: NewScene,
 }
 
-/// What to do once unsaved changes are dealt with.
+/// Action to continue with after the question about unsaved changes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Next {
     New,
@@ -40,35 +40,35 @@ pub(crate) enum Next {
     Open(PathBuf),
     /// A variant of a batch of the queue.
     Variant(u64, usize),
-    /// The scene that was read while this one was edited.
+    /// Shows the scene that was read while this one was edited.
     Arrived,
     Quit,
 }
 
-/// A state that another scene is to replace.
+/// A state that another scene will replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Left {
     pub content: SceneRev,
-    /// It had changes that the user gave up.
+    /// True if it had unsaved changes that the user gave up.
     pub unsaved: bool,
 }
 
-/// A scene on its way from a file.
+/// A scene that is being read or made.
 pub(crate) struct Opening {
     pub path: Option<PathBuf>,
     pub what: String,
-    /// From a file that is no scene: its occupancy is a draft.
+    /// True if the file is not a scene; its occupancy is then a draft.
     pub is_import: bool,
-    /// It is a copy of unsaved work that a session which died left behind.
+    /// True if it is a copy of unsaved work from a session that died.
     pub recovers: bool,
-    /// It becomes an undo step of this name, not a document of its own.
+    /// Name of the undo step that it becomes; `None` if it becomes a document of its own.
     pub step: Option<&'static str>,
-    /// The state that it replaces: what was edited after it is asked about.
+    /// The state that it replaces. Later edits of that state are asked about.
     pub leaves: Left,
     pub scene: Receiver<anyhow::Result<Opened>>,
 }
 
-/// A scene that was read, while the one in the window was edited.
+/// A scene that was read while the one in the window was edited.
 pub(crate) struct Arrived {
     pub opening: Opening,
     pub opened: Opened,
@@ -76,40 +76,40 @@ pub(crate) struct Arrived {
 
 /// Roads from a file, on which a scene will stand.
 pub(crate) enum Picking {
-    /// They are being read.
+    /// The roads are being read.
     Reading(Receiver<anyhow::Result<PlacePicker>>),
-    /// A place is chosen.
+    /// A place is being chosen.
     Choosing(Box<PlacePicker>),
 }
 
-/// Owner of the scene's file and of what is read and written.
+/// Owner of the scene's file, and of all reading and writing.
 pub struct Files {
     /// The scene's file, if it has one.
     pub(crate) path: Option<PathBuf>,
     pub(crate) disk: Disk,
     pub(crate) dialogs: FileDialogs,
     pub(crate) opening: Option<Opening>,
-    /// Waits for the answer about what was edited meanwhile.
+    /// A scene that waits until the user is asked about edits made meanwhile.
     pub(crate) arrived: Option<Box<Arrived>>,
-    /// What the user agreed to leave for a scene that is being chosen or read.
+    /// The state that the user agreed to leave for a scene that is being chosen or read.
     pub(crate) leaves: Option<Left>,
     /// Roads on which a place is chosen.
     pub(crate) picking: Option<Picking>,
     /// A model that is being read.
     pub(crate) model: Option<super::models::Reading>,
-    /// Waits for an answer about unsaved changes.
+    /// Action that waits for the answer about unsaved changes.
     pub(crate) unsaved: Option<Next>,
-    /// Goes on after the scene was saved.
+    /// Action to continue with after the scene is saved.
     pub(crate) after_save: Option<Next>,
     pub(crate) may_close: bool,
-    /// Copies of unsaved work; none in tests.
+    /// Copies of unsaved work; `None` in tests.
     pub recovery: Option<Recovery>,
     pub(crate) exporting: Exporting,
     pub(crate) batching: Batching,
 }
 
 impl Files {
-    /// With nothing on its way; `native_dialogs`: the system is asked for file dialogs.
+    /// Files with no reading or writing under way. `native_dialogs`: uses the system's file dialogs.
     pub fn new(path: Option<PathBuf>, disk: Disk, native_dialogs: bool) -> Self {
         Self {
             path,
@@ -129,7 +129,7 @@ impl Files {
         }
     }
 
-    /// What the scene is called: as its file, else by its own name.
+    /// The name of the scene: the stem of its file, else its own name.
     pub(crate) fn called(&self, scene_name: &str) -> String {
         let stem = self.path.as_ref().and_then(|p| p.file_stem());
         stem.map_or_else(|| scene_name.to_owned(), |s| s.to_string_lossy().into_owned())

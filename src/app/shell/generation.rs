@@ -13,7 +13,7 @@ use super::status::Receipt;
 use super::tuning::Tuning;
 use super::versions::Versions;
 
-/// Owner of the worker and of its results.
+/// Owner of the worker and its results.
 pub struct Generation {
     pub(crate) worker: GenWorker,
     gate: UpdateGate,
@@ -21,27 +21,27 @@ pub struct Generation {
     pub live: Live,
     /// The quality slider.
     pub tuning: Tuning,
-    /// Report of the last generation.
+    /// Receipt of the last generation.
     pub receipt: Option<Receipt>,
-    /// The results so far.
+    /// Versions generated so far.
     pub versions: Versions,
     /// A result that came during a drag, and its label if it becomes its own step.
     pub(crate) finished: Option<(Arc<GenResult>, Option<&'static str>)>,
-    /// Preview of a running generation, and its state.
+    /// State whose generation is running, and the preview of its result.
     pub(crate) preview: Option<(SceneRev, Arc<Scene>)>,
-    /// The state that a sentence made, and the one before.
+    /// The state that a sentence made, and the state before it.
     pub(crate) words: Option<(SceneRev, Arc<Scene>)>,
-    /// Scenery that waits for its generation, and the state before.
+    /// Scenery that was drawn for a generation that still runs, as the state with it and the state before.
     pub(crate) drawn_first: Option<(SceneRev, Arc<Scene>)>,
     pub(crate) drawing: Option<Drawing>,
     /// A result that waits for the user's decision.
     pub(crate) staged: Option<Staged>,
-    /// Columns that are to be generated.
+    /// Regions that are still to be generated.
     pub(crate) unsettled: Arc<[Bounds]>,
 }
 
 impl Generation {
-    /// No job submitted yet.
+    /// The generation before any job was submitted.
     pub fn new(worker: GenWorker, live: Live, tuning: Tuning, versions: Versions) -> Self {
         Self {
             worker,
@@ -77,7 +77,7 @@ impl Generation {
         self.live.submitted(id, key, now_s);
     }
 
-    /// Ends the running job; false if none runs.
+    /// Cancels the running job. Returns false if none runs.
     pub(crate) fn cancel(&mut self) -> bool {
         let Some(running) = &mut self.live.running else {
             return false;
@@ -87,7 +87,7 @@ impl Generation {
         true
     }
 
-    /// True while all of the scene is generated.
+    /// True while the whole scene is generated.
     pub(crate) fn runs_whole(&self) -> bool {
         let running = self.live.running.as_ref();
         running.is_some_and(|r| r.purpose == Purpose::Full)
@@ -102,7 +102,8 @@ impl Generation {
         self.tuning.reset();
     }
 
-    /// True while a whole generation of that state shows a preview, which the user may keep as the result.
+    /// True while a generation of the whole scene shows a preview for that state, which the user may keep as the
+    /// result.
     pub(crate) fn shows_what_comes(&self, rev: SceneRev) -> bool {
         let whole = |r: &Running| r.purpose == Purpose::Full && r.key.rev == rev && !r.cancelled;
         self.live.running.as_ref().is_some_and(whole)

@@ -10,7 +10,7 @@ use job::pipeline::windows_over;
 use language::t;
 
 impl SceneloomApp {
-    /// Carries out one of them.
+    /// Carries out one generation command.
     pub(crate) fn generation_command(&mut self, command: GenerationCommand, ctx: &Context) {
         match command {
             GenerationCommand::Generate { full } => self.generate(full),
@@ -66,7 +66,7 @@ impl SceneloomApp {
         }
     }
 
-    /// A version becomes the present state; its result is there already.
+    /// Makes a version the present state. Its result is kept with it, so no generation is needed.
     pub(crate) fn restore(&mut self, scene: &scene::Scene) {
         self.generation.worker.cancel();
         self.document.restore("Go to version", scene);
@@ -105,14 +105,14 @@ impl SceneloomApp {
         }
     }
 
-    /// Puts a preset's settings to use, from the next edit on.
+    /// Applies the settings of a preset from the next edit on.
     pub(crate) fn set_quality(&mut self, preset: usize) {
         let Some(preset) = self.generation.tuning.presets.all.get(preset) else {
             return;
         };
         self.generation.live.params = preset.knobs.on(self.generation.live.params.clone());
         self.preferences.settings.quality.clone_from(&preset.name);
-        // The source's trajectory belongs to its settings.
+        // The source's trajectory was made with the old settings.
         self.generation.live.source_changed();
     }
 }

@@ -1,20 +1,21 @@
-//! A window that somebody else takes away: a display server that ends, `xkill`. The library of windows panics when it then asks for
-//! the window's size, in its own code; that becomes an error of one line, and what was not saved is kept as after any other end.
+//! Windows that are taken away from outside, by a display server that ends or by `xkill`. The window library then
+//! panics in its own code when it asks for the window's size. The panic becomes an error in one line, and unsaved work
+//! is kept as after any other end.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a user is told.
+/// The message for the user.
 const LINE: &str = "the window was taken away from outside; what was not saved is offered at the next start";
 
-/// True for a source file of the library of windows where it talks to the display server.
+/// True for a source file of the window library that talks to the display server.
 fn talks_to_display(file: &str) -> bool {
     let file = file.replace('\\', "/");
     file.contains("/winit-") && file.contains("/platform_impl/")
 }
 
-/// Runs an event loop. Errors as it does, and in one line if the window was taken away; any other panic goes on.
+/// Runs an event loop and returns its errors. Errors in one line if the window was taken away; any other panic goes on.
 pub fn guarded<E: std::fmt::Display>(run: impl FnOnce() -> Result<(), E>) -> anyhow::Result<()> {
     guarded_from(talks_to_display, run)
 }
@@ -63,7 +64,7 @@ mod tests {
             "the window could not be opened: no display; at all"
         );
         assert!(guarded_from(here, || Ok::<(), String>(())).is_ok());
-        // Faults of our own are not called that.
+        // Panics in our own code are not reported so.
         let other = catch_unwind(|| guarded_from(|_| false, || -> Result<(), String> { panic!("ours") }));
         assert!(other.is_err());
     }

@@ -1,4 +1,4 @@
-//! A panic on a thread that the window starts is told in one line, and the next piece of work is done.
+//! Tests that a panic on a thread of the window is reported in one line, and that the next piece of work is done.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -37,7 +37,7 @@ fn app() -> SceneloomApp {
     SceneloomApp::new(config, None, &Context::default()).expect("threads")
 }
 
-/// Updates the window until the newest message holds a text.
+/// Updates the window until the newest message contains a text.
 fn wait_for(app: &mut SceneloomApp, text: &str) {
     let start = Instant::now();
     while !app.toasts.last().is_some_and(|t| t.contains(text)) {
@@ -170,7 +170,7 @@ fn a_workspace_keeps_the_panes_that_were_opened_in_it() {
     assert!(app.views.dock.find(pane).is_none());
     go(&mut app, Workspace::Edit);
     assert!(app.views.dock.find(pane).is_some(), "the pane is gone");
-    // Chosen once more, the panes stand as they came.
+    // Choosing the same workspace again resets its panes.
     go(&mut app, Workspace::Edit);
     assert!(app.views.dock.find(pane).is_none());
 }

@@ -1,5 +1,5 @@
-//! Assistants that drive the editor of the window: off unless the user lets them in. Their work arrives as tasks from another
-//! thread and is done between two frames; what takes long they do themselves, on a copy.
+//! Assistants that drive the editor of the window; off unless the user allows them. Their work arrives as tasks from
+//! another thread and is done between two frames. They do slow work themselves, on a copy.
 
 use std::any::Any;
 use std::path::PathBuf;
@@ -12,29 +12,29 @@ use editor::Document;
 use job::guard::guarded;
 use language::tf;
 
-/// Work on the document, to be done by the thread of the window.
+/// A task on the document, to be done by the window's thread.
 pub type Task = Box<dyn FnOnce(&mut Document) + Send>;
 
-/// Asks the window for a frame, in which it does what was sent to it.
+/// Requests a frame of the window, in which it does the tasks.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// Lets assistants in. The command line puts one into the window, which knows no server.
+/// Lets assistants in. The command line gives one to the window, which has no server code.
 pub trait Door {
-    /// Begins to listen. Whoever sends a task calls `wake` after it. Errors in one line.
+    /// Begins to listen. The sender of a task calls `wake` after it. Errors in one line.
     fn open(&mut self, wake: Wake) -> anyhow::Result<OpenDoor>;
 }
 
-/// A door while it is open; it closes when this is dropped.
+/// An open door; dropping it closes it.
 pub struct OpenDoor {
-    /// Where assistants ask.
+    /// Address for assistants.
     pub url: String,
-    /// What they must show.
+    /// Token that they must present.
     pub token: String,
     /// The one folder whose files they may read and write.
     pub folder: PathBuf,
-    /// What they want done.
+    /// Tasks from the assistants.
     pub tasks: Receiver<Task>,
-    /// Whatever listens.
+    /// The listening server.
     pub listening: Box<dyn Any>,
 }
 
@@ -43,15 +43,15 @@ pub struct OpenDoor {
 pub struct Guests {
     door: Option<Box<dyn Door>>,
     open: Option<OpenDoor>,
-    /// Why it could not be opened; it is tried again when the user asks again.
+    /// The reason why it could not be opened. It is tried again when the user allows assistants again.
     problem: Option<String>,
 }
 
-/// Tasks done between two frames at most.
+/// Most tasks done between two frames.
 const MOST_TASKS: usize = 64;
 
 impl Guests {
-    /// With a door that is closed.
+    /// Guests with a closed door.
     pub fn new(door: Box<dyn Door>) -> Self {
         Self {
             door: Some(door),
@@ -69,12 +69,12 @@ impl Guests {
         self.open.as_ref()
     }
 
-    /// Why it is not open although the user wants it.
+    /// The reason why the door is not open although the user allows assistants.
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
 
-    /// Opens or closes the door as the user wants it. True if that has just failed.
+    /// Opens or closes the door by the user's setting. Returns true if opening has just failed.
     fn follow(&mut self, wanted: bool, wake: impl FnOnce() -> Wake) -> bool {
         if !wanted {
             (self.open, self.problem) = (None, None);
@@ -101,7 +101,7 @@ impl SceneloomApp {
         self
     }
 
-    /// Does what assistants have sent since the last frame.
+    /// Does the tasks that assistants have sent since the last frame.
     pub(crate) fn serve_guests(&mut self, ctx: &egui::Context) {
         let wanted = self.preferences.settings.assistants;
         let wake = || -> Wake {
@@ -118,12 +118,12 @@ impl SceneloomApp {
             return;
         }
         for task in tasks {
-            // The document changes whole or not at all.
+            // The document changes completely or not at all.
             if let Err(panicked) = guarded("assistant", || task(&mut self.document)) {
                 self.fail(panicked.to_string());
             }
         }
-        // What they took away is not selected any more.
+        // Objects that they removed are deselected.
         self.state.correcting &= self.document.scene().frame().inferred.any();
         self.state.tidy_selection(self.document.scene());
         ctx.request_repaint();
@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use crossbeam_channel::{bounded, unbounded};
 
-    /// Opens once.
+    /// A door that opens once.
     struct OneTime(Option<Receiver<Task>>);
 
     impl Door for OneTime {
@@ -160,7 +160,7 @@ mod tests {
         assert!(!guests.follow(true, wake) && guests.open().is_some());
         let (answer, answered) = bounded::<()>(1);
         sender.send(Box::new(move |_| drop(answer))).expect("it is open");
-        // Closed: what was not done is given up, and who waits for it hears so.
+        // When the door closes, open tasks are dropped, and their senders get an error.
         assert!(!guests.follow(false, wake) && guests.open().is_none());
         assert!(answered.recv().is_err() && sender.send(Box::new(|_| {})).is_err());
         assert!(guests.follow(true, wake) && guests.problem() == Some("the port is taken"));

@@ -1,4 +1,4 @@
-//! What the pointer does with the tool in hand, for the status bar.
+//! Hint in the status bar: the effect of the pointer with the tool in hand.
 
 use editor::tools::{ViewKind, hint_of, select};
 use language::t;
@@ -6,7 +6,7 @@ use language::t;
 use crate::panes::id::PaneId;
 use crate::state::UiState;
 
-/// One line: buttons and held keys, as they count in the view under the pointer.
+/// The hint as one line: buttons and held keys for the view under the pointer.
 pub fn hint(state: &UiState) -> String {
     if state.compare.holding_before {
         return t("The state before; nothing can be changed while the key is held").into();

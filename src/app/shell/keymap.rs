@@ -1,5 +1,5 @@
-//! Actions, the chords that call for them, and presets of chords. A preset is a file of `assets/keys/`; the user's own
-//! chords come on top.
+//! Actions, their chords, and presets of chords. A preset is a file of `assets/keys/`; the user's own chords override
+//! it.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,7 +9,7 @@ use egui::{Key, Modifiers};
 
 use super::actions::{ACTIONS, ActionDef, When};
 
-/// A key with its modifiers. `Ctrl` is the command key where there is one.
+/// A key with its modifiers. `Ctrl` stands for the command key on systems that have one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Chord {
     /// The key.
@@ -23,7 +23,7 @@ pub struct Chord {
 }
 
 impl Chord {
-    /// A key press as a chord. Keys that need Shift on some keyboards only do not count it.
+    /// A key press as a chord. Shift does not count for keys that need it on some keyboards only.
     pub fn pressed(key: Key, m: Modifiers) -> Self {
         let by_layout = matches!(
             key,
@@ -63,7 +63,7 @@ impl fmt::Display for Chord {
 impl FromStr for Chord {
     type Err = String;
 
-    /// `Ctrl+Shift+Z`, as it is shown. Errors name the chord.
+    /// Parses a chord such as `Ctrl+Shift+Z`, as it is shown. Errors name the chord.
     fn from_str(text: &str) -> Result<Self, String> {
         let bad = || format!("{text:?} is no chord, expected one like \"Ctrl+Shift+Z\"");
         let mut parts: Vec<&str> = text.split('+').map(str::trim).collect();
@@ -98,7 +98,7 @@ impl FromStr for Chord {
     }
 }
 
-/// Sets of chords that come with the program: name, and the file with what differs from the default.
+/// Bundled presets: name, and the file with its differences from the default.
 pub const PRESETS: [(&str, &str); 4] = [
     ("Default", "{}"),
     ("Blender", assets::keys::BLENDER),
@@ -106,15 +106,15 @@ pub const PRESETS: [(&str, &str); 4] = [
     ("Labeler", assets::keys::LABELER),
 ];
 
-/// Chords by the id of their action: all that an action listens to.
+/// Chords by the id of their action. The list of an action holds all of its chords.
 pub type Chords = BTreeMap<String, Vec<String>>;
 
-/// What each chord calls for.
+/// The chords of all actions.
 #[derive(Clone, Debug)]
 pub struct Keymap {
-    /// Name of the preset it began with.
+    /// Name of its preset.
     pub preset: String,
-    /// What the user changed.
+    /// Chords that the user changed.
     pub own: Chords,
     /// Chords of each of [`ACTIONS`], in its order.
     chords: Vec<Vec<Chord>>,
@@ -127,14 +127,14 @@ impl Default for Keymap {
 }
 
 impl Keymap {
-    /// A preset (the default one if there is none of that name) with the user's changes. Chords that are none, and
-    /// actions that do not exist, are left out.
+    /// A preset with the user's changes; the default preset if there is none of that name. Invalid chords and unknown
+    /// actions are left out.
     pub fn new(preset: &str, own: Chords) -> Self {
         let (name, file) = PRESETS
             .into_iter()
             .find(|(n, _)| *n == preset)
             .unwrap_or(PRESETS[0]);
-        // A preset that cannot be read would be found by its test.
+        // A preset that cannot be read is found by its test.
         let changed: Chords = serde_json::from_str(file).unwrap_or_default();
         let of = |action: &ActionDef| -> Vec<Chord> {
             match own.get(action.id).or_else(|| changed.get(action.id)) {
@@ -154,7 +154,7 @@ impl Keymap {
         }
     }
 
-    /// The action that a chord calls for among those that apply; the most particular one wins.
+    /// The action of a chord among those that apply; the one with the most specific place wins.
     pub fn action(&self, chord: Chord, applies: impl Fn(When) -> bool) -> Option<&'static ActionDef> {
         let mut found: Option<&'static ActionDef> = None;
         for (action, chords) in ACTIONS.iter().zip(&self.chords) {
@@ -166,7 +166,7 @@ impl Keymap {
         found
     }
 
-    /// Chords of an action as text: `Ctrl+Shift+Z, Ctrl+Y`.
+    /// Chords of an action as text, for example `Ctrl+Shift+Z, Ctrl+Y`.
     pub fn text(&self, id: &str) -> String {
         let of = ACTIONS.iter().position(|a| a.id == id);
         let chords = of.map_or(&[][..], |i| &self.chords[i]);
@@ -174,14 +174,15 @@ impl Keymap {
         texts.join(", ")
     }
 
-    /// The first chord of an action, for a menu.
+    /// The first chord of an action as text, for a menu.
     pub fn first(&self, id: &str) -> String {
         let of = ACTIONS.iter().position(|a| a.id == id);
         let chord = of.and_then(|i| self.chords[i].first());
         chord.map_or_else(String::new, Chord::to_string)
     }
 
-    /// Gives an action a chord, in place of those it had; others that had it in the same place lose it: their titles.
+    /// Gives an action a chord in place of its old ones. Other actions with that chord in the same place lose it;
+    /// returns their titles.
     pub fn rebind(&mut self, id: &str, chord: Chord) -> Vec<&'static str> {
         let mut losers = Vec::new();
         let Some(index) = ACTIONS.iter().position(|a| a.id == id) else {
@@ -206,19 +207,19 @@ impl Keymap {
         self.own.contains_key(id)
     }
 
-    /// Gives an action the chords of the preset again.
+    /// Resets the chords of an action to those of the preset.
     pub fn reset_one(&mut self, id: &str) {
         let mut own = self.own.clone();
         own.remove(id);
         *self = Self::new(&self.preset.clone(), own);
     }
 
-    /// Forgets what the user changed.
+    /// Resets all chords to those of the preset.
     pub fn reset(&mut self) {
         *self = Self::new(&self.preset.clone(), Chords::new());
     }
 
-    /// Chords that call for two actions in the same place.
+    /// Chords that two actions share in the same place.
     pub fn conflicts(&self) -> Vec<(Chord, &'static str, &'static str)> {
         let mut out = Vec::new();
         for (i, a) in ACTIONS.iter().enumerate() {
@@ -257,7 +258,7 @@ mod tests {
         }
     }
 
-    /// In every preset each chord calls for one action in one place, and every chord and id in the files is one.
+    /// In every preset each chord has one action in one place, and every chord and id in the files is valid.
     #[test]
     fn no_preset_holds_a_conflict() {
         for action in ACTIONS.iter() {

@@ -1,4 +1,4 @@
-//! The keyboard: chords to commands. Nothing while a text field has the focus; bare letters belong
+//! The keyboard: turns chords into commands, except while a text field has the focus. Letters without modifiers belong
 //! to the tools, and to the flight while the right button is held in the 3D view.
 
 use egui::{Context, Key, Modifiers};
@@ -11,7 +11,7 @@ use crate::panes::id::PaneId;
 use crate::state::UiState;
 use crate::tools::{Hand, ToolCommand};
 
-/// Actions that do not wait for the end of a drag.
+/// Actions that are allowed during a drag.
 const DURING_A_DRAG: [&str; 5] = [
     "escape",
     "brush_smaller",
@@ -20,16 +20,16 @@ const DURING_A_DRAG: [&str; 5] = [
     "brush_higher",
 ];
 
-/// What the pointer is doing: some keys wait for its end.
+/// State of the pointer, which some keys depend on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hands {
-    /// Flies in the 3D view, where letters steer.
+    /// It flies in the 3D view, where letters steer.
     pub flying: bool,
-    /// Drags something with the button down: only the keys of [`DURING_A_DRAG`] count.
+    /// It drags with the button down; only the keys of [`DURING_A_DRAG`] count.
     pub dragging: bool,
-    /// A new result waits for a decision.
+    /// A staged result waits for a decision.
     pub staged: bool,
-    /// Is over a window that floats over the panes and shows nothing of the scene: a key without Ctrl is not meant for the scene.
+    /// It is over a floating window that shows no part of the scene; keys without Ctrl do not go to the scene.
     pub over_window: bool,
 }
 
@@ -47,11 +47,11 @@ pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, c
     } in pressed(ctx)
     {
         let chord = Chord::pressed(key, modifiers);
-        // What has the focus answers to these itself.
+        // The focused widget handles these keys itself.
         if focused && (is_arrow(key) || matches!(key, Key::Space | Key::Enter)) {
             continue;
         }
-        // What is under way can be ended, wherever the pointer is.
+        // A running drag or flight can be ended wherever the pointer is.
         let under_way = hands.dragging || hands.flying || key == Key::Escape;
         if hands.over_window && !under_way && !chord.ctrl {
             continue;
@@ -77,7 +77,7 @@ pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, c
             When::Painting => paints,
             When::Staged => hands.staged,
         };
-        // Shift makes another key of some: `|` of a backslash. What is written on the key counts then.
+        // Shift can turn a key into another one, such as a backslash into `|`. Then the physical key counts.
         let on_key = || keymap.action(Chord::pressed(physical?, modifiers), applies);
         let Some(action) = keymap.action(chord, applies).or_else(on_key) else {
             continue;
@@ -91,13 +91,13 @@ pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, c
     }
 }
 
-/// Longest time between two events of a key that is held, s; X waits 0.66 s before the first.
+/// Longest time between two events of a held key, s; X11 waits 0.66 s before the first repetition.
 const HELD_S: f64 = 0.8;
 
-/// A key that went down.
+/// A key press.
 struct Pressed {
     key: Key,
-    /// Where it lies, named as on a US keyboard.
+    /// The physical key, named as on a US keyboard.
     physical: Option<Key>,
     modifiers: Modifiers,
     repeat: bool,
@@ -131,7 +131,8 @@ fn pressed(ctx: &Context) -> Vec<Pressed> {
     };
     let (mut keys, now_s): (Vec<Pressed>, f64) =
         ctx.input(|i| (i.events.iter().filter_map(event).collect(), i.time));
-    // Shift released before its key: the key comes up under another name, and its next press looks like a repetition.
+    // If Shift is released before its key, the key's release has another name, and its next press looks like a
+    // repetition.
     let id = egui::Id::unique("last presses");
     ctx.data_mut(|data| {
         let last: &mut std::collections::HashMap<Key, f64> = data.get_temp_mut_or_default(id);
@@ -150,7 +151,7 @@ fn is_arrow(key: Key) -> bool {
     )
 }
 
-/// Arrows move what is chosen by 0.1 m, with Shift by 1 m, with Ctrl by 0.01 m.
+/// The nudge of an arrow key: 0.1 m, with Shift 1 m, with Ctrl 0.01 m.
 fn nudge(chord: Chord, hand: &Hand) -> Option<Command> {
     if !hand.any_chosen() {
         return None;

@@ -1,5 +1,5 @@
-//! Decides when to generate: not while the user drags; at once if generation is fast, else after a short pause (the grace)
-//! in which more edits may follow; never the same input twice. It knows no thread: it is asked once per frame.
+//! Scheduler of live generation: never during a drag; at once if generation is fast, else after a short pause (the
+//! grace) in which more edits may follow; never the same input twice. It has no thread; it is asked once per frame.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -14,79 +14,79 @@ use scene::{Extent, Scene, SceneRev};
 
 /// Edge of a latent cell, m.
 const CELL_M: f64 = COLUMNS_PER_CELL as f64 * Extent::VOXEL_M;
-/// If runs take up to this long on average, there is no grace, s.
+/// Mean time of runs up to which there is no grace, s.
 const QUICK_S: f64 = 1.5;
 /// The grace after the last edit if runs are slower, s.
 const GRACE_S: f64 = 0.25;
 /// Longest wait after the oldest edit that is not generated yet, s.
 const LONGEST_WAIT_S: f64 = 3.0;
-/// Quiet time before the worker gets ready, s.
+/// Time without edits before the worker warms up, s.
 const WARM_UP_AFTER_S: f64 = 0.6;
-/// How many runs the mean is taken over.
+/// Number of runs that the mean is taken over.
 const REMEMBERED: usize = 10;
 
-/// What should happen now.
+/// Advice of the scheduler.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Advice {
-    /// Nothing.
+    /// Do not act.
     Rest,
     /// Ask again after so many seconds.
     Wait(f64),
     /// Submit the scene with these parameters.
     Submit(GenParams),
-    /// Submit the scene although nothing was edited, so that the worker gets ready for the first edit.
+    /// Submit the scene without an edit, so that the worker warms up for the first edit.
     WarmUp(GenParams),
-    /// Stop the running job: its result would be of no use.
+    /// Cancel the running job, because its result would not be used.
     Cancel,
 }
 
-/// Size of what an edit touches.
+/// Size of the region that an edit touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touched {
-    /// Nothing to generate.
+    /// True if the region is empty.
     pub is_empty: bool,
     /// Extent along x and y, m.
     pub extent_m: [f64; 2],
-    /// Columns, as a share of those of the networks' window; 1 for more.
+    /// Columns as a share of the networks' window, at most 1.
     pub share: f64,
 }
 
-/// What a job is for.
+/// Purpose of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// Inpaints what was edited.
+    /// Inpaints the edited region.
     Edit,
-    /// Draws everything.
+    /// Generates the whole scene.
     Full,
-    /// Gets the worker ready; the result equals the scene.
+    /// Warms up the worker; the result equals the scene.
     WarmUp,
 }
 
-/// A job on its way.
+/// A running job.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Running {
-    /// Its number at the worker.
+    /// Its id at the worker.
     pub id: JobId,
-    /// What was asked for.
+    /// Its key: the scene's revision and the parameters.
     pub key: JobKey,
-    /// What for.
+    /// Its purpose.
     pub purpose: Purpose,
-    /// When, s.
+    /// Time at which it was submitted, s.
     pub submitted_s: f64,
-    /// When the edit was made that it is for, s.
+    /// Time of the edit that it is for, s.
     pub edited_s: f64,
-    /// Stage, steps done, all steps; none before the first news.
+    /// Stage, steps done, and all steps; `None` before the first update.
     pub progress: Option<(Stage, usize, usize)>,
-    /// What it inpaints, along x and y, m.
+    /// Size of the inpainted region along x and y, m.
     pub extent_m: [f64; 2],
     /// Share of all columns that it inpaints.
     pub share: f64,
-    /// The user cancelled it, and it has not ended yet.
+    /// True if the user cancelled it and it has not ended yet.
     pub cancelled: bool,
 }
 
 impl Running {
-    /// Label of the result in the history if it becomes its own step; `None` if it goes into the step of an edit.
+    /// Label of the undo step of its result; `None` if the result goes into the step of an edit.
     pub fn own_step(&self) -> Option<&'static str> {
         match (self.purpose, self.key.params.inpaint.is_empty()) {
             (Purpose::Full, _) => Some("Generate"),
@@ -99,26 +99,26 @@ impl Running {
 /// The scheduler.
 #[derive(Debug)]
 pub struct Live {
-    /// Generate after each edit.
+    /// True: generates after each edit.
     pub on: bool,
-    /// How to generate what was edited.
+    /// Parameters of generation after an edit.
     pub params: GenParams,
-    /// How to generate everything.
+    /// Parameters of generation of the whole scene.
     pub full_params: GenParams,
     /// Densities that the user chose; they override those of the parameters.
     pub named: Named,
-    /// The seed for what is generated on request; that of the scene if none.
+    /// The seed for generation on request; the scene's seed if `None`.
     pub seed: Option<u64>,
-    /// Time that the present preset is predicted to take, s; 0 if unknown.
+    /// Predicted time of the present preset, s; 0 if unknown.
     pub predicted_s: f64,
-    /// The job on its way.
+    /// The running job.
     pub running: Option<Running>,
-    /// Why the last edit is not generated automatically.
+    /// The reason why the last edit is not generated automatically.
     pub paused: Option<Pause>,
     pace: Pace,
     seen: Option<(SceneRev, Touched)>,
-    parts: Arc<[Bounds]>, // of what was seen
-    map_m: [f64; 2],      // all of it
+    parts: Arc<[Bounds]>, // of the state in `seen`
+    map_m: [f64; 2],      // size of the whole map
     last_edit_s: f64,
     oldest_edit_s: Option<f64>,
     asked: Option<JobKey>,
@@ -128,7 +128,7 @@ pub struct Live {
 }
 
 impl Live {
-    /// Switched on, no scene seen yet. With `warm_up` the worker gets ready while nothing is edited.
+    /// A scheduler that is on and has seen no scene. With `warm_up` the worker warms up while nothing is edited.
     pub fn new(params: GenParams, full_params: GenParams, warm_up: bool) -> Self {
         Self {
             on: true,
@@ -152,13 +152,13 @@ impl Live {
         }
     }
 
-    /// Parameters for all of a scene, or for what was edited in it.
+    /// Parameters for the whole scene, or for the edited region.
     pub fn params_for(&self, scene: &Scene, full: bool) -> GenParams {
         let (params, region) = match full {
             true => (self.full_params.clone(), RegionMode::Full),
             false => (self.params.clone(), RegionMode::Auto),
         };
-        // An edit begins with the noise of what is there: another seed would only make it other for nothing.
+        // An edit starts from the noise of the existing scene; another seed would only change the rest without need.
         let seed = self.seed.filter(|_| full).unwrap_or(scene.seed);
         GenParams {
             seed,
@@ -168,7 +168,7 @@ impl Live {
         }
     }
 
-    /// What to do now. `scene` is the settled one; `now_s` must not go backward.
+    /// The advice for the present moment. `scene` is the settled scene; `now_s` must not go backward.
     pub fn advise(&mut self, scene: &Scene, dragging: bool, now_s: f64) -> Advice {
         if dragging {
             return Advice::Rest;
@@ -220,7 +220,7 @@ impl Live {
         seen.is_some_and(|(_, touched)| self.waits(rev, &touched)) && self.paused.is_none()
     }
 
-    /// Drops the edit that waits: this state is not generated automatically any more; the next edit will be.
+    /// Drops the waiting edit: this state is not generated automatically any more, the next edit will be.
     pub fn drop_waiting(&mut self, scene: &Scene) {
         self.asked = Some(JobKey {
             rev: scene.content(),
@@ -229,7 +229,7 @@ impl Live {
         self.paused = None;
     }
 
-    /// What the edits of a scene touch; computed once per state.
+    /// The region that the edits of a scene touch; computed once per state.
     pub fn touched_by(&mut self, scene: &Scene, now_s: f64) -> Touched {
         if let Some((rev, touched)) = self.seen
             && rev == scene.content()
@@ -261,7 +261,7 @@ impl Live {
     /// Notes that a job was submitted.
     pub fn submitted(&mut self, id: JobId, key: JobKey, now_s: f64) {
         let full = key.params.region == RegionMode::Full;
-        // A job that the user asked for is not for the last edit, which may be long ago.
+        // A job that the user requested is not for the last edit, which may be long ago.
         let by_hand = full || self.paused.is_some() || !key.params.inpaint.is_empty();
         let (purpose, extent_m, share) = match self.seen {
             Some((_, touched)) if !full && touched.is_empty && key.params.inpaint.is_empty() => {
@@ -291,12 +291,12 @@ impl Live {
         });
     }
 
-    /// Notes that the job ended, and returns it if it was the one on its way.
+    /// Notes that a job ended, and returns it if it was the running one.
     pub fn ended(&mut self, id: JobId) -> Option<Running> {
         self.running.take_if(|r| r.id == id)
     }
 
-    /// Notes how long a finished job took that inpainted this share of the columns.
+    /// Notes the time of a finished job, with the share of the columns that it inpainted.
     pub fn took(&mut self, share: f64, seconds: f64) {
         self.pace.note(share, seconds);
         self.recent_s.push_back(seconds);
@@ -305,17 +305,17 @@ impl Live {
         }
     }
 
-    /// Notes that the worker is not ready for the present source.
+    /// Notes that the worker is not warmed up for the present source.
     pub fn source_changed(&mut self) {
         self.cold = self.warm_up;
     }
 
-    /// Allows this state to be generated again, after the user switched live on or took back a cancel.
+    /// Allows this state to be generated again, after the user switched live generation on or undid a cancel.
     pub fn forget_asked(&mut self) {
         self.asked = None;
     }
 
-    /// Forgets everything about the last document except how long runs take.
+    /// Forgets the last document, but not the times of runs.
     pub fn reset(&mut self) {
         (self.seen, self.asked, self.oldest_edit_s) = (None, None, None);
         self.cold = self.warm_up;
@@ -327,7 +327,7 @@ impl Live {
     }
 }
 
-/// Size along x and y of all parts together, m.
+/// Size of all parts together along x and y, m.
 fn size_m(parts: &[Bounds]) -> [f64; 2] {
     [0, 1].map(|axis| {
         let low = parts.iter().map(|(low, _)| low[axis]).min();
@@ -337,10 +337,10 @@ fn size_m(parts: &[Bounds]) -> [f64; 2] {
     })
 }
 
-/// Columns that the networks see at once.
+/// Columns of the networks' window.
 const COLUMNS: usize = CELLS * COLUMNS_PER_CELL * COLUMNS_PER_CELL;
 
-/// Extent, m, and share of the columns of what an edit touches together with inpainted cells. Both are upper bounds.
+/// Extent, m, and share of the columns, of an edited region together with inpainted cells. Both are upper bounds.
 fn with_inpainted(touched: &Touched, inpaint: &InpaintMask) -> ([f64; 2], f64) {
     let mut extent_m = touched.extent_m;
     for axis in 0..2 {
@@ -397,7 +397,7 @@ mod tests {
         submit(&mut live, &scene, params, 2.0, 1);
         assert_eq!(live.advise(&scene, false, 2.1), Advice::Rest);
         assert!(live.ended(JobId(1)).is_some());
-        // Failed or cancelled: the same input is not tried again by itself.
+        // After a failure or a cancel, the same input is not generated again automatically.
         assert_eq!(live.advise(&scene, false, 9.0), Advice::Rest);
         live.forget_asked();
         assert!(matches!(live.advise(&scene, false, 9.1), Advice::Submit(_)));
@@ -438,7 +438,7 @@ mod tests {
             panic!()
         };
         submit(&mut live, &scene, params, 1.0, 1);
-        // Undone: the state before needs nothing.
+        // After undo, the earlier state needs no generation.
         assert_eq!(live.advise(&before, false, 1.1), Advice::Cancel);
         assert!(live.ended(JobId(2)).is_none() && live.ended(JobId(1)).is_some());
         assert_eq!(live.advise(&before, false, 1.2), Advice::Rest);
@@ -461,16 +461,16 @@ mod tests {
             live.paused
         );
         assert!(!live.has_waiting(scene.content()));
-        // Undone, nothing is said any more.
+        // After undo, there is no reason to report any more.
         live.advise(&before, false, 1.1);
         assert_eq!(live.paused, None);
-        // Asked for, it is generated.
+        // On request it is generated.
         let params = live.params_for(&scene, false);
         live.touched_by(&scene, 1.2);
         submit(&mut live, &scene, params, 1.2, 1);
         assert_eq!(live.running.as_ref().map(|r| r.purpose), Some(Purpose::Edit));
         live.ended(JobId(1));
-        // A small edit waits while something is dragged; dropped, it is not generated, the next one is.
+        // A small edit waits during a drag. If it is dropped, it is not generated, but the next edit is.
         let mut small = before.clone();
         paint(&mut small, 40);
         live.touched_by(&small, 2.0);
@@ -509,7 +509,7 @@ mod tests {
         assert_eq!(live.advise(&scene, false, 2.0), Advice::Rest);
         paint(&mut scene, 40);
         assert!(matches!(live.advise(&scene, false, 2.1), Advice::Submit(_)));
-        // Inpainted: the source is another one.
+        // After an inpainting the source has changed.
         let full = live.params_for(&scene, true);
         submit(&mut live, &scene, full, 3.0, 2);
         live.ended(JobId(2));

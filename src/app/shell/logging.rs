@@ -1,5 +1,5 @@
-//! The log: what the program, wgpu, egui and winit report, as lines of a file in the folder for state. `SCENELOOM_LOG`
-//! chooses what is kept (`debug`, `info,wgpu_core=warn`, `off`).
+//! The log: messages of the program, wgpu, egui and winit, as lines of a file in the folder for state. `SCENELOOM_LOG`
+//! sets the filter (`debug`, `info,wgpu_core=warn`, `off`).
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
@@ -13,21 +13,21 @@ use tracing_subscriber::util::SubscriberInitExt as _;
 
 use super::folders;
 
-/// The log of this session; that of the session before is beside it.
+/// The log of this session, and beside it the log of the session before.
 const FILE: &str = "log.txt";
 const FILE_BEFORE: &str = "log.before.txt";
-/// Bytes after which no more lines are kept.
+/// Size after which no more lines are written, bytes.
 const MOST_BYTES: u64 = 16 << 20;
-/// Libraries tell what they do for each frame; what they warn of is kept.
+/// Default filter. Libraries log every frame, so only their warnings are kept.
 const USUAL: &str = "warn,app=info,job=info,sceneloom=info";
 
-/// Where the log is; none if the system names no folder for state.
+/// Path of the log; `None` if the system names no folder for state.
 pub fn file() -> Option<PathBuf> {
     folders::state().map(|folder| folder.join(FILE))
 }
 
-/// Begins the log of this process. A panic is logged too. Nothing happens where no log can be written: a program that
-/// cannot log still works. Returns the file.
+/// Starts the log of this process. Panics are logged too. Returns the file; `None` if no log can be written, because
+/// the program works without one.
 pub fn start() -> Option<PathBuf> {
     let folder = folders::state()?;
     let text = std::env::var("SCENELOOM_LOG").unwrap_or_else(|_| USUAL.to_owned());
@@ -58,12 +58,12 @@ fn start_in(folder: &Path, text: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// What is kept. A text that is no filter keeps the usual.
+/// The filter of a text; the default filter if the text is invalid.
 fn filter(text: &str) -> Targets {
     text.parse().unwrap_or_else(|_| USUAL.parse().unwrap_or_default())
 }
 
-/// A file that stops growing.
+/// A log file with a limited size.
 struct Bounded {
     file: File,
     left: u64,

@@ -1,5 +1,5 @@
-//! What a result was made with: the seed and the knobs. It is kept with the version that the result is, told in pictures and
-//! exports of that state, and can be used again.
+//! Seed and knobs that a result was made with. They are kept with the version, written into pictures and exports of
+//! that state, and can be used again.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,17 +7,17 @@ use job::GenParams;
 use job::inpaint::InpaintMask;
 use language::{t, tf};
 
-/// How a result was made.
+/// Settings that a result was made with.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MadeWith {
-    /// Name of the preset; empty for settings of one's own.
+    /// Name of the preset; empty for custom settings.
     pub preset: String,
-    /// The knobs. Where it was to change is left out: that belongs to the scene.
+    /// The knobs, without the inpainted region, which belongs to the scene.
     pub params: GenParams,
 }
 
 impl MadeWith {
-    /// Of the parameters of a job.
+    /// The settings of a job's parameters.
     pub fn new(params: &GenParams, preset: Option<&str>) -> Self {
         Self {
             preset: preset.unwrap_or_default().to_owned(),
@@ -28,17 +28,17 @@ impl MadeWith {
         }
     }
 
-    /// As text on one line.
+    /// The settings as JSON on one line.
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// From such a text; none if it is of another program or damaged.
+    /// Parses such a text; `None` if it is invalid.
     pub fn from_json(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
     }
 
-    /// The knobs that one sets, for a person: seed, preset, steps, guidance, densities.
+    /// The knobs that a user sets, in words: seed, preset, steps, guidance, densities.
     pub fn in_words(&self) -> String {
         let params = &self.params;
         let mut parts = vec![tf!("seed {n}", n = params.seed)];

@@ -1,4 +1,4 @@
-//! The application measures itself: where the frames of `perf.rs` begin and end.
+//! Performance measurements of the application: when the frames of `perf.rs` begin and end.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::app::SceneloomApp;
 use super::trace::Trace;
 
 impl SceneloomApp {
-    /// Writes what is measured to a file from now on. Errors name it.
+    /// Writes measurements to a file from now on. Errors name the file.
     pub fn trace_to(&mut self, path: &Path) -> anyhow::Result<()> {
         let adapter = self.views.render_state.as_ref().map(|s| s.adapter.get_info());
         let first = json!({
@@ -23,12 +23,12 @@ impl SceneloomApp {
         Ok(())
     }
 
-    /// A frame begins; `before_s` is what the window says that the last one took.
+    /// Notes that a frame begins. `before_s` is the time of the last frame by the window system, s.
     pub(crate) fn frame_begins(&mut self, before_s: Option<f32>) {
         let (clock, render_state) = (self.frames.clock, &self.views.render_state);
         let wait = || {
             if let Some(state) = render_state {
-                // Lost devices are noticed where something is drawn.
+                // A lost device is noticed later, when the view is drawn.
                 let _ = state.device.poll(wgpu::PollType::wait_indefinitely());
             }
             clock.elapsed().as_secs_f64()
@@ -39,9 +39,9 @@ impl SceneloomApp {
             .frame_begins(now_s, before_s.map(f64::from), wait);
     }
 
-    /// What was edited in this frame is shown by this frame: the panels are laid out again, and only that is painted.
-    /// False if the window does not lay them out again (it has done so already). Generation, sensors and checks learn of
-    /// the edit in the second pass.
+    /// Shows the edits of this frame in the same frame: the panels are laid out again, and only that pass is painted.
+    /// Returns false if the window does not lay them out again (it has already done so). Generation, sensors and checks
+    /// learn of the edit in the second pass.
     pub(crate) fn show_at_once(&mut self, ctx: &egui::Context) -> bool {
         if ctx.current_pass_index() > 0 {
             return false;
@@ -54,7 +54,7 @@ impl SceneloomApp {
         true
     }
 
-    /// A frame was drawn, and the commands of the user were carried out.
+    /// Notes that a frame was drawn and the user's commands were carried out.
     pub(crate) fn frame_drawn(&mut self, ctx: &egui::Context, edited: bool) {
         let events = ctx.input(|i| i.raw.events.len());
         let working = self.generation.live.running.is_some();

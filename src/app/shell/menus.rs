@@ -1,4 +1,4 @@
-//! The menus of the bar at the top.
+//! The menus in the bar at the top.
 
 use egui::{Rect, Ui, Vec2, pos2};
 
@@ -14,10 +14,10 @@ use scene::Arrangement;
 use viewport::ViewPreset;
 use widgets::theme;
 
-/// Takes a command if its entry was clicked.
+/// Function that pushes a command if its entry was clicked.
 type On<'a> = dyn FnMut(bool, Command) + 'a;
 
-/// Draws the menus, side by side or inside one.
+/// Draws the menus, side by side or folded into one.
 pub(super) fn menus(
     ui: &mut Ui,
     input: &ToolbarInput<'_>,

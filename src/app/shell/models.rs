@@ -1,4 +1,4 @@
-//! Models of other files: put into the scene, or given to a box as its shape.
+//! Models from other files: put into the scene, or given to a box as its shape.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use scene::{BoxId, Model};
 
 /// A model that is being read.
 pub(crate) struct Reading {
-    /// The box that gets its shape; none if it is put into the scene.
+    /// The box that gets its shape; `None` if it is put into the scene.
     target: Option<BoxId>,
     model: Receiver<anyhow::Result<Model>>,
 }
@@ -39,7 +39,7 @@ impl SceneloomApp {
         let wake = ctx.clone();
         let make = move || anyhow::Ok(formats::model::read(&path, None)?);
         let thread = job::guard::spawn("model", make, move |model| {
-            // Nobody listens if another one was asked for meanwhile.
+            // Sending fails if another model was requested meanwhile.
             let _ = send.send(model.unwrap_or_else(|panic| Err(panic.into())));
             wake.request_repaint();
         });
@@ -50,7 +50,8 @@ impl SceneloomApp {
         }
     }
 
-    /// Puts a model that has been read where the bird's-eye view looks, or gives its shape to the box that waits for it.
+    /// Places a model that has been read at the centre of the bird's-eye view, or gives its shape to the box that waits
+    /// for it.
     pub(crate) fn take_model(&mut self) {
         let Some(reading) = self.files.model.take() else {
             return;

@@ -1,5 +1,5 @@
-//! Takes scenes that were read from a file over. What was edited while the file was read is not lost: the scene that was read
-//! waits until the user has said what becomes of the edits.
+//! Takes over scenes that were read from a file. Edits made while the file was read are not lost: the new scene waits
+//! until the user has decided about them.
 
 use crossbeam_channel::TryRecvError;
 use egui::Context;
@@ -15,7 +15,7 @@ use job::inpaint::InpaintMask;
 use language::tf;
 
 impl SceneloomApp {
-    /// The state that is left if another scene is opened now.
+    /// The state that would be left if another scene were opened now.
     pub(crate) fn left(&self) -> Left {
         Left {
             content: self.document.settled_scene().content(),
@@ -23,12 +23,12 @@ impl SceneloomApp {
         }
     }
 
-    /// True if there are changes now that the user was not asked about when that state was left.
+    /// True if there are unsaved changes that the user was not asked about when that state was left.
     fn edited_since(&self, left: Left) -> bool {
         self.document.is_dirty() && self.left() != left
     }
 
-    /// Takes over what was read. During a drag, and while another question is open, it waits.
+    /// Takes over a scene that was read. Waits during a drag, and while another question is open.
     pub(crate) fn take_opened(&mut self, ctx: &Context) {
         self.leave_arrived();
         if self.document.is_dragging() || self.files.unsaved.is_some() || self.files.dialogs.is_open() {
@@ -46,7 +46,7 @@ impl SceneloomApp {
             return;
         };
         match answer {
-            // A step of the document's own history takes nothing away.
+            // A scene that becomes an undo step replaces no document.
             Ok(opened) if opening.step.is_none() && self.edited_since(opening.leaves) => {
                 self.files.arrived = Some(Box::new(Arrived { opening, opened }));
                 self.files.unsaved = Some(Next::Arrived);
@@ -68,10 +68,10 @@ impl SceneloomApp {
         }
     }
 
-    /// Gives up the scene that waits if nobody is asked about it any more: the user stays, or nothing was saved.
+    /// Drops the waiting scene if the question about it is closed: the user stays, or saving was cancelled.
     fn leave_arrived(&mut self) {
         if !self.files.dialogs.is_open() {
-            // The dialog that was to name the file was closed.
+            // The dialog for the file's name was closed.
             self.files.after_save = None;
         }
         let next = [&self.files.unsaved, &self.files.after_save];
@@ -131,7 +131,7 @@ impl SceneloomApp {
         if let Some(path) = &opening.path {
             self.preferences.settings.remember(path);
         }
-        // What the camera looked at is not there any more.
+        // The viewpoint of the old scene has no meaning in the new one.
         let extent = self.extent();
         self.views.view3d.frame_map(extent);
         // Saving must not replace the file of another scene without asking.
@@ -140,7 +140,7 @@ impl SceneloomApp {
         self.state.correcting = false;
         self.state.tools.region = InpaintMask::default();
         self.state.tools.voxels.clear();
-        // What was begun on the other map is not gone on with on this one.
+        // Unfinished work of the tools belongs to the old map.
         self.state.tools.toolbox = Default::default();
         self.state.tools.hand.road = Default::default();
         self.state.named = Named::default();
@@ -152,7 +152,7 @@ impl SceneloomApp {
         ctx.request_repaint();
     }
 
-    /// Forgets what was made of the scene that was shown: nothing of it is of the one that comes.
+    /// Forgets all results and marks of the old scene.
     fn forget_shown(&mut self, ctx: &Context) {
         self.generation.forget_scene();
         self.threads.sensing.forget();
@@ -163,18 +163,18 @@ impl SceneloomApp {
         self.state.shown.finding_marks = None;
         self.state.shown.detection_marks = None;
         crate::panes::checks::forget(ctx);
-        // Panes that keep something count along.
+        // Panes compare this count to drop values of another scene.
         self.state.opened += 1;
     }
 
-    /// Tells how many versions of a file could not be read.
+    /// Reports how many versions of a file could not be read.
     pub(crate) fn tell_damaged(&mut self, damaged: usize) {
         if damaged > 0 {
             self.fail(tf!("{n} versions in the file cannot be read", n = damaged));
         }
     }
 
-    /// What the question about unsaved changes says of the scene that waits.
+    /// Text about the waiting scene, for the question about unsaved changes.
     pub(crate) fn waits_to_be_shown(&self) -> Option<String> {
         let arrived = self.files.arrived.as_ref()?;
         Some(tf!(

@@ -1,5 +1,6 @@
-//! How fast the window is, measured by itself: frames, from an edit to its first visible change, what holds the input up,
-//! stages of the worker, processor time. Shown by the performance overlay, written by `--trace` (see `trace.rs`).
+//! Performance measurements of the window: frame times, time from an edit to its first visible change, frames that
+//! block the input, stages of the worker, processor time. The performance overlay shows them, and `--trace` writes them
+//! (see `trace.rs`).
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -9,16 +10,16 @@ use super::trace::Trace;
 use job::Stage;
 use numeric::quantile::Sorted;
 
-/// Frames longer than this hold the input up noticeably, s.
+/// Frames longer than this noticeably block the input, s.
 pub const BLOCKED_S: f64 = 0.05;
-/// The window counts as idle this long after the last input and the last work, s.
+/// Time after the last input and the last work from which the window counts as idle, s.
 pub const IDLE_AFTER_S: f64 = 2.0;
-/// Samples that quantiles are taken of; older ones go.
+/// Most samples that quantiles are taken of; older ones are dropped.
 const KEPT: usize = 20_000;
-/// Frames that the overlay draws.
+/// Number of frames that the overlay draws.
 pub const SHOWN: usize = 160;
 
-/// Middle, 95th percentile and largest of some samples.
+/// Median, 95th percentile and largest of some samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quantiles {
     /// Number of samples ever taken.
@@ -40,7 +41,7 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Takes one in; what is not finite is left out.
+    /// Adds a sample; values that are not finite are left out.
     pub fn push(&mut self, value: f64) {
         if !value.is_finite() {
             return;
@@ -68,7 +69,7 @@ impl Samples {
         }
     }
 
-    /// The newest ones, oldest first.
+    /// The newest samples, oldest first.
     pub fn newest(&self, count: usize) -> impl Iterator<Item = f64> + '_ {
         self.newest
             .iter()
@@ -78,7 +79,7 @@ impl Samples {
 }
 
 impl Quantiles {
-    /// In milliseconds, as JSON.
+    /// The quantiles in milliseconds, as JSON.
     fn ms(&self) -> serde_json::Value {
         json!({
             "n": self.n,
@@ -89,17 +90,17 @@ impl Quantiles {
     }
 }
 
-/// To a thousandth: a trace is read by people too.
+/// Rounds to a thousandth, because people read traces too.
 fn round(value: f64) -> f64 {
     (value * 1e3).round() / 1e3
 }
 
-/// An edit on its way to the screen.
+/// An edit that is not visible yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pending {
-    /// Made in a frame that began at this time; that frame still shows the state before.
+    /// Made in the frame that began at this time; that frame still shows the state before.
     Made(f64),
-    /// Drawn; the frame that shows it has not ended.
+    /// Drawn, in a frame that has not ended yet; the time is that of [`Self::Made`].
     Drawn(f64),
 }
 
@@ -107,7 +108,7 @@ enum Pending {
 #[derive(Clone, Copy, Debug)]
 struct Open {
     began_s: f64,
-    /// Waited for the graphics card, only to measure; it counts as nobody's work, s.
+    /// Time spent waiting for the graphics card, only to measure; not counted as work, s.
     waited_s: f64,
     logic_s: f64,
     draw_s: f64,
@@ -115,47 +116,47 @@ struct Open {
     working: bool,
 }
 
-/// What is measured.
+/// All measurements.
 #[derive(Default)]
 pub struct Perf {
-    /// The overlay is open.
+    /// True while the overlay is open.
     pub open: bool,
-    /// Work of the main thread per frame, layout to presentation.
+    /// Work of the main thread per frame, from layout to presentation, s.
     pub frames: Samples,
-    /// The same while the worker generates.
+    /// Work of the main thread per frame while the worker generates, s.
     pub frames_while_working: Samples,
-    /// From the beginning of the frame that took the input to the end of the one that shows its effect.
+    /// Time from the beginning of the frame that took an input to the end of the frame that shows its effect, s.
     pub visible: Samples,
-    /// From an edit to its generated result.
+    /// Time from an edit to its generated result, s.
     pub settled: Samples,
-    /// Frames that held the input up, all and while the worker generates.
+    /// Number of frames that blocked the input: all, and those while the worker generates.
     pub blocked: [usize; 2],
-    /// Share of one core that the process used of late; none where the system does not tell.
+    /// Share of one core that the process used recently; `None` if the system does not report it.
     pub cpu_share: Option<f64>,
-    /// Time in the stages of the job that runs, or of the last one, s.
+    /// Time in each stage of the running job, or of the last one, s.
     pub stages: BTreeMap<&'static str, f64>,
     pub(crate) trace: Option<Trace>,
     frame: Option<Open>,
     pending: Option<Pending>,
     stage: Option<(Stage, f64)>,
-    cpu: Option<(f64, f64)>, // now and processor time, s
+    cpu: Option<(f64, f64)>, // wall and processor time, s
     active_s: f64,
 }
 
 impl Perf {
-    /// Something looks at what is measured: latencies are worth an extra frame.
+    /// True if the overlay or a trace uses the measurements; latencies are then worth an extra frame.
     pub fn watches(&self) -> bool {
         self.open || self.trace.is_some()
     }
 
-    /// A frame begins. `before_s` is what the frame before took, presentation included (none: it is not known), and
-    /// `wait` waits until the graphics card has drawn all that it was given; the answer is the time then.
+    /// Notes that a frame begins. `before_s` is the time of the frame before, presentation included (`None` if
+    /// unknown). `wait` waits until the graphics card has drawn everything and returns the time after that.
     pub fn frame_begins(&mut self, now_s: f64, before_s: Option<f64>, wait: impl FnOnce() -> f64) {
         self.frame_ended(before_s);
         let mut began_s = now_s;
         if let Some(Pending::Drawn(at_s)) = self.pending {
             self.pending = None;
-            // Without anybody looking the card is not waited for, and nothing is known.
+            // Without an overlay or a trace there is no wait, and no latency is measured.
             if self.watches() {
                 began_s = wait();
                 self.edit_visible(began_s, at_s);
@@ -180,7 +181,7 @@ impl Perf {
         self.tell(|| json!({"kind": "edit", "t_s": round(at_s), "visible_ms": round(took_s * 1e3)}));
     }
 
-    /// The frame that began last was closed by the window; `took_s` with presentation.
+    /// Notes that the window closed the last frame; `took_s` is its time with presentation.
     fn frame_ended(&mut self, took_s: Option<f64>) {
         let Some(frame) = self.frame.take() else { return };
         let busy_s = (took_s.unwrap_or(0.0) - frame.waited_s).max(frame.logic_s + frame.draw_s);
@@ -206,16 +207,16 @@ impl Perf {
         });
     }
 
-    /// News of the worker and of files were taken in.
+    /// Notes that the news of the worker and of files were taken in.
     pub fn logic_done(&mut self, now_s: f64) {
         if let Some(frame) = &mut self.frame {
             frame.logic_s = now_s - frame.began_s;
         }
     }
 
-    /// The frame was drawn and what the user asked for was carried out: `events` of the window system, `edited` if that
-    /// changed the scene, `active` if something works in the background. True if another frame is wanted, to see when
-    /// this one reached the screen.
+    /// Notes that the frame was drawn and its commands were carried out. `events` counts events of the window system;
+    /// `edited` is true if the scene changed, `active` if background work runs. Returns true if another frame is needed
+    /// to measure when this one reached the screen.
     pub fn drawn(&mut self, now_s: f64, events: usize, edited: bool, active: bool, working: bool) -> bool {
         let Some(frame) = &mut self.frame else {
             return false;
@@ -226,7 +227,7 @@ impl Perf {
         let began_s = frame.began_s;
         self.pending = match self.pending {
             None if edited => Some(Pending::Made(began_s)),
-            // Made in the frame before: this one shows it.
+            // The edit was made in the frame before; this frame shows it.
             Some(Pending::Made(at_s)) if at_s < began_s => Some(Pending::Drawn(at_s)),
             pending => pending,
         };
@@ -239,14 +240,14 @@ impl Perf {
         self.watches() && matches!(self.pending, Some(Pending::Drawn(_)))
     }
 
-    /// The edit of this frame is shown by a second pass of the same frame.
+    /// Notes that a second pass of the same frame shows its edit.
     pub fn shown_at_once(&mut self) {
         if let Some(Pending::Made(at_s)) = self.pending {
             self.pending = Some(Pending::Drawn(at_s));
         }
     }
 
-    /// The worker entered a stage.
+    /// Notes that the worker entered a stage.
     pub fn stage(&mut self, stage: Stage, now_s: f64) {
         if self.stage.is_some_and(|(of, _)| of == stage) {
             return;
@@ -255,13 +256,13 @@ impl Perf {
         self.stage = Some((stage, now_s));
     }
 
-    /// A job was submitted.
+    /// Notes that a job was submitted.
     pub fn job_begins(&mut self) {
         self.stage = None;
         self.stages.clear();
     }
 
-    /// The job ended; `settled_s` since the edit that it answers, if it does.
+    /// Notes that a job ended. `settled_s` is the time since the edit that it settles, if it settles one.
     pub fn job_ended(&mut self, now_s: f64, settled_s: Option<f64>, what: &str) {
         self.end_stage(now_s);
         if let Some(settled_s) = settled_s {
@@ -315,7 +316,7 @@ impl Perf {
         }
     }
 
-    /// All of it in short; processor time is added by the trace.
+    /// A summary of all measurements; the trace adds the processor time.
     pub fn summary(&self) -> serde_json::Value {
         json!({
             "kind": "summary",
@@ -346,7 +347,7 @@ mod tests {
         assert_eq!((q.p95, q.max), (1.0, 100.0), "old samples go, the largest stays");
     }
 
-    /// Input arrives in a frame, the next one shows it, the one after that knows when.
+    /// The input arrives in one frame, the next frame shows it, and the frame after that measures when.
     #[test]
     fn an_edit_is_timed_to_the_end_of_the_frame_that_shows_it() {
         let mut perf = Perf {

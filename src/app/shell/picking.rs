@@ -1,4 +1,4 @@
-//! Roads from a file: a place on them is chosen in a window, then a scene is made there.
+//! Placing a scene on roads from a file: the user chooses a place in a window, then a scene is made there.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ use formats::import::scene_name;
 use language::{t, tf};
 
 impl SceneloomApp {
-    /// Reads roads on a thread of its own, to ask for a place on them.
+    /// Reads roads on a thread of its own, then asks for a place on them.
     pub(crate) fn pick_place(&mut self, path: PathBuf, ctx: &Context) {
         let (send, read) = bounded(1);
         let wake = ctx.clone();
@@ -22,7 +22,7 @@ impl SceneloomApp {
             Ok(PlacePicker::new(network, scene_name(&path)))
         };
         let thread = job::guard::spawn("roads", make, move |picker| {
-            // Nobody listens if something else was opened meanwhile.
+            // Sending fails if another scene was opened meanwhile.
             let _ = send.send(picker.unwrap_or_else(|panic| Err(panic.into())));
             wake.request_repaint();
         });
@@ -32,7 +32,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Draws the window of the place, and makes the scene once it is chosen.
+    /// Draws the window that chooses the place, and makes the scene once it is chosen.
     pub(crate) fn picking_ui(&mut self, ui: &Ui) {
         match self.files.picking.take() {
             None => {}

@@ -1,4 +1,4 @@
-//! Plans repairs of what the checks found, on a thread of its own, which starts when the first plan is asked for.
+//! Plans repairs of findings on a thread of its own, which starts with the first plan.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -11,16 +11,16 @@ use job::guard::Panicked;
 use job::product::{Ctx, Event, Product, Wake, Worker};
 use scene::Scene;
 
-/// How edits are applied in the end, for example as corrections.
+/// Function that turns edits into the edits to apply, for example into corrections.
 pub(crate) type Meaning = Box<dyn Fn(Vec<Edit>) -> Vec<Edit> + Send>;
 
-/// What is to be planned.
+/// A request for a plan.
 pub(crate) struct Request {
     pub(crate) scene: Arc<Scene>,
     pub(crate) findings: Vec<Finding>,
-    /// The findings are of an earlier state: what of them is still there is looked up first.
+    /// True if the findings are of an earlier state; the checks run first to see which remain.
     pub(crate) again: bool,
-    /// What the repairs leave is repaired, too.
+    /// True if findings that remain after the repairs are repaired too.
     pub(crate) all: bool,
     pub(crate) meaning: Meaning,
 }
@@ -84,27 +84,27 @@ impl Product for Planner {
     }
 }
 
-/// What the window of repairs shows.
+/// Content of the window of repairs.
 #[derive(Clone, Debug)]
 pub enum Shown {
-    /// A plan is made; how far it is, once that is known.
+    /// A plan is being made; with its progress, once that is known.
     Planning(Option<Progress>),
-    /// It is there.
+    /// The finished plan.
     Planned(Arc<Plan>),
 }
 
-/// The plan that is made or shown, and the thread that makes plans.
+/// The plan that is being made or shown, and the thread that makes plans.
 #[derive(Default)]
 pub struct Planning {
     worker: Option<Worker<Request, News>>,
     job: Option<JobId>,
     shown: Option<Shown>,
-    /// What was asked about, to ask again.
+    /// Findings of the last request and its `all` flag, to plan again.
     pub(crate) about: Option<(Vec<Finding>, bool)>,
 }
 
 impl Planning {
-    /// Begins a plan in place of the one before. Errors if the system gives no thread.
+    /// Starts a plan that replaces the one before. Errors if the system gives no thread.
     pub(crate) fn begin(&mut self, request: Request, wake: Wake) -> std::io::Result<()> {
         let worker = match &mut self.worker {
             Some(worker) => worker,
@@ -116,7 +116,7 @@ impl Planning {
         Ok(())
     }
 
-    /// Takes in what has arrived; what went wrong, if anything did.
+    /// Takes in the news of the thread. Returns a failure, if there was one.
     pub(crate) fn update(&mut self) -> Option<Panicked> {
         let news: Vec<_> = self.worker.as_ref()?.updates().try_iter().collect();
         let mut problem = None;
@@ -137,19 +137,19 @@ impl Planning {
         problem
     }
 
-    /// What there is to show; none while nobody asked for repairs.
+    /// Content of the window; `None` if no repairs were requested.
     pub fn shown(&self) -> Option<&Shown> {
         self.shown.as_ref()
     }
 
-    /// Ends the planning: what is planned by then is shown.
+    /// Ends the planning; repairs planned so far are shown.
     pub(crate) fn stop(&self) {
         if let Some(worker) = &self.worker {
             worker.cancel();
         }
     }
 
-    /// Forgets the plan, and whatever is still on its way.
+    /// Forgets the plan, and the one that is being made.
     pub(crate) fn close(&mut self) {
         self.stop();
         (self.job, self.shown, self.about) = (None, None, None);

@@ -1,4 +1,4 @@
-//! Settings and keys, and when they are written.
+//! Settings and keys, and when they are written to the file.
 
 use std::path::PathBuf;
 
@@ -9,24 +9,24 @@ use super::settings::Settings;
 use crate::panes;
 use language::tf;
 
-/// How often changed settings are written, s.
+/// Time between two writes of changed settings, s.
 const EVERY_S: f64 = 2.0;
 
-/// Owner of what is kept between sessions.
+/// Owner of the data that is kept between sessions.
 pub struct Preferences {
-    /// What is kept.
+    /// The settings.
     pub settings: Settings,
-    /// What each chord calls for.
+    /// The chords of all actions.
     pub keymap: Keymap,
     file: Option<PathBuf>,
-    /// What the file holds.
+    /// The settings as in the file.
     kept: Settings,
-    /// When the two were compared, s.
+    /// Time at which the two were last compared, s.
     compared_s: f64,
 }
 
 impl Preferences {
-    /// Settings that were read from a file, which may be none.
+    /// Preferences with settings that were read from a file; `None` if they have no file.
     pub fn new(file: Option<PathBuf>, settings: Settings) -> Self {
         Self {
             keymap: Keymap::new(&settings.key_preset, settings.keys.clone()),
@@ -37,7 +37,7 @@ impl Preferences {
         }
     }
 
-    /// True once after theme, colours or language have changed; they are then written soon.
+    /// True once after theme, colours or language have changed. They are then written soon.
     pub(crate) fn looks_changed(&mut self) -> bool {
         let (now, kept) = (&self.settings, &mut self.kept);
         if now.theme == kept.theme && now.classes == kept.classes && now.language == kept.language {
@@ -49,7 +49,7 @@ impl Preferences {
         true
     }
 
-    /// The next chance to write is taken, whatever was written last.
+    /// Makes the next call of [`Self::write`] due at once, and lets it write even if no value differs.
     pub(crate) fn write_soon(&mut self) {
         self.compared_s = f64::NEG_INFINITY;
     }
@@ -59,7 +59,7 @@ impl Preferences {
         now_s - self.compared_s >= EVERY_S
     }
 
-    /// Writes what has changed. Why that was not possible, once.
+    /// Writes changed settings. Returns the reason if that fails, once.
     pub(crate) fn write(&mut self, ui_scale: f32, dock: &Dock, now_s: f64) -> Option<String> {
         let settings = &mut self.settings;
         settings.ui_scale = ui_scale;
@@ -75,7 +75,7 @@ impl Preferences {
             && let Err(error) = self.settings.save(path)
         {
             complaint = Some(tf!("Settings are not kept: {error}", error = one_line(&error)));
-            self.file = None; // said once
+            self.file = None; // the error is reported once
         }
         self.kept = self.settings.clone();
         complaint

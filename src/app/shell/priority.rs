@@ -1,32 +1,33 @@
-//! Work in the background gives way to the window: threads that generate and sense run at a lower priority than the one
-//! that draws, and than a software rasteriser. Only where `/proc` and `renice` are there; elsewhere nothing changes.
+//! Lower priority for background work: threads that generate and sense run at a lower priority than the thread that
+//! draws, and than a software rasteriser. Works only with `/proc` and `renice`; elsewhere priorities do not change.
 
 use std::process::{Command, Stdio};
 
-/// How much nicer than the window, of 19: a tenth of its share of a processor.
+/// Increase of the nice value, of at most 19: a tenth of the window's share of a processor.
 const NICER: i32 = 10;
 
-/// The system's number of this thread; none where `/proc` does not tell.
+/// The system's id of this thread; `None` without `/proc`.
 fn thread_id() -> Option<String> {
     let link = std::fs::read_link("/proc/thread-self").ok()?;
     Some(link.file_name()?.to_str()?.to_owned())
 }
 
-/// Field 19 of `/proc/<pid>/task/<tid>/stat`, proc(5): from -20, first in line, to 19.
+/// The nice value of this thread, field 19 of `/proc/<pid>/task/<tid>/stat`, proc(5): from -20, the highest priority,
+/// to 19.
 fn nice() -> Option<i32> {
     let stat = std::fs::read_to_string("/proc/thread-self/stat").ok()?;
-    // The name of the thread, in brackets, may hold blanks.
+    // The name of the thread, in brackets, may contain spaces.
     let (_, rest) = stat.rsplit_once(')')?;
     rest.split_whitespace().nth(16)?.parse().ok()
 }
 
-/// Makes this thread give way to others of the program. True if the system did it.
+/// Lowers the priority of this thread. Returns true if the system did it.
 pub fn give_way() -> bool {
     let (Some(id), Some(nice)) = (thread_id(), nice()) else {
         return false;
     };
     let wanted = (nice + NICER).min(19).to_string();
-    // Without `-n` the number is meant as it is by every `renice`.
+    // Without `-n`, every `renice` reads the number the same way.
     let renice = Command::new("renice")
         .args([wanted.as_str(), "-p", &id])
         .stdin(Stdio::null())
@@ -36,11 +37,12 @@ pub fn give_way() -> bool {
     renice.is_ok_and(|status| status.success())
 }
 
-/// What names the number of threads, as everywhere with rayon.
+/// Environment variable for the number of threads, as usual with rayon.
 const ASKED_BY: &str = "RAYON_NUM_THREADS";
 
-/// Starts the threads that share the heavy work; in the window they give way to it. Call it before they are used; later it does
-/// nothing. A number of threads that the environment asks for is kept to what helps; the line says so where it is.
+/// Starts the threads that share the heavy work; in the window they run at a lower priority. To be called before they
+/// are used; later it has no effect. A number of threads from the environment is limited to a useful one. Returns a
+/// line that says so if it was limited.
 pub fn start_workers(give_way_to_window: bool) -> Option<String> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (threads, line) = number(std::env::var(ASKED_BY).ok().as_deref(), cores);
@@ -51,12 +53,12 @@ pub fn start_workers(give_way_to_window: bool) -> Option<String> {
                 give_way();
             }
         });
-    // Somebody was faster: the work is done all the same.
+    // Fails if the pool exists already; the work is done all the same.
     let _ = pool.build_global();
     line
 }
 
-/// How many threads there shall be (0: as many as processors), and what there is to say about it.
+/// The number of threads (0: as many as processors), and a message about it, if any.
 fn number(asked: Option<&str>, cores: usize) -> (usize, Option<String>) {
     let most = (4 * cores).max(64);
     let Some(text) = asked.map(str::trim).filter(|text| !text.is_empty()) else {
@@ -70,7 +72,7 @@ fn number(asked: Option<&str>, cores: usize) -> (usize, Option<String>) {
     match text.parse::<usize>() {
         Ok(0) => (0, None),
         Ok(n) if n <= most => (n, None),
-        // More than fit a number are too many as well.
+        // A number too large to parse is too many as well.
         _ if is_digits => (most, said(&format!("{most} threads work"))),
         _ => (0, said("as many threads work as there are processors")),
     }

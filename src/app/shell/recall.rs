@@ -1,4 +1,4 @@
-//! What made a version is told in files and used again.
+//! The settings that a version was made with: written into files, and used again.
 
 use super::app::SceneloomApp;
 use super::made_with::MadeWith;
@@ -9,14 +9,14 @@ use language::tf;
 use scene::SceneRev;
 
 impl SceneloomApp {
-    /// How a job with these parameters makes its result.
+    /// The settings of a job with these parameters.
     pub(crate) fn made_with(&self, params: &GenParams) -> MadeWith {
         let tuning = &self.generation.tuning;
         let preset = tuning.current(params).and_then(|i| tuning.presets.all.get(i));
         MadeWith::new(params, preset.map(|p| p.name.as_str()))
     }
 
-    /// What is known of how the present state was made, for files that tell; null if nothing is.
+    /// The settings that made the present state, for files that carry them; null if unknown.
     pub(crate) fn parameters(&self) -> serde_json::Value {
         let made = self
             .generation
@@ -33,7 +33,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Sets the knobs to those that something was made with.
+    /// Sets the knobs to those that a result was made with.
     pub(crate) fn take_knobs(&mut self, made: &MadeWith) {
         let params = GenParams {
             named: Named::default(),
@@ -43,7 +43,7 @@ impl SceneloomApp {
         match made.params.region {
             RegionMode::Full => {
                 self.generation.live.full_params = params;
-                // Its quality is that of edits, too.
+                // The quality of a whole generation is also set for edits.
                 if let Some(preset) = self.generation.tuning.presets.index_named(&made.preset) {
                     self.set_quality(preset);
                 }
@@ -51,7 +51,7 @@ impl SceneloomApp {
             RegionMode::Auto => {
                 self.generation.live.params = params;
                 self.preferences.settings.quality.clone_from(&made.preset);
-                // The source's trajectory belongs to its settings.
+                // The source's trajectory was made with the old settings.
                 self.generation.live.source_changed();
             }
         }

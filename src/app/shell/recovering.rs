@@ -1,4 +1,4 @@
-//! What the window does about recovery: keeps copies while work is unsaved, and asks about those of sessions that died.
+//! Recovery in the window: keeps copies of unsaved work, and offers copies from sessions that died.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use language::tf;
 use scene::Scene;
 
 impl SceneloomApp {
-    /// Begins to keep copies of unsaved work; without a folder to write to it says so and goes on.
+    /// Starts to keep copies of unsaved work. Without a writable folder it reports that and goes on.
     pub(crate) fn keep_copies(&mut self, ctx: &egui::Context) {
         let wake = ctx.clone();
         match Recovery::at_start(move || wake.request_repaint()) {
@@ -44,7 +44,7 @@ impl SceneloomApp {
         }
     }
 
-    /// True while the user has not answered about what a dead session left.
+    /// True while an offer of a session that died has no answer.
     pub(crate) fn asks_to_recover(&self) -> bool {
         self.files.recovery.as_ref().is_some_and(|r| !r.offers.is_empty())
     }
@@ -81,8 +81,8 @@ impl SceneloomApp {
         }
     }
 
-    /// After a scene was read, or could not be: one that was recovered is unsaved, and its copy is kept until there is
-    /// another.
+    /// Notes that a scene was read, or could not be. A recovered scene is marked unsaved, and its copy is kept until
+    /// there is another.
     pub(crate) fn note_opened(&mut self, recovers: bool, is_open: bool) {
         let Some(recovery) = &mut self.files.recovery else {
             return;

@@ -1,8 +1,10 @@
-//! Never lose work: while there are unsaved changes the scene is written beside the program's own state every half
-//! minute, on a thread of its own, whole or not at all; what a process that died left behind is offered at the next start.
+//! Copies of unsaved work: while there are unsaved changes, the scene is written into the program's state folder every
+//! half minute, on a thread of its own, whole or not at all. Copies from a process that died are offered at the next
+//! start.
 //!
-//! Each session has a folder `recovery/<time>-<process>` with `scene.loom`, `about.json` and `lock`. The lock is held by the
-//! operating system for as long as the process lives, so whoever can take it knows that the session is over.
+//! Each session has a folder `recovery/<time>-<process>` with `scene.loom`, `about.json` and `lock`. The operating
+//! system holds the lock as long as the process lives, so a process that can take the lock knows that the session is
+//! over.
 
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -20,7 +22,7 @@ use scene::{Scene, SceneRev};
 
 /// Time between two copies, s.
 pub const EVERY_S: f64 = 30.0;
-/// A folder without a scene that is older than this was left by a session that never needed it.
+/// Age from which a folder without a scene is treated as left over and removed.
 const EMPTY_AFTER: Duration = Duration::from_secs(60);
 
 /// Name of the thread.
@@ -30,14 +32,14 @@ const SCENE: &str = "scene.loom";
 const ABOUT: &str = "about.json";
 const LOCK: &str = "lock";
 
-/// What is kept beside the scene.
+/// Metadata kept beside the scene.
 #[derive(Serialize, Deserialize)]
 struct About {
     /// The file that the scene came from or was saved to.
     original: Option<PathBuf>,
     /// Name of the scene.
     name: String,
-    /// When, seconds since 1970.
+    /// Time of the copy, seconds since 1970.
     saved_unix_s: u64,
 }
 
@@ -46,12 +48,12 @@ enum Job {
     Remove,
 }
 
-/// Copies of one session.
+/// The copies of one session.
 pub struct Recovery {
     folder: PathBuf,
-    lock: Option<File>, // None only while dropping
+    lock: Option<File>, // `None` only while dropping
     every_s: f64,
-    jobs: Option<Sender<Handed<Job>>>, // None only while dropping
+    jobs: Option<Sender<Handed<Job>>>, // `None` only while dropping
     done: Receiver<Result<(), String>>,
     thread: Option<JoinHandle<()>>,
     asked: Option<SceneRev>,
@@ -61,20 +63,20 @@ pub struct Recovery {
     failed: bool,
     unsaved: bool,
     forgotten: bool,
-    /// What sessions that died left behind and the user has not answered about, newest first.
+    /// Copies from sessions that died, which the user has not answered about, newest first.
     pub offers: Vec<Stale>,
     pub(crate) opening: Option<Stale>,
     pub(crate) replaced: Vec<Stale>,
 }
 
-/// Where copies are kept: `$SCENELOOM_STATE_DIR/recovery`, else in the user's state folder.
+/// Folder of the copies: `$SCENELOOM_STATE_DIR/recovery`, else in the user's state folder.
 pub fn root() -> Option<PathBuf> {
     super::folders::state().map(|folder| folder.join("recovery"))
 }
 
 impl Recovery {
-    /// A session of this process in the user's folder, with the offers of those that died. Errors if the folder cannot
-    /// be written. `SCENELOOM_AUTOSAVE_S` replaces the half minute.
+    /// Starts the session of this process in the user's folder, with the offers of sessions that died. Errors if the
+    /// folder cannot be written. `SCENELOOM_AUTOSAVE_S` replaces the half minute.
     pub fn at_start(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let root =
             root().ok_or_else(|| std::io::Error::other("the system names no folder for program state"))?;
@@ -85,7 +87,7 @@ impl Recovery {
         Self::start(&root, every_s, wake)
     }
 
-    /// The same in another folder, with another time between copies. `wake` is called after each copy.
+    /// Starts a session in a given folder, with a given time between copies, s. `wake` is called after each copy.
     pub fn start(root: &Path, every_s: f64, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let offers = stale(root);
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
@@ -137,9 +139,10 @@ impl Recovery {
         })
     }
 
-    /// Has a copy written if there are unsaved changes that are in none yet and it is time, and removes it once there
-    /// are none. Returns after how many seconds to call it again if nothing else happens, and why a copy could not be
-    /// written (told once until one can). `with_kept` adds what the scene's file keeps beside it. `now_s` never runs backward.
+    /// Writes a copy if there are unsaved changes that no copy has and it is time; removes the copy if there are no
+    /// unsaved changes. Returns the seconds after which to call it again if no other event comes, and the reason why a
+    /// copy could not be written (reported once, until writing works again). `with_kept` adds the data that the scene's
+    /// file keeps beside it. `now_s` never runs backward.
     pub fn tick(
         &mut self,
         document: &Document,
@@ -160,7 +163,7 @@ impl Recovery {
                 self.on_disk = false;
                 self.send(Job::Remove);
             }
-            // What was recovered has been saved by now.
+            // The recovered scene has been saved by now.
             self.replaced.drain(..).for_each(Stale::discard);
             return (None, problem);
         }
@@ -179,7 +182,7 @@ impl Recovery {
         (None, problem)
     }
 
-    /// Waits until the copy on its way is written.
+    /// Waits until the running copy is written.
     pub fn wait(&mut self) {
         while self.writing {
             match self.done.recv() {
@@ -189,7 +192,7 @@ impl Recovery {
         }
     }
 
-    /// The user does not want the unsaved changes: nothing is left at the end.
+    /// Notes that the user discards the unsaved changes: no copy is left at the end.
     pub fn forget(&mut self) {
         self.forgotten = true;
     }
@@ -201,13 +204,13 @@ impl Recovery {
                 self.failed = false;
                 if self.unsaved {
                     self.on_disk = true;
-                    // The new copy holds what was recovered.
+                    // The new copy contains the recovered scene.
                     self.replaced.drain(..).for_each(Stale::discard);
                 }
                 None
             }
             Err(problem) => {
-                self.asked = None; // again when it is time
+                self.asked = None; // to be written again when it is time
                 (!std::mem::replace(&mut self.failed, true)).then_some(problem)
             }
         }
@@ -215,24 +218,24 @@ impl Recovery {
 
     fn send(&self, job: Job) {
         if let Some(jobs) = &self.jobs {
-            // The thread ends only when this sender is gone.
+            // The thread ends only when this sender is dropped.
             let _ = jobs.send(Handed::new(NAME, job));
         }
     }
 }
 
 impl Drop for Recovery {
-    /// Leaves the copy where there are changes that the user has neither saved nor given up.
+    /// Keeps the copy if there are changes that the user has neither saved nor discarded.
     fn drop(&mut self) {
         self.jobs = None;
         if let Some(thread) = self.thread.take() {
-            // An error would be a panic in the thread; there is nobody left to tell.
+            // An error would be a panic in the thread, and the session is ending.
             let _ = thread.join();
         }
         self.lock = None;
         if self.forgotten || !self.unsaved {
             self.replaced.drain(..).for_each(Stale::discard);
-            // What cannot be removed is tidied up at a later start.
+            // A folder that cannot be removed is removed at a later start.
             let _ = fs::remove_dir_all(&self.folder);
         }
     }
@@ -251,12 +254,12 @@ fn write(folder: &Path, scene: &Scene, original: Option<PathBuf>) -> anyhow::Res
 }
 
 fn remove_copy(folder: &Path) {
-    // What cannot be removed is offered at the next start: too much is better than too little.
+    // A copy that cannot be removed is offered at the next start, which is better than a lost one.
     let _ = fs::remove_file(folder.join(SCENE));
     let _ = fs::remove_file(folder.join(ABOUT));
 }
 
-/// What a session that died left behind. While this value lives no other process offers it.
+/// A copy from a session that died. While this value lives, no other process offers it.
 #[derive(Debug)]
 pub struct Stale {
     folder: PathBuf,
@@ -265,28 +268,28 @@ pub struct Stale {
     pub original: Option<PathBuf>,
     /// Name of the scene.
     pub name: String,
-    /// When the copy was written.
+    /// Time at which the copy was written.
     pub saved: SystemTime,
 }
 
 impl Stale {
-    /// The copy.
+    /// Path of the copy.
     pub fn file(&self) -> PathBuf {
         self.folder.join(SCENE)
     }
 
-    /// Removes it for good.
+    /// Removes the copy permanently.
     pub fn discard(mut self) {
         self.lock = None;
-        // What cannot be removed is offered again.
+        // A copy that cannot be removed is offered again.
         let _ = fs::remove_dir_all(&self.folder);
     }
 }
 
-/// What dead sessions left in a folder, newest first. Empty leftovers are removed.
+/// Copies from dead sessions in a folder, newest first. Leftovers without a scene are removed.
 pub fn stale(root: &Path) -> Vec<Stale> {
     let Ok(entries) = fs::read_dir(root) else {
-        return Vec::new(); // the first session ever
+        return Vec::new(); // the first session has no folder
     };
     let mut found: Vec<Stale> = entries
         .flatten()
@@ -306,8 +309,8 @@ fn dead_session(folder: PathBuf) -> Option<Stale> {
         .ok()?;
     match lock.try_lock() {
         Ok(()) => {}
-        Err(TryLockError::WouldBlock) => return None, // its process lives
-        Err(TryLockError::Error(_)) => return None,   // nothing is known of it
+        Err(TryLockError::WouldBlock) => return None, // its process is alive
+        Err(TryLockError::Error(_)) => return None,   // the state of the session is unknown
     }
     let scene = fs::metadata(folder.join(SCENE)).and_then(|m| m.modified());
     let Ok(modified) = scene else {
@@ -335,7 +338,7 @@ fn dead_session(folder: PathBuf) -> Option<Stale> {
     })
 }
 
-/// `12 minutes ago`
+/// A duration as text, for example `12 minutes ago`.
 pub fn ago(since: Duration) -> String {
     match since.as_secs() {
         1 => t("1 second ago").into(),
@@ -410,7 +413,7 @@ mod tests {
         first.wait();
         let mut second = start();
         assert_eq!(second.offers.len(), 0, "the first one lives");
-        drop(first); // as a crash of the window system does it: neither saved nor given up
+        drop(first); // like after a crash of the window system: neither saved nor discarded
         let mut third = start();
         assert_eq!(third.offers.len(), 1);
         assert_eq!(start().offers.len(), 0, "offered to one process only");
@@ -420,11 +423,11 @@ mod tests {
             (Some(Path::new("/tmp/a.loom")), &*document.scene().name)
         );
         assert_eq!(prompt_in(&offer.file()), "night");
-        drop(offer); // later
+        drop(offer); // answer later
         let offer = start().offers.remove(0);
         offer.discard();
         assert_eq!(start().offers.len(), 0);
-        // Given up: nothing is left.
+        // Discarded changes leave no copy.
         second.tick(&document, None, Scene::clone, 0.0);
         second.wait();
         second.forget();
@@ -442,7 +445,7 @@ mod tests {
         for i in 0..3 {
             say(&mut document, &i.to_string());
             recovery.tick(&document, None, Scene::clone, f64::from(i) * 10.0);
-            // Not `wait`, which would swallow the problem.
+            // Not `wait`, which would drop the problem.
             let done = recovery.done.recv().expect("an answer");
             told.extend(recovery.note(done));
         }

@@ -1,4 +1,4 @@
-//! What the window does about the findings of the checks: asks for them, plans and does repairs, goes there.
+//! Findings in the window: requests checks, plans and applies repairs, and goes to places of findings.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use language::tf;
 use scene::{BoxId, BoxLabel, Class, SceneBox};
 
 impl SceneloomApp {
-    /// Asks for a check of the settled scene when it is time.
+    /// Requests a check of the settled scene when it is time.
     pub(crate) fn update_checks(&mut self, ctx: &egui::Context) {
         let now_s = self.now_s();
         let scene = self.document.settled_scene();
@@ -71,7 +71,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Does what the window lists, if it lists what is planned for the present state.
+    /// Applies the listed repairs, if they were planned for the present state.
     fn do_repairs(&mut self) {
         let now = self.document.settled_scene().rev;
         let Some(Shown::Planned(plan)) = self.threads.planning.shown() else {
@@ -88,7 +88,7 @@ impl SceneloomApp {
         self.note_correction();
     }
 
-    /// Brings a place into the middle of both large views.
+    /// Centres a place in both large views.
     pub(crate) fn frame_at(&mut self, p_in_ego: DVec3) {
         let around = SceneBox {
             id: BoxId(0),

@@ -12,8 +12,8 @@ use job::GenParams;
 use scene::Scene;
 use widgets::software_ui;
 
-/// Opens the editor on a scene, with the bundled networks. `path` is the file it came from; only a
-/// `.loom` is saved back; measurements go to `trace`; assistants come in by the `door`, if the user lets them. Errors as [`run_window_with`].
+/// Opens the editor on a scene, with the bundled networks. `path` is the file it came from; only a `.loom` is saved
+/// back. Measurements go to `trace`. Assistants use the `door`, if the user allows them. Errors as [`run_window_with`].
 pub fn run_window(
     scene: Scene,
     path: Option<PathBuf>,
@@ -46,7 +46,7 @@ pub fn run_window(
     run_window_with(config, trace, door)
 }
 
-/// A random world, another one each time.
+/// A world of a random template and seed.
 fn new_scene() -> anyhow::Result<Scene> {
     use world::template::TEMPLATES;
     let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
@@ -58,9 +58,9 @@ fn new_scene() -> anyhow::Result<Scene> {
     Ok(scene)
 }
 
-/// Opens the window and returns when it is closed. Errors in one line if there is no display or no
-/// graphics adapter (a software one will do), if the file that measurements go to cannot be written, or if the window is taken
-/// away from outside.
+/// Opens the window and returns when it is closed. Errors in one line if there is no display or no graphics adapter (a
+/// software one is enough), if the file for measurements cannot be written, or if the window is taken away from
+/// outside.
 pub fn run_window_with(
     config: AppConfig,
     trace: Option<PathBuf>,
@@ -97,7 +97,7 @@ pub fn run_window_with(
     gone::guarded(|| eframe::run_native("sceneloom", options, Box::new(start)))
 }
 
-/// Any adapter, a software one too, with limits that all of them have.
+/// Options for any adapter, a software one too, with limits that all of them support.
 fn wgpu_options() -> egui_wgpu::WgpuConfiguration {
     let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
     setup.power_preference =

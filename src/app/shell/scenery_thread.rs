@@ -1,4 +1,4 @@
-//! Scenery that the network draws: on a thread of its own, since it takes a second and the window goes on meanwhile.
+//! Scenery by the network, on a thread of its own because it takes about a second.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -14,14 +14,14 @@ use job::GenError;
 use language::{t, tf};
 use scene::{Scene, SceneRev};
 
-/// How soon the window looks again whether it is done.
+/// Time after which the window checks again whether the scenery is done.
 const LOOK_AGAIN: Duration = Duration::from_millis(40);
 
-/// Scenery on the way.
+/// Scenery that is being drawn.
 pub(crate) struct Drawing {
     wish: SceneryWish,
     before: Arc<Scene>,
-    /// The result waits for the user's decision.
+    /// True if the result waits for the user's decision.
     staged: bool,
     edits: Receiver<Result<Vec<Edit>, GenError>>,
 }
@@ -34,7 +34,7 @@ impl Drawing {
 }
 
 impl SceneloomApp {
-    /// Draws scenery on the scene as it is; `staged`: the result waits beside the old until the user decides.
+    /// Draws scenery for the present scene. With `staged` the result waits for the user's decision.
     pub(crate) fn put_scenery(&mut self, wish: SceneryWish, staged: bool) {
         let before = self.document.settled_scene().clone();
         if wish.by != Drawer::Network {
@@ -45,7 +45,7 @@ impl SceneloomApp {
         let (wanted, scene) = (wish.clone(), before.clone());
         let draw = move || wanted.edits(&scene);
         let thread = job::guard::spawn("scenery", draw, move |edits| {
-            // Nobody listens if other scenery was asked for meanwhile.
+            // Sending fails if other scenery was requested meanwhile.
             let _ = send.send(edits.unwrap_or_else(|panic| Err(GenError::failed(panic))));
         });
         match thread {
@@ -64,7 +64,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Takes scenery that is done, unless the scene has become another.
+    /// Takes finished scenery, unless the scene has changed meanwhile.
     pub(crate) fn update_drawing(&mut self, ctx: &egui::Context) {
         let Some(drawing) = &self.generation.drawing else {
             return;

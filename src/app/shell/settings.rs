@@ -1,4 +1,4 @@
-//! What is kept between sessions: theme, keys, panes, recent files. Never part of a scene.
+//! Settings that are kept between sessions: theme, keys, panes, recent files. They are never part of a scene.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,23 +17,23 @@ use editor::tools::saved::SavedBrush;
 use scene::classes::Palette;
 use widgets::theme::Theme;
 
-/// Files that are remembered.
+/// Most recent files that are kept.
 const RECENT: usize = 12;
 
-/// What is kept. Keys that a newer version wrote are passed over.
+/// The settings. Unknown keys, from a newer version, are ignored.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// Dark or light.
+    /// Theme: dark or light.
     #[serde(rename = "look")]
     pub theme: Theme,
     /// Language of the texts; empty means English.
     pub language: String,
     /// Colours of the classes.
     pub classes: Palette,
-    /// Size of everything, 1 = normal.
+    /// Scale of the interface, 1 = normal.
     pub ui_scale: f32,
-    /// Show the start screen at the start.
+    /// True: shows the start screen at the start.
     pub start_screen: bool,
     /// Name of the preset of keys.
     pub key_preset: String,
@@ -43,27 +43,27 @@ pub struct Settings {
     pub workspace: Workspace,
     /// Name of the preset of the quality slider.
     pub quality: String,
-    /// Where the panes stand.
+    /// The arrangement of the panes.
     pub dock: Option<Tree<PaneId>>,
-    /// Panes that there were when it was kept; what is new since then is added.
+    /// Panes that existed when the dock was saved; newer ones are added.
     pub panes_known: Vec<PaneId>,
-    /// Views that were kept, by number.
+    /// Kept viewpoints, by number.
     pub bookmarks: BTreeMap<u8, Bookmark>,
-    /// Brushes that the user keeps.
+    /// Brushes saved by the user.
     pub brushes: Vec<SavedBrush>,
-    /// Words of the prompt that the user keeps, the newest first.
+    /// Prompts that the user keeps, the newest first.
     pub kept_words: Vec<String>,
     /// How learned camera pictures are painted.
     pub painting: PaintWish,
-    /// Memory that the history may take, MB.
+    /// Limit of the history's memory, MB.
     pub history_mb: u32,
-    /// Let assistants on this machine drive the editor, if they show the token.
+    /// True: assistants on this machine may drive the editor, if they present the token.
     pub assistants: bool,
     /// Files opened or saved, the newest first.
     pub recent: Vec<PathBuf>,
 }
 
-/// The preset that the window begins with: the fastest one whose inverted noise is like a draw.
+/// The preset that the window begins with: the fastest one whose inverted noise resembles a random draw.
 pub const QUALITY: &str = "careful";
 
 impl Default for Settings {
@@ -92,14 +92,14 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Where they are kept: `settings.json` in `SCENELOOM_CONFIG_DIR`, else in the user's folder for settings; none if
-    /// there is no such folder.
+    /// File of the settings: `settings.json` in `SCENELOOM_CONFIG_DIR`, else in the user's folder for settings; `None`
+    /// without such a folder.
     pub fn file() -> Option<PathBuf> {
         Some(super::folders::settings()?.join("settings.json"))
     }
 
-    /// Reads them; those of a new user if there is no file. Errors in one line if the file cannot be read: it is then
-    /// left as it is, and the standard settings are used.
+    /// Reads settings; default settings if there is no file. Errors in one line if the file cannot be read; it is then
+    /// left as it is, and the default settings are used.
     pub fn load(path: &Path) -> anyhow::Result<Self> {
         let text = match formats::input::read_text(path, formats::input::LARGEST_TEXT) {
             Ok(text) => text,
@@ -120,7 +120,7 @@ impl Settings {
         Ok(read)
     }
 
-    /// Writes them, whole or not at all. Errors name the file.
+    /// Writes the settings, whole or not at all. Errors name the file.
     pub fn save(&self, path: &Path) -> anyhow::Result<()> {
         let folder = path.parent().unwrap_or(Path::new("."));
         let write = || -> anyhow::Result<()> {
@@ -133,12 +133,12 @@ impl Settings {
     /// Limits of [`Self::history_mb`].
     pub const HISTORY_MB: std::ops::RangeInclusive<u32> = 16..=8192;
 
-    /// Memory that the history may take, bytes.
+    /// Limit of the history's memory, bytes.
     pub fn history_bytes(&self) -> usize {
         (self.history_mb as usize) << 20
     }
 
-    /// Puts a file in front of those remembered.
+    /// Puts a file at the front of the recent files.
     pub fn remember(&mut self, path: &Path) {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         self.recent.retain(|p| *p != path);

@@ -1,5 +1,5 @@
-//! A result that the user asked for waits for a verdict: accept, decline, or accept a part. Meanwhile it is shown beside the
-//! state before.
+//! Staged results: a result that the user requested waits for a verdict: accept, decline, or accept a part. Meanwhile
+//! it is shown beside the state before.
 
 use std::sync::Arc;
 
@@ -23,20 +23,20 @@ use scene::raster::box_cells;
 use scene::{Background, Class, Extent, Scene, SceneRev, Thing};
 use widgets::theme;
 
-/// Classes that the menu of parts lists.
+/// Most classes in the menu of parts.
 const MOST_CLASSES: usize = 8;
 
-/// How a result was made.
+/// How a result can be made again.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Again {
-    /// By the networks.
+    /// By the networks, with these parameters.
     Generate(Box<GenParams>),
-    /// As scenery.
+    /// By drawing scenery.
     Scenery(Box<SceneryWish>),
 }
 
 impl Again {
-    /// The seed.
+    /// The seed of the result.
     pub fn seed(&self) -> u64 {
         match self {
             Self::Generate(params) => params.seed,
@@ -45,28 +45,28 @@ impl Again {
     }
 }
 
-/// A result that waits for a verdict. A user who edits on without one has accepted it.
+/// A result that waits for a verdict. Further edits without a verdict accept it.
 pub struct Staged {
     /// The state with the result.
     pub rev: SceneRev,
     /// The state before, one undo step back.
     pub before: Arc<Scene>,
-    /// How to make it again with another seed; none if that would give the same.
+    /// How to make it again with another seed; `None` if another seed gives the same result.
     pub again: Option<Again>,
     changed: Vec<(Class, usize)>,
-    /// Of a forecast: how much longer the scene lasts, s, and how many objects go on.
+    /// For a forecast: the added time, s, and the number of objects that go on.
     longer: Option<(f64, usize)>,
-    compare: CompareMode, // the user's, before both states were shown
+    compare: CompareMode, // the user's mode, before both states were shown
 }
 
-/// The bar of the result that waits.
+/// Id of the bar of the staged result.
 pub(super) fn bar_id() -> egui::Id {
     egui::Id::unique("staged")
 }
 
 impl SceneloomApp {
-    /// Makes the present state, one step after `before`, a result that waits. If another seed can give another result, both
-    /// states are shown side by side.
+    /// Stages the present state, which is one step after `before`. If another seed can give another result, both states
+    /// are compared with a wipe.
     pub(crate) fn stage(&mut self, before: Arc<Scene>, again: Option<Again>) {
         self.end_staging();
         let after = self.document.settled_scene();
@@ -93,7 +93,7 @@ impl SceneloomApp {
         self.generation.staged = Some(staged);
     }
 
-    /// Makes the present state, a forecast of `before`, a result that waits.
+    /// Stages the present state, which is a forecast of `before`.
     pub(crate) fn stage_forecast(&mut self, before: Arc<Scene>, objects: usize) {
         self.end_staging();
         let after = self.document.settled_scene();
@@ -108,13 +108,13 @@ impl SceneloomApp {
         });
     }
 
-    /// The result that waits, if the document still shows it.
+    /// The staged result, if the document still shows it.
     pub fn staged(&self) -> Option<&Staged> {
         let rev = self.document.settled_scene().content();
         self.generation.staged.as_ref().filter(|s| s.rev == rev)
     }
 
-    /// Forgets the result if another state is shown now.
+    /// Forgets the staged result if another state is shown now.
     pub(crate) fn tidy_staging(&mut self) {
         if self.generation.staged.is_some() && self.staged().is_none() {
             self.end_staging();
@@ -123,7 +123,7 @@ impl SceneloomApp {
 
     fn end_staging(&mut self) -> Option<Staged> {
         let staged = self.generation.staged.take()?;
-        // If the user chose another way to compare meanwhile, that stays.
+        // A compare mode that the user chose meanwhile stays.
         if staged.again.is_some() && self.state.compare.mode == CompareMode::Wipe {
             self.state.compare.mode = staged.compare;
         }
@@ -131,7 +131,7 @@ impl SceneloomApp {
         Some(staged)
     }
 
-    /// Carries out what the user decided; nothing if no result waits.
+    /// Carries out the verdict of the user. Has no effect without a staged result.
     pub(crate) fn decide(&mut self, verdict: Verdict) {
         if self.staged().is_none() || self.document.is_dragging() {
             return;
@@ -154,7 +154,7 @@ impl SceneloomApp {
         match again {
             Again::Generate(mut params) => {
                 params.seed = params.seed.wrapping_add(1);
-                // The field shows what is generated.
+                // The field shows the seed in use.
                 self.state.seed.value = self.state.seed.value.map(|_| params.seed);
                 if self.draws_scenery_first() && params.region == RegionMode::Full {
                     return self.generate_on_scenery(*params);
@@ -170,13 +170,13 @@ impl SceneloomApp {
         }
     }
 
-    /// True for a scene that leaves open what kind of place it is. There scenery is drawn first, because what the networks
-    /// invent alone is ragged.
+    /// True for a scene that does not set its kind of place. Its scenery is drawn first, because scenery from the
+    /// networks alone is ragged.
     pub(crate) fn draws_scenery_first(&self) -> bool {
         leaves_place_open(self.document.settled_scene()) && !self.state.tools.things.locked
     }
 
-    /// Draws scenery by the seed of `params` and generates on it, as one undo step.
+    /// Draws scenery with the seed of `params` and generates on it, as one undo step.
     pub(crate) fn generate_on_scenery(&mut self, params: GenParams) {
         let before = self.document.settled_scene().clone();
         let edits = match scenery_first(&before, &params) {
@@ -201,7 +201,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Regenerates what stands beside the roads, in the marked region or everywhere.
+    /// Regenerates the scenery beside the roads, in the marked region or everywhere.
     pub(crate) fn draw_scenery(&mut self) {
         if self.document.is_dragging() {
             return;
@@ -209,12 +209,12 @@ impl SceneloomApp {
         self.state.tools.scenery_draws += 1;
         let mut seed = self.document.settled_scene().seed;
         seed = seed.wrapping_add(self.state.tools.scenery_draws);
-        // A result that waits is replaced.
+        // A staged result is replaced.
         if let Some(Again::Scenery(waits)) = self.staged().and_then(|s| s.again.clone()) {
             seed = waits.seed.wrapping_add(1);
             self.step_back();
         }
-        // The sliders' typical values are the usual numbers.
+        // The sliders' typical values stand for a factor of 1.
         let times = |named: Option<f32>, typical: f64| named.map_or(1.0, |v| f64::from(v) / typical);
         let wish = SceneryWish {
             seed,
@@ -226,7 +226,7 @@ impl SceneloomApp {
         self.put_scenery(wish, true);
     }
 
-    /// Shows the state before again, and returns it.
+    /// Goes back to the state before the staged result, and returns it.
     fn step_back(&mut self) -> Option<Arc<Scene>> {
         let staged = self.end_staging()?;
         self.generation.worker.cancel();
@@ -237,7 +237,7 @@ impl SceneloomApp {
 
     fn take_part(&mut self, taken: Taken) {
         if let Some(Again::Scenery(wish)) = self.staged().and_then(|s| s.again.clone()) {
-            // A thing is taken whole or not at all.
+            // A thing is accepted whole or not at all.
             let region = self.state.tools.region.clone();
             if self.step_back().is_some() {
                 self.put_scenery(SceneryWish { region, ..*wish }, false);
@@ -273,7 +273,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Draws the bar of the result that waits, over the lower edge of `over`.
+    /// Draws the bar of the staged result, over the lower edge of `over`.
     pub(crate) fn staged_ui(&self, ui: &Ui, over: Rect, commands: &mut Vec<Command>) {
         let Some(staged) = self.staged() else { return };
         let area = egui::Area::new(bar_id())
@@ -293,7 +293,7 @@ impl SceneloomApp {
 }
 
 impl SceneloomApp {
-    /// The first of the errors that the checks found after a time, and how many there are.
+    /// Draws the first error that the checks found from a time on, and the number of further ones.
     fn faults_after(&self, ui: &mut Ui, from_s: f64) {
         let Some(findings) = self.threads.checking.findings() else {
             return;
@@ -392,7 +392,7 @@ fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Comma
     }
 }
 
-/// The things of `before`, and those that came and lie whole in the part.
+/// The things of `before`, and the new things that lie completely in the part.
 fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
     let taken = |thing: &&Thing| match part {
         Part::Class(class) => thing.form.class() == *class,
@@ -410,7 +410,7 @@ fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
     before.background.iter().chain(came).cloned().collect()
 }
 
-/// Where chosen boxes and things stand, and a voxel around them.
+/// Columns of chosen boxes and things, with a margin of one voxel.
 fn columns_chosen(hand: &Hand, scene: &Scene) -> Vec<bool> {
     let frame = scene.frame();
     let extent = frame.extent();

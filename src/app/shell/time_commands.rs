@@ -1,4 +1,4 @@
-//! Carries out commands about time, and plays.
+//! Carries out commands about time, and plays clips.
 
 use egui::Context;
 
@@ -12,7 +12,7 @@ use editor::{forecast, keyframes, traffic_drives};
 use language::{t, tf};
 use scene::{BoxId, Pose, Scene, Scope};
 
-/// Where the view goes along: with that object while it is there, else with the ego vehicle.
+/// The pose that the view follows: of the object while it exists, or of the ego vehicle for `None`.
 fn followed_pose(scene: &Scene, id: Option<BoxId>) -> Option<Pose> {
     let Some(id) = id else {
         return Some(scene.frame().world_from_ego);
@@ -24,11 +24,11 @@ fn followed_pose(scene: &Scene, id: Option<BoxId>) -> Option<Pose> {
     })
 }
 
-/// A key that comes up sooner than this was tapped, s.
+/// Longest press that counts as a tap, s.
 const TAP_S: f64 = 0.3;
 
 impl SceneloomApp {
-    /// Carries out one of them.
+    /// Carries out one time command.
     pub(crate) fn time_command(&mut self, command: TimeCommand) {
         let scene = self.document.scene().clone();
         let (clip, shown_s) = (scene.clip(), scene.time_s());
@@ -44,7 +44,7 @@ impl SceneloomApp {
             }
             TimeCommand::Play => {
                 let from_s = playback.toggle(shown_s, clip.length_s);
-                // Where it pauses is a frame, as where one steps to.
+                // Pausing stops at a frame, as stepping does.
                 let frame_s = || clip.time_of(clip.frame_at(shown_s));
                 if playback.playing { from_s } else { Some(frame_s()) }
             }
@@ -130,7 +130,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Applies edits as one step, or says why there are none.
+    /// Applies edits as one undo step, or shows why there are none.
     fn time_edit(&mut self, label: &'static str, edits: Result<Vec<Edit>, &'static str>) {
         match edits {
             Ok(edits) => self.apply(label, &edits),
@@ -138,7 +138,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Lets the scene go on, as a result that waits for a verdict.
+    /// Makes a forecast of the scene, which is staged for a verdict.
     fn forecast(&mut self, seconds: f64) {
         let before = self.document.settled_scene().clone();
         let found = match forecast(&before, seconds) {
@@ -176,10 +176,10 @@ impl SceneloomApp {
         }
     }
 
-    /// Shows the next moment of a clip that plays.
+    /// Shows the next moment of a playing clip.
     pub(crate) fn play(&mut self, ctx: &Context) {
         self.tap_of_space(ctx);
-        // A scene that has become a clip shows its timeline.
+        // When a scene becomes a clip, its timeline opens.
         let lasts = self.document.scene().clip().length_s > 0.0;
         if lasts && !self.state.playback.known {
             self.views.dock.open(PaneId::TIMELINE);
@@ -199,7 +199,7 @@ impl SceneloomApp {
         }
     }
 
-    /// The blank plays if it is tapped: held, it lets the pointer move the views.
+    /// A tap of the space bar plays or pauses; held, the bar lets the pointer move the views.
     fn tap_of_space(&mut self, ctx: &Context) {
         let typing = ctx.text_edit_focused();
         let id = egui::Id::unique("space pressed");
@@ -216,12 +216,12 @@ impl SceneloomApp {
             )
         });
         let since: Option<f64> = ctx.data(|d| d.get_temp(id));
-        // A quick tap goes down and comes up between two frames.
+        // A quick tap goes down and up between two frames.
         let since_s = since.or(pressed.then_some(now_s));
         if released && !moved && !typing && since_s.is_some_and(|since| now_s - since < TAP_S) {
             self.time_command(TimeCommand::Play);
         }
-        // A button that goes down meanwhile means that it was held for the views.
+        // A mouse button pressed meanwhile means that the bar was held for the views.
         let since = match (pressed, moved || released) {
             (_, true) => None,
             (true, false) => Some(now_s),
@@ -233,7 +233,7 @@ impl SceneloomApp {
         });
     }
 
-    /// The label of edits, which says for which moments a moving object changes where that is not all of them.
+    /// The label of edits; it names the moments for which a moving object changes, unless these are all.
     pub(crate) fn meant_label(&self, label: Label, edits: &[Edit]) -> Label {
         let scope = self.state.playback.scope;
         let clip = self.document.scene().clip();
@@ -252,12 +252,12 @@ impl SceneloomApp {
         }
     }
 
-    /// The edits as they are meant: of one moment, or from here on, where the timeline says so.
+    /// The edits with the scope of the timeline: for the whole track, one moment, or from here on.
     pub(crate) fn meant(&self, edits: Vec<Edit>) -> Vec<Edit> {
         (self.meaning())(edits)
     }
 
-    /// The same as a value that another thread may have: of the choices of this moment.
+    /// The function of [`Self::meant`] with the present choices, as a value that another thread can use.
     pub(crate) fn meaning(&self) -> impl Fn(Vec<Edit>) -> Vec<Edit> + Send + use<> {
         let (scope, correcting) = (self.state.playback.scope, self.state.correcting);
         let lasts = self.document.scene().clip().length_s != 0.0;
@@ -265,7 +265,7 @@ impl SceneloomApp {
     }
 }
 
-/// Edits of boxes for the moments that are chosen.
+/// Edits of boxes, limited to the chosen moments.
 fn of_moments(edits: Vec<Edit>, scope: Scope, lasts: bool) -> Vec<Edit> {
     if scope == Scope::WholeTrack || !lasts {
         return edits;

@@ -1,4 +1,4 @@
-//! News that come and go: short cards over the views, and the log that keeps them.
+//! Messages: short cards over the views, and the log that keeps them.
 
 use egui::{Align2, Color32, Frame, Id, Margin, Order, Rect, Stroke, Ui, vec2};
 
@@ -11,7 +11,7 @@ use widgets::theme;
 pub enum Level {
     /// For information.
     Info,
-    /// Something failed.
+    /// For a failure.
     Error,
 }
 
@@ -30,10 +30,10 @@ pub struct Toasts {
     read: usize,
 }
 
-/// How long a card stays, s.
+/// Time that a card stays, s.
 const INFO_S: f64 = 4.0;
 const ERROR_S: f64 = 12.0;
-/// Messages kept.
+/// Most messages that are kept.
 const KEPT: usize = 500;
 
 impl Toasts {
@@ -65,7 +65,7 @@ impl Toasts {
         }
     }
 
-    /// Errors in the log that nobody has seen.
+    /// Number of unread errors in the log.
     pub fn unread(&self) -> usize {
         self.entries[self.read..]
             .iter()

@@ -17,43 +17,43 @@ use language::{t, tf};
 use widgets::icons::{self, Icon};
 use widgets::theme;
 
-/// What the bar shows of the document and the worker.
+/// State of the document and the worker for the bar.
 pub struct ToolbarInput<'a> {
     /// Name of the scene.
     pub name: &'a str,
-    /// There are changes that are in no file.
+    /// True if there are changes that are in no file.
     pub dirty: bool,
-    /// Files opened or saved lately, the last one first.
+    /// Files opened or saved recently, the newest first.
     pub recent: &'a [PathBuf],
-    /// What undo would take back.
+    /// Label of the step that undo reverts.
     pub undo: Option<&'a str>,
-    /// What redo would bring back.
+    /// Label of the step that redo restores.
     pub redo: Option<&'a str>,
-    /// Generation after each edit is on.
+    /// True if generation after each edit is on.
     pub live: bool,
-    /// A job is on its way.
+    /// True if a job is running.
     pub busy: bool,
-    /// Cells are marked to be inpainted.
+    /// True if cells are marked to be inpainted.
     pub marked: bool,
-    /// An edit waits for its generation.
+    /// True if an edit waits for its generation.
     pub waiting: bool,
-    /// Numbers of views that are kept.
+    /// Numbers of the kept views.
     pub bookmarks: Vec<u8>,
-    /// Voxels that the user painted.
+    /// True if there are voxels painted by the user.
     pub has_paint: bool,
     /// Panes on screen.
     pub shown: Vec<PaneId>,
-    /// Cameras of the rig.
+    /// Number of cameras of the rig.
     pub cameras: usize,
     /// The workspace chosen last.
     pub workspace: Workspace,
-    /// Presets of the quality slider, and what they are predicted to cost.
+    /// Presets of the quality slider, each with its predicted cost.
     pub presets: Vec<(String, String)>,
-    /// The one in use.
+    /// Index of the preset in use.
     pub preset: Option<usize>,
 }
 
-/// Draws the bar. What it has no room for is folded into menus.
+/// Draws the bar. Parts that do not fit are folded into menus.
 pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: &mut Vec<Command>) {
     let room = ui.max_rect().width();
     let mut needs = Needs::load(ui);
@@ -108,16 +108,16 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: 
     });
 }
 
-/// How much of the bar is folded into menus; each step folds what those before it do, too.
+/// Degree of folding of the bar. Each step also folds the parts of the steps before it.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 enum Fold {
-    /// Nothing is.
+    /// No part is folded.
     Nothing,
     /// The tools for things share one button.
     Things,
     /// The workspaces are a menu.
     Workspaces,
-    /// All tools share one button, and what generates shows its icons only.
+    /// All tools share one button, and the buttons of generation show icons only.
     Tools,
     /// The menus are one menu.
     Menus,
@@ -133,7 +133,8 @@ impl Fold {
     ];
 }
 
-/// How wide the bar is at each step of folding, points, as far as it was drawn so. Names are longer in one language than in another.
+/// Width of the bar at each step of folding, points, if it was drawn so before. Names differ in length between
+/// languages.
 #[derive(Clone, Copy, Debug, Default)]
 struct Needs([Option<f32>; Fold::ALL.len()]);
 
@@ -147,13 +148,13 @@ impl Needs {
         ui.data(|d| d.get_temp(Self::id())).unwrap_or_default()
     }
 
-    /// The first step that fits, as far as is known.
+    /// The first step that fits, as far as widths are known.
     fn fold(&self, room: f32) -> Fold {
         let fits = |need: &Option<f32>| need.is_none_or(|need| need <= room);
         Fold::ALL[self.0.iter().position(fits).unwrap_or(Fold::ALL.len() - 1)]
     }
 
-    /// Notes how wide the bar was; it is drawn once more if that was too wide.
+    /// Notes the width of the bar. If another step fits, the bar is drawn again.
     fn learn(&mut self, ui: &Ui, fold: Fold, taken: f32, room: f32) {
         self.0[fold as usize] = Some(taken);
         let needs = *self;
@@ -164,7 +165,7 @@ impl Needs {
     }
 }
 
-/// The tools, those of one button in its list.
+/// Draws the tools; folded ones are in the list of one button.
 fn tools(ui: &mut Ui, fold: Fold, in_hand: ToolId, commands: &mut Vec<Command>) {
     if fold >= Fold::Tools {
         let hint = t("Which tool is in hand");
@@ -193,7 +194,7 @@ fn tools(ui: &mut Ui, fold: Fold, in_hand: ToolId, commands: &mut Vec<Command>) 
     }
 }
 
-/// One button for some tools; it opens their list, and looks chosen while one of them is in hand.
+/// A button for several tools. It opens their list, and looks chosen while one of them is in hand.
 fn tool_list(
     ui: &mut Ui,
     shown: &ToolDef,
@@ -203,7 +204,7 @@ fn tool_list(
     commands: &mut Vec<Command>,
 ) {
     let button = icons::button(ui, Icon::named(shown.icon), name, hint, chosen, true);
-    // That there are more of them behind it.
+    // A small triangle marks that a list opens.
     let corner = button.rect.right_bottom() - vec2(4.0, 4.0);
     let points = vec![corner, corner - vec2(6.0, 0.0), corner - vec2(0.0, 6.0)];
     let more = egui::Shape::convex_polygon(points, theme::text_weak(), egui::Stroke::NONE);
@@ -217,7 +218,7 @@ fn tool_list(
     });
 }
 
-/// The workspaces side by side, or as a menu.
+/// Draws the workspaces side by side, or as a menu.
 fn workspaces(ui: &mut Ui, current: Workspace, fold: Fold, commands: &mut Vec<Command>) {
     let mut chosen = current;
     let names = Workspace::ALL.map(|(workspace, name)| {
@@ -252,17 +253,17 @@ fn workspaces(ui: &mut Ui, current: Workspace, fold: Fold, commands: &mut Vec<Co
     }
 }
 
-/// The tools for things.
+/// The tools for things beside the road.
 pub(super) fn beside() -> impl Iterator<Item = &'static ToolDef> {
     all().iter().copied().filter(|t| t.group == Group::Beside)
 }
 
-/// The chord alone, without what else the hint says.
+/// The chord of a hint, without the rest of the hint.
 pub(super) fn short(key: &str) -> &str {
     key.split(';').next().unwrap_or_default()
 }
 
-/// A chord in the second column of a menu.
+/// A menu entry with its chord in the second column; returns true if it was clicked.
 pub(super) fn item(ui: &mut Ui, name: &str, keys: &str, enabled: bool) -> bool {
     let keys = egui::RichText::new(keys).color(theme::text_weak());
     let button = egui::Button::new(name).shortcut_text(keys);
@@ -280,7 +281,7 @@ fn divider(ui: &mut Ui) {
     ui.add_space(6.0);
 }
 
-/// From right to left: the button that generates, the live switch.
+/// Draws, from right to left, the button that generates and the live switch.
 fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, fold: Fold, commands: &mut Vec<Command>) {
     let named = fold < Fold::Tools;
     ui.spacing_mut().item_spacing.x = theme::GAP;
@@ -316,7 +317,7 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, fold: Fold, commands: &mut 
             command,
         )
     };
-    // As wide whatever it says: what is beside it stays under the pointer.
+    // The width fits all texts, so the neighbours of the button stay under the pointer.
     let widest = [t("Cancel"), t("Inpaint"), t("Generate")];
     if wide_button(ui, icon, (name, named), &widest, (hint, label), fill).clicked() {
         commands.push(command);
@@ -352,7 +353,7 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, fold: Fold, commands: &mut 
     }
 }
 
-/// The presets of the quality slider as a menu.
+/// Draws the presets of the quality slider as a menu.
 fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
     let current = input.preset.and_then(|i| input.presets.get(i));
     let name = t(current.map_or("own settings", |(name, _)| name));
@@ -380,8 +381,8 @@ fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
     ));
 }
 
-/// A button with an icon and, if `named`, a name beside it; of one height with the others, and wide enough for each of `names`, which
-/// it may have at other times.
+/// A button with an icon and, if `named`, a name beside it. It has the height of the other buttons, and is wide enough
+/// for each of `names`, which it shows at other times.
 fn wide_button(
     ui: &mut Ui,
     icon: Icon,
@@ -420,7 +421,7 @@ fn wide_button(
     response.on_hover_ui(|ui| icons::tip(ui, name, hint))
 }
 
-/// Name of the scene in the middle of what is left free.
+/// Draws the name of the scene in the middle of the free space.
 fn title(ui: &Ui, input: &ToolbarInput<'_>, left: f32, right: f32) {
     if right - left < 120.0 {
         return;
@@ -429,7 +430,7 @@ fn title(ui: &Ui, input: &ToolbarInput<'_>, left: f32, right: f32) {
     let middle = egui::pos2((left + right) / 2.0, ui.max_rect().center().y);
     let painter = ui.painter();
     let mut job = egui::text::LayoutJob::simple_singleline(input.name.to_owned(), font, theme::text());
-    // Room for the mark of unsaved changes on both sides.
+    // The margin on both sides leaves room for the mark of unsaved changes.
     job.wrap = egui::text::TextWrapping::truncate_at_width(right - left - 40.0);
     let galley = painter.layout_job(job);
     let drawn = egui::Rect::from_center_size(middle, galley.size());

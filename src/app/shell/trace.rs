@@ -1,5 +1,5 @@
-//! `--trace FILE`: what `perf.rs` measures as JSON lines, written by a thread of its own, which also looks at the
-//! process's processor time once a second. The last line is a summary.
+//! `--trace FILE`: the measurements of `perf.rs` as JSON lines. A thread of its own writes them, and samples the
+//! processor time of the process once a second. The last line is a summary.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 
 use super::perf::IDLE_AFTER_S;
 
-/// Between two looks at the processor time.
+/// Time between two samples of the processor time.
 const EVERY: Duration = Duration::from_secs(1);
 
 enum Order {
@@ -23,7 +23,7 @@ enum Order {
     Finish(Value),
 }
 
-/// A trace being written.
+/// A trace that is being written.
 pub struct Trace {
     orders: Sender<Order>,
     active_ms: Arc<AtomicU64>,
@@ -31,7 +31,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Creates the file and starts the thread. `clock` is the one that all times are counted from. Errors name the file.
+    /// Creates the file and starts the thread. All times are counted from `clock`. Errors name the file.
     pub fn start(path: &Path, clock: Instant, first: &Value) -> anyhow::Result<Self> {
         let file = File::create(path).with_context(|| format!("trace {}", path.display()))?;
         let mut out = BufWriter::new(file);
@@ -40,7 +40,7 @@ impl Trace {
         let active_ms = Arc::new(AtomicU64::new(0));
         let seen = active_ms.clone();
         let work = move || write(out, &orders_in, &seen, clock);
-        // A panic is on the terminal by then; the editor goes on without a trace, as on a full disk.
+        // A panic has been printed by then; the editor goes on without a trace, as with a full disk.
         let thread = job::guard::spawn("trace", work, drop).context("trace")?;
         Ok(Self {
             orders,
@@ -51,11 +51,11 @@ impl Trace {
 
     /// Adds a line.
     pub fn line(&self, value: &Value) {
-        // The thread ends early only when the disk is full; the editor goes on without a trace.
+        // The thread ends early only if the disk is full; the editor goes on without a trace.
         let _ = self.orders.send(Order::Line(value.to_string()));
     }
 
-    /// Notes when the window last had something to do, s.
+    /// Notes the time at which the window was last active, s.
     pub fn active(&self, at_s: f64) {
         self.active_ms.store((at_s * 1e3) as u64, Ordering::Relaxed);
     }
@@ -64,7 +64,7 @@ impl Trace {
     pub fn finish(mut self, summary: Value) {
         let _ = self.orders.send(Order::Finish(summary));
         if let Some(thread) = self.thread.take() {
-            // An error would be a panic in the thread; there is nobody left to tell.
+            // An error would be a panic in the thread, and the trace is ending.
             let _ = thread.join();
         }
     }
@@ -96,7 +96,7 @@ fn write(mut out: BufWriter<File>, orders: &Receiver<Order>, active_ms: &AtomicU
                 summary["cpu_share"] = json!(all.share());
                 summary["idle_s"] = json!((idle.wall_s * 10.0).round() / 10.0);
                 summary["idle_cpu_share"] = json!(idle.share());
-                // Nobody is left to be told of a full disk.
+                // A full disk cannot be reported any more.
                 let _ = writeln!(out, "{summary}").and_then(|()| out.flush());
                 return;
             }
@@ -118,7 +118,7 @@ fn write(mut out: BufWriter<File>, orders: &Receiver<Order>, active_ms: &AtomicU
             wall_s: now_s - at_s,
             cpu_s: cpu_s - before_s,
         };
-        // All of the interval was idle, or it does not count as that.
+        // An interval counts as idle only if all of it was idle.
         let active_s = active_ms.load(Ordering::Relaxed) as f64 / 1e3;
         let was_idle = at_s >= active_s + IDLE_AFTER_S;
         for sum in std::iter::once(&mut all).chain(was_idle.then_some(&mut idle)) {
@@ -133,12 +133,12 @@ fn write(mut out: BufWriter<File>, orders: &Receiver<Order>, active_ms: &AtomicU
     }
 }
 
-/// Processor time of the process, all threads, s; none where `/proc` does not tell. proc(5): fields 14 and 15 of `stat`,
-/// in ticks of 1/100 s.
+/// Processor time of all threads of the process, s; `None` without `/proc`. proc(5): fields 14 and 15 of `stat`, in
+/// ticks of 1/100 s.
 pub fn cpu_time_s() -> Option<f64> {
     const TICKS_PER_S: f64 = 100.0;
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The name of the program, in brackets, may hold blanks.
+    // The name of the program, in brackets, may contain spaces.
     let (_, rest) = stat.rsplit_once(')')?;
     let mut fields = rest.split_whitespace().skip(11);
     let mut ticks = || fields.next()?.parse::<f64>().ok();
@@ -158,7 +158,7 @@ mod tests {
         for i in 0..50 {
             trace.line(&json!({"kind": "frame", "i": i}));
         }
-        // Two looks at the processor time.
+        // Time for two samples of the processor time.
         std::thread::sleep(EVERY * 2 + EVERY / 4);
         trace.finish(json!({"kind": "summary"}));
         let text = std::fs::read_to_string(&path).expect("written");
@@ -173,7 +173,7 @@ mod tests {
             assert!(kinds("cpu") >= 1);
             assert!(lines.last().expect("lines")["cpu_share"].is_number());
         }
-        // A thread that panics costs the trace and nothing else.
+        // A panic of the thread ends the trace only.
         job::guard::panic_next("trace");
         let trace = Trace::start(&path, clock, &json!({"kind": "start"})).expect("started");
         trace.line(&json!({}));

@@ -1,5 +1,5 @@
-//! The quality slider: its presets, what they are predicted to cost, what the last edit really cost, and the work beside
-//! the window that measures both.
+//! The quality slider: its presets, their predicted costs, the real cost of the last edit, and the background work that
+//! measures both.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -18,24 +18,24 @@ use numeric::quantile::median;
 use scene::Scene;
 use trade::{Preset, Presets};
 
-/// Edits that the window's own pace is taken from.
+/// Number of edits that the window's own pace is taken from.
 const REMEMBERED: usize = 9;
-/// Tokens of an edit of one vehicle.
+/// Tokens of an edit of one vehicle, used before the first edit.
 const TYPICAL_TOKENS: f64 = 36.0;
 
-/// Whose times predictions are made of.
+/// The machine whose times predictions are based on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimesOf {
-    /// This machine's: it was calibrated, or has made edits since the window opened.
+    /// This machine: it was calibrated, or has made edits since the window opened.
     ThisMachine,
-    /// Those of another machine with the same processor, in quiet.
+    /// Another machine with the same processor, without other load.
     OneLikeIt,
-    /// Those of another machine.
+    /// Another machine.
     Another,
 }
 
 impl TimesOf {
-    /// A time, with whose it is unless it is this machine's.
+    /// A time as text, with its machine unless that is this one.
     pub fn told(self, s: f64) -> String {
         let time = seconds(s);
         match self {
@@ -46,7 +46,7 @@ impl TimesOf {
     }
 }
 
-/// One line: what a preset is predicted to take, to miss and to invent.
+/// A line with the predicted time, error and invented voxels of a preset.
 pub fn predicted(preset: &Preset, wall_s: f64, of: TimesOf) -> String {
     let time = of.told(wall_s);
     if preset.error.high == 0.0 {
@@ -64,7 +64,7 @@ pub fn predicted(preset: &Preset, wall_s: f64, of: TimesOf) -> String {
         low = t(&low),
         high = t(&high),
     );
-    // Most of a region is air, in which nothing can differ that is seen.
+    // Most of a region is empty space, in which no visible voxel can differ.
     let occupied = preset.error_of_occupied.map_or(String::new(), |of_occupied| {
         let share = percent(of_occupied.median);
         format!(", {}", tf!("{share} of the occupied ones", share = t(&share)))
@@ -73,50 +73,50 @@ pub fn predicted(preset: &Preset, wall_s: f64, of: TimesOf) -> String {
     format!("{time}  ·  {differ}{invented}")
 }
 
-/// What an edit did and cost, beside what was predicted.
+/// Result and cost of the last edit, beside the predictions.
 pub struct LastEdit {
-    /// How it was generated.
+    /// Parameters of its generation.
     pub params: GenParams,
-    /// What the pipeline says.
+    /// Report of the pipeline.
     pub report: GenReport,
-    /// From the edit to the settled scene, s.
+    /// Time from the edit to the settled scene, s.
     pub settled_s: f64,
-    /// Tokens around it, whether or not the others were computed too: the size of the edit.
+    /// Tokens around the edit, whether or not others were computed too: the size of the edit.
     pub local_tokens: usize,
     /// Predicted wall time of the generation, s.
     pub predicted_s: Option<f64>,
-    /// Whose times that was predicted from.
+    /// The machine that the predicted time is based on.
     pub predicted_of: TimesOf,
-    /// Predicted share of voxels that differ from the reference: the middle, and what nine of ten edits lie between.
+    /// Predicted share of voxels that differ from the reference: the median, and the range of nine of ten edits.
     pub predicted_error: Option<[f64; 3]>,
-    /// The same, measured.
+    /// Measured share of voxels that differ from the reference; `None` before it is measured.
     pub measured_error: Option<f64>,
     /// Columns and latent cells that were inpainted.
     pub region: Region,
-    /// Tokens that were computed (all: 625).
+    /// Tokens that were computed, of 625.
     pub tokens: Vec<usize>,
-    /// Bricks that changed: the others were neither meshed nor cast again.
+    /// Bricks that changed; the others were neither meshed nor cast again.
     pub bricks: Vec<usize>,
     edited: Arc<Scene>,
     result: Arc<GenResult>,
 }
 
-/// What has gone wrong or nearly so since the start.
+/// Counts of failures and near failures since the start.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stability {
-    /// Generations.
+    /// Number of generations.
     pub runs: usize,
-    /// Of them, with a fallback or warning.
+    /// Generations with a fallback or a warning.
     pub fallbacks: usize,
-    /// That ended without a result.
+    /// Generations that ended without a result.
     pub failures: usize,
-    /// Of those, because a number was not finite.
+    /// Failed generations in which a number was not finite.
     pub not_finite: usize,
-    /// Voxels outside a region that changed: must be 0.
+    /// Changed voxels outside a region: must be 0.
     pub untouched_changed: usize,
 }
 
-/// What runs beside the window.
+/// Kind of a measurement in the background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measuring {
     /// Times of the presets.
@@ -129,26 +129,26 @@ pub enum Measuring {
 pub struct Tuning {
     /// The presets, with this machine's times if they were measured.
     pub presets: Presets,
-    /// The times are of this machine and build.
+    /// True if the times are of this machine and build.
     pub calibrated: bool,
     /// The last edit.
     pub last: Option<LastEdit>,
-    /// Since the start.
+    /// Stability since the start.
     pub stability: Stability,
-    /// Draw in the bird's-eye view what was computed for the last edit.
+    /// True: draws the parts that were computed for the last edit in the bird's-eye view.
     pub show_modelled: bool,
-    /// What became of the last measurement, one line.
+    /// Outcome of the last measurement, one line.
     pub message: Option<String>,
-    /// How many times longer than in quiet the last edits took: the window draws on the same cores.
+    /// Ratios of the times of the last edits to those without other load: the window draws on the same cores.
     slower: VecDeque<f64>,
-    /// The presets were measured on the processor that this machine has.
+    /// True if the presets were measured on this machine's processor.
     is_like_this: bool,
     running: Option<(Measuring, Measurement, (usize, usize))>,
     file: Option<PathBuf>,
 }
 
 impl Tuning {
-    /// With what was measured on this machine before, if its file (beside the settings) is of this build.
+    /// The state with the times measured on this machine before, if their file (beside the settings) is of this build.
     pub fn new(settings_file: Option<&Path>) -> Self {
         let file = settings_file
             .and_then(Path::parent)
@@ -174,7 +174,7 @@ impl Tuning {
         }
     }
 
-    /// What is being measured, and how far it is.
+    /// The running measurement, and its progress: steps done, all steps.
     pub fn measuring(&self) -> Option<(Measuring, usize, usize)> {
         self.running
             .as_ref()
@@ -186,7 +186,7 @@ impl Tuning {
         self.start(Measuring::Presets, Task::Calibrate(self.presets.clone()), wake);
     }
 
-    /// Starts measuring how far the last edit lies from the reference.
+    /// Starts to measure the distance of the last edit from the reference.
     pub fn refine(&mut self, wake: impl Fn() + Send + Sync + 'static) {
         let (Some(last), Some(reference)) = (&self.last, self.presets.named("reference")) else {
             return;
@@ -208,12 +208,12 @@ impl Tuning {
         }
     }
 
-    /// Ends what is being measured.
+    /// Stops the measurement.
     pub fn stop(&mut self) {
         self.running = None;
     }
 
-    /// Takes in what came since the last call.
+    /// Takes in the news of the measurement.
     pub fn update(&mut self) {
         while let Some(news) = self.running.as_ref().and_then(|(_, b, _)| b.next()) {
             match news {
@@ -264,7 +264,7 @@ impl Tuning {
         write().map_err(|e| e.to_string())
     }
 
-    /// What this window's edits take, in times of what they take while nothing else runs: the median of the last ones.
+    /// Factor between the times of edits in this window and those without other load: the median of the last edits.
     pub fn window_factor(&self) -> f64 {
         let known: Vec<f64> = self.slower.iter().copied().collect();
         if known.is_empty() {
@@ -273,7 +273,7 @@ impl Tuning {
         median(&known).clamp(0.25, 20.0)
     }
 
-    /// Whose times predictions are made of now. What this window's own edits took is of this machine.
+    /// The machine that predictions are based on now. Edits in this window give times of this machine.
     pub fn times_of(&self) -> TimesOf {
         match (self.calibrated || !self.slower.is_empty(), self.is_like_this) {
             (true, _) => TimesOf::ThisMachine,
@@ -282,25 +282,25 @@ impl Tuning {
         }
     }
 
-    /// Wall time that an edit of so many tokens is predicted to take in this window, s.
+    /// Predicted wall time of an edit of so many tokens in this window, s.
     pub fn predicted_s(&self, preset: &Preset, tokens: f64) -> f64 {
         preset.cost.wall_s(tokens) * self.window_factor()
     }
 
-    /// Tokens of an edit like the last one, or of a typical one until there was one.
+    /// Tokens of the last edit; of a typical one before the first edit.
     pub fn tokens_of_next(&self) -> f64 {
         self.last
             .as_ref()
             .map_or(TYPICAL_TOKENS, |l| l.local_tokens as f64)
     }
 
-    /// What an edit like the last one is predicted to take with these parameters, s; 0 if they are of no preset.
+    /// Predicted time of an edit like the last one with these parameters, s; 0 if they are not those of a preset.
     pub fn predicted_now_s(&self, params: &GenParams) -> f64 {
         let preset = self.current(params).map(|i| &self.presets.all[i]);
         preset.map_or(0.0, |preset| self.predicted_s(preset, self.tokens_of_next()))
     }
 
-    /// Name of each preset, and what it is predicted to cost.
+    /// Name of each preset, with its predicted cost.
     pub fn predicted(&self) -> Vec<(String, String)> {
         let tokens = self.tokens_of_next();
         let line = |s: &Preset| predicted(s, self.predicted_s(s, tokens), self.times_of());
@@ -308,19 +308,19 @@ impl Tuning {
         self.presets.all.iter().map(of).collect()
     }
 
-    /// The preset that the parameters stand at.
+    /// Index of the preset that has these parameters.
     pub fn current(&self, params: &GenParams) -> Option<usize> {
         self.presets.index_of(params)
     }
 
-    /// Notes what became of an edit. `edited` is the scene with the edit, before its result came.
+    /// Notes the result of an edit. `edited` is the scene with the edit, before the result.
     pub fn note(&mut self, edited: Arc<Scene>, result: Arc<GenResult>, settled_s: f64) {
         let (params, report) = (result.key.params.clone(), result.report.clone());
         let predicted_of = self.times_of();
         self.stability.runs += 1;
         self.stability.fallbacks += usize::from(!report.notes.is_empty());
         self.stability.untouched_changed += report.untouched_voxels_changed;
-        // A measurement of the edit before says nothing about this one.
+        // A measurement of the edit before does not apply to this one.
         let beside = self.running.is_some();
         if self
             .measuring()
@@ -352,7 +352,7 @@ impl Tuning {
         });
         if let Some(quiet_s) = preset.map(|s| s.cost.wall_s(tokens_computed))
             && report.inversion_calls == 0
-            && !beside // a measurement takes the same cores
+            && !beside // a measurement uses the same cores
             && quiet_s > 0.0
             && report.network_calls > 0
         {
@@ -385,7 +385,7 @@ impl Tuning {
         self.stability.not_finite += usize::from(line.contains("expected finite"));
     }
 
-    /// Forgets the last edit: another scene was opened.
+    /// Forgets the last edit, because another scene was opened.
     pub fn reset(&mut self) {
         self.last = None;
         if self

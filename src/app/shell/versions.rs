@@ -1,5 +1,5 @@
-//! Versions of the scene: what each generation led to, kept to be looked at, compared with and gone back to. They live in the
-//! scene's file, with their names and stars.
+//! Versions of the scene: the result of each generation, kept to view it, compare with it and go back to it. They are
+//! saved in the scene's file, with names and stars.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -15,31 +15,31 @@ use job::guard::Handed;
 use language::{t, tf};
 use scene::{KeptVersion, Scene, SceneRev};
 
-/// What led to a version that the user asked for.
+/// Label of a version that the user kept.
 const KEPT: &str = "Kept";
-/// What panics of packing are told as.
+/// Name under which panics of packing are reported.
 const THREAD: &str = "versions";
 
-/// A version as a file keeps it; none if it cannot be written.
+/// A version as bytes for a file; `None` inside if it cannot be packed.
 type Packed = OnceLock<Option<Arc<Vec<u8>>>>;
 
-/// A scene as it was when something was generated or opened.
+/// A scene as it was after a generation, or as it was opened.
 pub struct Version {
-    /// Given by the user; empty if none was.
+    /// Name given by the user; empty if there is none.
     pub name: String,
-    /// The edit that led here.
+    /// Label of the edit that led to it.
     pub label: String,
-    /// What the generation took.
+    /// Receipt of the generation.
     pub note: String,
     /// The scene.
     pub scene: Arc<Scene>,
-    /// The user wants to keep it.
+    /// True if the user starred it.
     pub starred: bool,
-    /// Its occupancy from above.
+    /// Picture of its occupancy from above.
     pub(crate) thumbnail: Option<TextureHandle>,
-    /// What it was made with, if something was generated and that is known.
+    /// Settings that it was made with, if it was generated and they are known.
     pub made: Option<MadeWith>,
-    /// What the checks found in it, once it was on screen long enough to be checked.
+    /// Counts of its findings, once it was on screen long enough to be checked.
     pub findings: Option<Counts>,
     packed: Arc<Packed>,
 }
@@ -59,12 +59,12 @@ impl Version {
         }
     }
 
-    /// Its scene on the way to where it is packed.
+    /// Hands its scene to the thread that packs it.
     fn to_pack(&self) -> Handed<Arc<Scene>> {
         Handed::new(THREAD, self.scene.clone())
     }
 
-    /// What it is called: its name, else what led here.
+    /// Its title: its name, else the label of the edit that led to it.
     pub fn title(&self) -> &str {
         if self.name.is_empty() {
             &self.label
@@ -74,7 +74,7 @@ impl Version {
     }
 }
 
-/// Packs a version. It is done on threads that all share, where a panic that nobody catches ends the program.
+/// Packs a version. Runs on shared threads, where a panic that is not caught would end the program.
 fn pack(scene: Handed<Arc<Scene>>) -> Option<Arc<Vec<u8>>> {
     match scene.run(|scene| loom::alone_to_bytes(&scene)) {
         Ok(Ok(bytes)) => return Some(Arc::new(bytes)),
@@ -88,13 +88,13 @@ fn pack(scene: Handed<Arc<Scene>>) -> Option<Arc<Vec<u8>>> {
 pub struct Opened {
     /// The scene.
     pub scene: Scene,
-    /// The oldest first.
+    /// The versions, the oldest first.
     pub versions: Vec<Version>,
-    /// Versions that cannot be read.
+    /// Number of versions that cannot be read.
     pub damaged: usize,
-    /// What a picture that was opened says its scene was made with.
+    /// Settings that the scene was made with, from a picture that was opened.
     pub made: Option<MadeWith>,
-    /// What a person should know of how the file was read, a line each.
+    /// Notes for the user about how the file was read, a line each.
     pub notes: Vec<String>,
 }
 
@@ -114,14 +114,14 @@ impl From<Scene> for Opened {
 }
 
 impl Opened {
-    /// Opens all versions; takes some 10 ms for each.
+    /// Opens all versions; takes about 10 ms for each.
     pub fn of(scene: Scene) -> Self {
         let own = match scene.kept.versions.is_empty() {
             true => None,
             false => loom::alone_to_bytes(&scene).ok(),
         };
         let version = |kept: &KeptVersion| {
-            // The state that is open is one memory with the version that it is.
+            // The open state shares its memory with its version.
             let found = match own.as_ref() == Some(&kept.loom) {
                 true => scene.clone(),
                 false => loom::from_bytes(&kept.loom).ok()?,
@@ -144,7 +144,7 @@ impl Opened {
         }
     }
 
-    /// The same with what the file says that it was made with, if it is a picture that says so.
+    /// Adds the settings that the scene was made with, if the file is a picture that carries them.
     pub fn told_by(self, file: &Path) -> Self {
         let is_picture = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
         let made = || {
@@ -165,27 +165,27 @@ impl Opened {
 #[derive(Default)]
 pub struct Versions {
     list: Vec<Version>,
-    /// A name, a star or a removal that no file has yet.
+    /// True if a name, a star or a removal is not saved yet.
     pub(crate) changed: bool,
-    /// The version whose name is typed, and what was typed.
+    /// The version that is being renamed, and the text typed so far.
     pub(crate) renaming: Option<(SceneRev, String)>,
 }
 
 impl Versions {
     /// Longest name, characters.
     pub const LONGEST_NAME: usize = 80;
-    /// Versions kept that have neither star nor name. Scenes share what they have in common: one takes a few hundred kilobytes.
+    /// Most versions without star and name. Scenes share equal parts; one takes a few hundred kilobytes.
     pub const MAX: usize = 64;
 
-    /// Notes what the checks found in a state, if it is a version.
+    /// Notes the findings of a state, if it is a version.
     pub fn note_findings(&mut self, rev: SceneRev, counts: Counts) {
         if let Some(i) = self.of(rev) {
             self.list[i].findings = Some(counts);
         }
     }
 
-    /// What the checks found in a version, and how many more or fewer than in the one before it that was checked: "3 errors,
-    /// 2 warnings (4 fewer)". None as long as it was not checked.
+    /// The findings of a version in words, with the difference from the last checked version before it: "3 errors, 2
+    /// warnings (4 fewer)". `None` if it was not checked.
     pub fn findings_in_words(&self, i: usize) -> Option<String> {
         let now = self.list.get(i)?.findings?;
         let errors = match now.errors {
@@ -217,12 +217,13 @@ impl Versions {
         })
     }
 
-    /// Adds a version, unless the newest is the same; the oldest that is not starred may have to go.
+    /// Adds a version, unless a version has the same state. If there are too many, the oldest one without star and name
+    /// is dropped.
     pub fn push(&mut self, label: String, note: String, scene: Arc<Scene>) {
         self.push_made(label, note, scene, None);
     }
 
-    /// The same, with what it was made with.
+    /// Adds a version with the settings that it was made with; see [`Self::push`].
     pub fn push_made(&mut self, label: String, note: String, scene: Arc<Scene>, made: Option<MadeWith>) {
         if self.list.iter().any(|v| v.scene.content() == scene.content()) {
             return;
@@ -232,7 +233,7 @@ impl Versions {
             ..Version::new(label, note, scene)
         };
         let (packed, scene) = (version.packed.clone(), version.to_pack());
-        // Beforehand, so that saving waits for none.
+        // Packed in advance, so that saving does not wait for it.
         rayon::spawn(move || {
             packed.get_or_init(|| pack(scene));
         });
@@ -245,7 +246,7 @@ impl Versions {
         }
     }
 
-    /// Keeps a state with a star, as a version of its own or as the one that it is, and asks for its name.
+    /// Stars the version of a state, adding one if there is none, and asks for its name.
     pub(crate) fn keep(&mut self, scene: &Arc<Scene>) {
         let rev = scene.content();
         self.push(KEPT.to_owned(), String::new(), scene.clone());
@@ -256,7 +257,7 @@ impl Versions {
         }
     }
 
-    /// Those of another file, in place of all.
+    /// Replaces all versions by those of another file.
     pub fn replace(&mut self, versions: Vec<Version>) {
         *self = Self {
             list: versions,
@@ -264,8 +265,8 @@ impl Versions {
         };
     }
 
-    /// What a file of the state `saved` keeps: all, but that state itself if nothing more is known of it: neither name nor star,
-    /// nor what it was made with.
+    /// The versions for a file of the state `saved`: all of them, but the version of that state itself only if it has a
+    /// name, a star or known settings.
     pub fn kept(&self, saved: SceneRev) -> Vec<KeptVersion> {
         let more = |v: &Version| v.starred || !v.name.is_empty() || v.made.is_some();
         let is_kept = |v: &&Version| more(v) || v.scene.content() != saved;
@@ -285,13 +286,13 @@ impl Versions {
         kept.par_iter().filter_map(version).collect()
     }
 
-    /// Takes a version out of the list.
+    /// Removes a version.
     pub fn remove(&mut self, rev: SceneRev) {
         self.list.retain(|v| v.scene.content() != rev);
         self.changed = true;
     }
 
-    /// Gives a version a name; an empty one takes it away.
+    /// Renames a version; an empty name removes its name.
     pub fn rename(&mut self, rev: SceneRev, name: &str) {
         if let Some(i) = self.of(rev) {
             let name: String = name.trim().chars().take(Self::LONGEST_NAME).collect();
@@ -300,7 +301,7 @@ impl Versions {
         }
     }
 
-    /// Stars a version, or takes the star away.
+    /// Stars a version, or removes its star.
     pub fn star(&mut self, rev: SceneRev) {
         if let Some(i) = self.of(rev) {
             self.list[i].starred = !self.list[i].starred;
@@ -308,7 +309,7 @@ impl Versions {
         }
     }
 
-    /// What the version of that state was made with.
+    /// The settings that the version of a state was made with.
     pub fn made(&self, rev: SceneRev) -> Option<&MadeWith> {
         self.list[self.of(rev)?].made.as_ref()
     }
@@ -322,13 +323,13 @@ impl Versions {
         &mut self.list
     }
 
-    /// The version of that state.
+    /// The index of the version of a state.
     pub fn of(&self, rev: SceneRev) -> Option<usize> {
         self.list.iter().position(|v| v.scene.content() == rev)
     }
 
-    /// The version to compare a state with when the user chose none: the one before it, or the newest for a state that
-    /// is no version yet.
+    /// The version to compare a state with if the user chose none: the one before it, or the newest for a state that is
+    /// no version.
     pub fn before(&self, rev: SceneRev) -> Option<&Arc<Scene>> {
         let index = match self.of(rev) {
             Some(index) => index.checked_sub(1)?,
@@ -337,7 +338,7 @@ impl Versions {
         Some(&self.list[index].scene)
     }
 
-    /// The version `step` places after (or before) that state's.
+    /// The version `step` places after (or before) that of a state.
     pub fn neighbour(&self, rev: SceneRev, step: i32) -> Option<&Arc<Scene>> {
         let index = match self.of(rev) {
             Some(index) => index.checked_add_signed(step as isize)?,
@@ -435,7 +436,7 @@ mod tests {
         assert_eq!(versions.kept(kept.content()).len(), Versions::MAX + 1);
     }
 
-    /// On a thread that all share, a panic that nobody catches aborts the program.
+    /// On shared threads, a panic that is not caught would abort the program.
     #[test]
     fn a_panic_while_packing_costs_that_version_alone() {
         let mut versions = Versions::default();

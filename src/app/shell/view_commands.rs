@@ -1,4 +1,4 @@
-//! Carries out commands about what the views show, where the panes stand, and which windows are open.
+//! Carries out commands about views, panes and open windows.
 
 use super::app::SceneloomApp;
 use super::views::BeforeClean;
@@ -12,7 +12,7 @@ use language::t;
 use sensors::cameras::pictures;
 
 impl SceneloomApp {
-    /// Carries out one of them.
+    /// Carries out one view command.
     pub(crate) fn view_command(&mut self, command: ViewCommand, ctx: &egui::Context) {
         match command {
             ViewCommand::KeepBookmark(slot) => self.keep_bookmark(slot),
@@ -76,11 +76,11 @@ impl SceneloomApp {
             }
             ViewCommand::Workspace(workspace) => {
                 let before = std::mem::replace(&mut self.preferences.settings.workspace, workspace);
-                // What is drawn over the views for one kind of work goes with its controls.
+                // Overlays that belong to one kind of work are switched off with its controls.
                 self.state.compare.mode = CompareMode::Off;
                 self.generation.tuning.show_modelled &= workspace == Workspace::Trade;
                 self.views.change_workspace(before, workspace);
-                // Its tool comes to hand, unless one of the kind is there already.
+                // The workspace takes its tool, unless a tool of its kind is in hand already.
                 self.state.tool = match (workspace, self.state.tool) {
                     (Workspace::Paint, tool) if paints_map(tool) => tool,
                     (Workspace::Paint, _) => brush::ID,
@@ -102,7 +102,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Takes all that is drawn over the scene off both views, or brings it back.
+    /// Removes all drawings over the scene from both views, or restores them.
     fn toggle_clean(&mut self) {
         let options = &mut self.views.view3d.options;
         let (shown, playback) = (&mut self.state.shown, &mut self.state.playback);
@@ -162,7 +162,7 @@ impl SceneloomApp {
     }
 }
 
-/// True for a tool of the workspace that paints the map.
+/// True for a tool that paints the map.
 fn paints_map(tool: ToolId) -> bool {
     tool == region::ID || tool.def().paints && tool != voxel::ID
 }

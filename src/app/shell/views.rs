@@ -1,4 +1,4 @@
-//! The views, the panes around them, and where they stand.
+//! The views and the panes around them.
 
 use std::collections::BTreeMap;
 
@@ -18,29 +18,29 @@ use crate::views_shown::ViewsShown;
 use scene::{Extent, SceneBox};
 use viewport::ViewOptions;
 
-/// Owner of everything that draws the scene.
+/// Owner of all views of the scene.
 pub struct Views {
     /// The bird's-eye view.
     pub canvas: Canvas,
     /// The 3D view.
     pub view3d: View3d,
     pub(crate) strip: CameraStrip,
-    /// The field of the prompt.
+    /// The prompt field.
     pub prompt: PromptField,
     pub(crate) panes: Vec<Box<dyn Pane>>,
     pub(crate) dock: Dock,
-    /// The panes of the other workspaces as they were left.
+    /// The docks of the other workspaces, as they were left.
     left: BTreeMap<Workspace, Dock>,
     pub(crate) compare: Compare,
     pub(crate) seen: SeenScenes,
     pub(crate) render_state: Option<egui_wgpu::RenderState>,
-    /// What the bars leave to the panes, in the last frame.
+    /// The area between the bars, for the panes, in the last frame.
     pub(crate) center: Rect,
-    /// What was shown before all but the scene was taken off the views.
+    /// The view settings before the views were cleaned.
     pub(crate) before_clean: Option<Box<BeforeClean>>,
 }
 
-/// What a clean view brings back in the end.
+/// View settings that are restored after a clean view.
 pub(crate) struct BeforeClean {
     pub(crate) shown: ViewsShown,
     pub(crate) options: ViewOptions,
@@ -48,7 +48,8 @@ pub(crate) struct BeforeClean {
 }
 
 impl Views {
-    /// From one workspace to another, whose panes stand as they were left; to the same one, whose panes stand as they came.
+    /// Changes the workspace. The panes of another workspace stand as they were left; choosing the same workspace again
+    /// resets its panes.
     pub fn change_workspace(&mut self, from: Workspace, to: Workspace) {
         let next = match from == to {
             true => None,
@@ -60,7 +61,7 @@ impl Views {
         }
     }
 
-    /// With the panes where the dock puts them.
+    /// Views with the panes of a dock.
     pub fn new(view3d: View3d, dock: Dock, render_state: Option<egui_wgpu::RenderState>) -> Self {
         Self {
             canvas: Canvas::default(),
@@ -78,20 +79,20 @@ impl Views {
         }
     }
 
-    /// Colours have changed: what was drawn with the old ones is drawn again.
+    /// Drops all pictures, because colours have changed.
     pub(crate) fn forget_pictures(&mut self) {
         self.canvas.forget_pictures();
         self.strip = CameraStrip::default();
         self.view3d.forget_pictures();
     }
 
-    /// Brings a box into the middle of both large views.
+    /// Centres a box in both large views.
     pub(crate) fn frame_box(&mut self, b: &SceneBox) {
         self.canvas.frame_box(b);
         self.view3d.frame_box(b);
     }
 
-    /// Brings everything into both large views.
+    /// Fits the whole map into both large views.
     pub(crate) fn frame_all(&mut self, extent: Extent) {
         self.view3d.frame_map(extent);
         self.canvas.frame_all_again();

@@ -1,4 +1,4 @@
-//! One frame of the window: its bars, panes and what lies over them.
+//! One frame of the window: its bars, its panes, and windows over them.
 
 use std::sync::Arc;
 
@@ -33,19 +33,19 @@ use scene::Scene;
 use widgets::theme;
 
 impl SceneloomApp {
-    /// Draws the window and carries out what the user asked for.
+    /// Draws the window and carries out the user's commands.
     pub fn draw(&mut self, ui: &mut Ui) {
         self.frames.passes = self.frames.passes.saturating_add(1);
         let mut commands = Vec::new();
         fly::note(ui.ctx());
-        // Asked before: the key that closes a menu or a list is no shortcut.
+        // Checked before drawing: the key that closes a menu or a list is no shortcut.
         let popup = egui::Popup::is_any_open(ui.ctx());
         let over_window = is_over_window(ui.ctx());
         self.take_window_events(ui.ctx(), &mut commands);
         self.tidy_staging();
         self.prepare_compare(ui);
         let scene = self.shown_scene();
-        // What a dialog covers answers nothing, and keeps no tooltip open over it.
+        // Widgets below a dialog are disabled, and keep no tooltip open over it.
         let mut below = ui.new_child(egui::UiBuilder::new().max_rect(ui.max_rect()));
         if self.has_dialog() {
             below.visuals_mut().disabled_alpha = 1.0;
@@ -53,10 +53,10 @@ impl SceneloomApp {
         }
         self.bars(&mut below, &scene, &mut commands);
         self.views(&mut below, &scene, &mut commands);
-        // Asked before: the key that closes a dialog is no shortcut.
+        // Checked before drawing: the key that closes a dialog is no shortcut.
         let dialog = self.has_dialog();
         self.overlays(ui, &scene, &mut commands);
-        // What is shown is not what a key would change.
+        // While the compared state is shown, keys would change another state than the visible one.
         if !dialog && !popup && !self.state.compare.holding_before {
             let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
             let hands = Hands {
@@ -86,7 +86,7 @@ impl SceneloomApp {
         }
     }
 
-    /// True while a dialog lies over everything.
+    /// True while a dialog lies over all panes.
     pub(crate) fn has_dialog(&self) -> bool {
         self.files.unsaved.is_some()
             || self.files.dialogs.is_open()
@@ -172,11 +172,11 @@ impl SceneloomApp {
             .frame(theme::bar_frame())
             .show_separator_line(false)
             .show(ui, |ui| status_ui(ui, &status, &self.state.pointed, commands));
-        // The status bar has shown what the last frame found under the pointer.
+        // The status bar has shown the readout of the last frame.
         self.state.pointed.readout.clear();
         let place = self.state.pointed.place_now.take();
         if place != self.state.pointed.place {
-            // Panes that were drawn before the one under the pointer show it in the next frame.
+            // Panes that were drawn before the one under the pointer show the mark in the next frame.
             ui.ctx().request_repaint();
         }
         self.state.pointed.place = place;
@@ -186,11 +186,11 @@ impl SceneloomApp {
         self.state.pointed.pane = None;
         self.views.center = ui.available_rect_before_wrap();
         self.dock_ui(ui, scene, commands);
-        // What nobody lists is not pointed at.
+        // Without the list of checks on screen, no finding is marked.
         if !self.views.dock.is_shown(PaneId::CHECKS) {
             self.state.shown.finding_marks = None;
         }
-        // (a view that is maximized keeps what the list behind it shows)
+        // (a maximized view keeps the marks of the list behind it)
         let dock = &self.views.dock;
         if dock.maximized.is_none() && !dock.is_shown(PaneId::named("perception")) {
             self.state.shown.detection_marks = None;
@@ -199,9 +199,9 @@ impl SceneloomApp {
         self.generation.live.seed = self.state.seed.value;
     }
 
-    /// Decides what the present state is compared with, in this frame.
+    /// Sets the state that the present one is compared with in this frame.
     pub(crate) fn prepare_compare(&mut self, ui: &Ui) {
-        // Not in the middle of a drag: the pointer answers to nothing while the state before is shown.
+        // The key has no effect during a drag, because the pointer does not act while the compared state is shown.
         let held = !ui.ctx().text_edit_focused()
             && ui.input(|i| {
                 let down = i.modifiers.is_none() && i.key_down(egui::Key::Backslash);
@@ -272,7 +272,7 @@ impl SceneloomApp {
             &mut self.state.windows.start,
             commands,
         );
-        // Over the 3D view, where it hides no list.
+        // The bar stands over the 3D view, where it hides no list.
         let over = match self.views.view3d.rect.is_positive() {
             true => self.views.view3d.rect,
             false => self.views.center,
@@ -281,7 +281,7 @@ impl SceneloomApp {
         performance_ui(ui, over, &mut self.frames.perf);
         self.toasts.show(ui, over, now_s);
         let mut tour = self.state.windows.tour.take();
-        // Over the map, on which its steps begin.
+        // The tour stands over the map, on which its steps begin.
         let map = self.views.canvas.map.map_or(self.views.center, |map| map.rect);
         tour_ui(ui, map, &mut tour, &self.document);
         self.state.windows.tour = tour;
@@ -332,8 +332,8 @@ fn drop_hint(ui: &Ui, over: Rect) {
         theme::ON_CANVAS,
     );
 }
-/// True if the pointer is over a window that shows nothing of the scene: not over the panes, over the bar of a result that waits, or
-/// over an enlarged camera, whose boxes are chosen by a click as in a pane.
+/// True if the pointer is over a window that shows no part of the scene: not over the panes, the bar of a staged
+/// result, or an enlarged camera, in which a click chooses boxes as in a pane.
 fn is_over_window(ctx: &egui::Context) -> bool {
     let layer = ctx.pointer_latest_pos().and_then(|at| ctx.layer_id_at(at));
     let of_the_scene = [super::staged::bar_id(), camera_strip::enlarged_id()];

@@ -34,7 +34,7 @@ impl SceneloomApp {
             Advice::Cancel => self.generation.worker.cancel(),
             Advice::Submit(params) | Advice::WarmUp(params) => self.submit(scene, params),
         }
-        // Small pictures while the scene still changes: large ones take as long as the generation itself.
+        // Small pictures while the scene changes: large ones take as long as the generation itself.
         let for_a_moment = self.document.is_dragging()
             || self.state.playback.playing
             || self.generation.live.running.is_some();
@@ -95,7 +95,7 @@ impl SceneloomApp {
                         self.toasts.log(text, now_s);
                         return;
                     }
-                    // A region that the user asked for says nothing about how long an edit takes.
+                    // A region that the user requested is not typical for the time of an edit.
                     if !full && running.key.params.strength == 0.0 {
                         self.generation
                             .live
@@ -150,7 +150,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Puts a result into the document, if the document still shows the state that it was made for.
+    /// Adopts a result into the document, if the document still shows the state that it was made for.
     pub(crate) fn adopt(&mut self, result: &GenResult, own_step: Option<&'static str>) {
         self.generation.preview = None;
         let before = self.document.settled_scene().clone();
@@ -160,7 +160,7 @@ impl SceneloomApp {
             .take()
             .filter(|(rev, _)| *rev == result.rev());
         let own_step_label = own_step.filter(|_| drawn.is_none());
-        // A region that the user asked to inpaint is its own step; the result of an edit goes into the edit's step.
+        // A requested region becomes its own step; the result of an edit goes into the step of the edit.
         let adopted = match own_step_label {
             Some(label) => self
                 .document
@@ -201,7 +201,7 @@ impl SceneloomApp {
                 (Some(_), _) => {
                     let first = drawn.is_some();
                     let before = drawn.map_or(before, |(_, before)| before);
-                    // Scenery that was drawn first went by the seed.
+                    // Scenery that was drawn first does depend on the seed.
                     let given = if first { 0 } else { result.report.things_given };
                     self.say_what_differs(&before, given);
                     self.stage(before, Some(Again::Generate(Box::new(result.key.params.clone()))));
@@ -212,7 +212,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Says what a generation that was asked for left as it was: a whole one draws no other things than those that are there.
+    /// Reports the parts that a requested generation left unchanged: no voxel differs, or the existing things stay.
     fn say_what_differs(&mut self, before: &Scene, things: usize) {
         let after = self.document.settled_scene();
         let voxels = before.frame().occupancy.count_different(&after.frame().occupancy);
@@ -229,7 +229,7 @@ impl SceneloomApp {
         self.toasts.push(Level::Info, text, now_s);
     }
 
-    /// Ends a whole generation with its last preview as the result.
+    /// Ends a generation of the whole scene and adopts its last preview.
     pub(crate) fn stop_here(&mut self) {
         let before = self.document.settled_scene().clone();
         let whole = |r: &&mut Running| r.purpose == Purpose::Full && r.key.rev == before.content();

@@ -1,8 +1,8 @@
-//! The ready-made arrangements of panes, by name; where the panes stand in each is in `dock.rs`.
+//! The ready-made arrangements of panes, by name; `dock.rs` defines them.
 
 use serde::{Deserialize, Serialize};
 
-/// An arrangement made for one kind of work.
+/// An arrangement of panes for one kind of work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Workspace {

@@ -1,4 +1,4 @@
-//! What a user can ask of the tools, as values; carried out in `chosen/`.
+//! Commands of the user for the tools, as values; carried out in `chosen/`.
 
 use glam::{DVec2, DVec3};
 
@@ -6,7 +6,7 @@ use editor::rows::Row;
 use editor::tools::{Act, Choose};
 use scene::{Arrangement, BoxId};
 
-/// One wish of the user.
+/// One command for the tools.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ToolCommand {
     /// Chooses these boxes.
@@ -21,15 +21,15 @@ pub enum ToolCommand {
     Delete,
     /// Copies the chosen boxes beside themselves.
     Duplicate,
-    /// Takes the chosen boxes along.
+    /// Copies the chosen boxes to the clipboard.
     Copy,
-    /// The same, and deletes them.
+    /// Copies the chosen boxes to the clipboard and deletes them.
     Cut,
-    /// Puts down what was taken along: at the pointer over the bird's-eye view, else beside where it was.
+    /// Pastes from the clipboard: at the pointer over the bird's-eye view, else beside the originals.
     Paste,
-    /// Puts it down at a place of the ground, world frame, m.
+    /// Pastes at a place of the ground, world frame, m.
     PasteAt(DVec2),
-    /// Groups, hides or locks what is chosen, or the opposite.
+    /// Groups, hides or locks the selection, or undoes that.
     Arrange(Arrangement),
     /// Hides all boxes that are not chosen.
     HideOthers,
@@ -47,22 +47,22 @@ pub enum ToolCommand {
     Row(Row),
     /// Mirrors the chosen boxes about the ego x axis; true adds mirrored copies instead.
     Mirror(bool),
-    /// Lets the chosen boxes stand on the ground.
+    /// Puts the chosen boxes on the ground.
     DropToGround,
     /// Fits the chosen boxes to their voxels.
     Fit,
-    /// Puts the chosen boxes on the middle of their lane, in its direction.
+    /// Puts the chosen boxes on the centre line of their lane, in its direction.
     ToLane,
-    /// What a tool made of an event, or of an option that was set.
+    /// An act of a tool, from an event or from an option that was set.
     Act(Act),
-    /// The action of a tool of that name: takes it, or changes how it is used.
+    /// A shortcut of a tool, by its id: takes the tool, or changes its options.
     Shortcut(&'static str),
-    /// Of the tools for things.
+    /// A command of the tools for things.
     Thing(super::things::ThingCommand),
 }
 
 impl ToolCommand {
-    /// Chooses the box that was clicked, or nothing; with Shift it joins what is chosen, or leaves it.
+    /// Chooses the clicked box, or none; with Shift, adds it to the selection or removes it.
     pub fn clicked(id: Option<BoxId>, shift: bool) -> Self {
         let how = if shift { Choose::Toggle } else { Choose::Only };
         Self::Choose(id.into_iter().collect(), how)

@@ -1,5 +1,5 @@
-//! What the window adds to the tools of the editor: what a user can ask beside the pointer, their options as rows of controls, and
-//! what they hold that the editor does not know. Nothing here knows the canvases, the panes or the application.
+//! The window's part of the tools: commands besides the pointer, options as rows of controls, and state that the editor
+//! does not have. This module does not use the canvases, the panes or the application.
 
 pub mod command;
 pub mod option_rows;

@@ -1,4 +1,4 @@
-//! The options of a tool as rows of controls. Each kind of option is drawn alike for all tools.
+//! The options of a tool as rows of controls. Each kind of option looks the same for all tools.
 
 use egui::Ui;
 use egui::accesskit::Role;
@@ -12,7 +12,7 @@ use widgets::hint::caption;
 use widgets::icons::{self, section};
 use widgets::theme;
 
-/// Draws options, whose texts are English, in the language that is shown; what the user set, by name.
+/// Draws options with their English texts translated. Returns the values that the user set, by id.
 pub fn show(ui: &mut Ui, settings: &[Setting]) -> Vec<(&'static str, Value)> {
     let mut set = Vec::new();
     for setting in settings {
@@ -139,7 +139,7 @@ fn wide_slider(ui: &mut Ui, number: &Number) -> Option<Value> {
     row.inner
 }
 
-/// Choices in a list that opens, on a line of their own if they have no title.
+/// Choices in a drop-down list, on a line of their own if they have no title.
 fn list_of(ui: &mut Ui, title: &str, name: &str, chosen: usize, choices: &[(String, &str)]) -> Option<Value> {
     let shown = choices.get(chosen).map_or("", |c| t(&c.0));
     let mut now = chosen;
@@ -170,7 +170,7 @@ fn list_of(ui: &mut Ui, title: &str, name: &str, chosen: usize, choices: &[(Stri
     (now != chosen).then_some(Value::Index(now))
 }
 
-/// Choices in a list that opens, with a caption; true if another was chosen.
+/// Choices in a drop-down list with a caption; returns true if another was chosen.
 pub fn list<T: Copy + PartialEq>(
     ui: &mut Ui,
     title: &str,
@@ -186,7 +186,7 @@ pub fn list<T: Copy + PartialEq>(
     now.is_some()
 }
 
-/// Classes in two columns, one of them chosen; the one that was taken.
+/// Classes in two columns, one of them chosen. Returns the class that was clicked.
 fn class(ui: &mut Ui, shown: &[Class], chosen: Class, verb: &str) -> Option<Class> {
     let gap = 4.0;
     let width = (ui.available_width() - gap) / 2.0;

@@ -1,4 +1,4 @@
-//! What the tools hold between two frames: the hand of the editor, and what only the window knows of.
+//! State of the tools between two frames: the hand of the editor, and state that only the window has.
 
 use std::ops::{Deref, DerefMut};
 
@@ -11,33 +11,34 @@ use scene::Scene;
 
 use crate::scenery::Drawer;
 
-/// What is inpainted from fresh noise has no inverted noise that already holds most of it.
+/// Least steps of an inpainting: it starts from fresh noise, without the inverted noise that already holds most of the
+/// result.
 const FEWEST_INPAINT_STEPS: u32 = 10;
 
-/// The tools and what they hold. It is a [`Hand`] with more.
+/// The tools and their state. It dereferences to a [`Hand`].
 #[derive(Clone, Debug)]
 pub struct ToolState {
     /// The tools themselves.
     pub toolbox: Toolbox,
-    /// The tool in hand, what is chosen, the options of the tools.
+    /// The tool in hand, the selection, and the options of the tools.
     pub hand: Hand,
-    /// Cells to inpaint although nothing was edited there.
+    /// Latent cells that are marked to be inpainted.
     pub region: InpaintMask,
-    /// Words change only what lies in that region.
+    /// True if words change only objects in that region.
     pub words_within: bool,
-    /// How often cells were inpainted: each time from other noise.
+    /// Number of inpaintings so far; each one uses other noise.
     pub times_inpainted: u64,
-    /// What draws scenery.
+    /// The method that draws scenery.
     pub drawer: Drawer,
-    /// Times that scenery was drawn.
+    /// Number of times that scenery was drawn.
     pub scenery_draws: u64,
-    /// Opacity of each map layer over what lies below it, in draw order, 0 to 1.
+    /// Opacity of each map layer over the layers below it, in draw order, 0 to 1.
     pub layer_opacity: [f32; DRAW_ORDER.len()],
     /// Opacity of all map layers together over voxels, 0 to 1.
     pub layers_opacity: f32,
-    /// Layers shown before one was shown alone.
+    /// Layers shown before one layer was shown alone.
     pub before_solo: Option<u32>,
-    /// Where the pointer is over the bird's-eye view, ego frame, m.
+    /// Position of the pointer over the bird's-eye view, ego frame, m.
     pub pointer_m: Option<DVec2>,
 }
 
@@ -74,7 +75,8 @@ impl DerefMut for ToolState {
 }
 
 impl ToolState {
-    /// Edits as far as they are of the marked region, and how many objects they leave out; see [`within`](editor::within).
+    /// The edits limited to the marked region, and the number of objects that this leaves out; see
+    /// [`within`](editor::within).
     pub fn within_region(&self, scene: &Scene, edits: Vec<Edit>) -> (Vec<Edit>, usize) {
         let extent = scene.frame().extent();
         let columns = extent
@@ -93,7 +95,7 @@ impl ToolState {
         }
     }
 
-    /// Makes parameters inpaint the region.
+    /// Sets parameters so that they inpaint the region.
     pub fn inpaint_region(&mut self, params: &mut GenParams) {
         self.times_inpainted += 1;
         params.inpaint = self.region.clone();
@@ -102,7 +104,7 @@ impl ToolState {
         params.seed = params.seed.wrapping_add(self.times_inpainted);
     }
 
-    /// Marks an area of a map to inpaint, or takes the mark away.
+    /// Marks an area of the map to be inpainted, or removes the mark.
     pub fn mark(&mut self, extent: scene::Extent, area: &Area, on: bool) {
         let cells = match area {
             Area::Rect(a_m, b_m) => InpaintMask::of_rect(extent, *a_m, *b_m),
@@ -112,7 +114,7 @@ impl ToolState {
                     points_m: vec![*a_m, *b_m],
                     width_m: *width_m,
                 };
-                // A stroke beside the map marks nothing.
+                // A stroke outside the map marks no cell.
                 self.region
                     .set_columns(extent, &stroke.cells(extent).unwrap_or_default(), on);
                 return;

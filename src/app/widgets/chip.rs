@@ -1,4 +1,4 @@
-//! Chips: a phrase with what takes it out, in one rounded shape that no line break parts; some open a menu.
+//! Chips: a phrase with a button that removes it, in one rounded shape without line breaks. Some open a menu.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, CornerRadius, PopupCloseBehavior, Response, RichText, TextStyle, Ui};
@@ -6,7 +6,7 @@ use egui::{Button, CornerRadius, PopupCloseBehavior, Response, RichText, TextSty
 use crate::theme;
 
 const ROUND: u8 = 10;
-/// Gap between the text of a chip and its end, points.
+/// Gap between the text of a chip and its removing end, points.
 const SEAM: f32 = 1.0;
 
 /// Width of a chip with its end, points.
@@ -21,7 +21,7 @@ fn width(ui: &Ui, text: &str) -> f32 {
     galley(text) + galley("  ×") + 4.0 * ui.spacing().button_padding.x + SEAM
 }
 
-/// The text as far as a line has room for it; the rest shows under the pointer.
+/// The text cut to the width of a line; hovering shows the full text.
 fn shortened(ui: &Ui, text: &str) -> String {
     let most = ui.max_rect().width();
     if width(ui, text) <= most {
@@ -35,7 +35,7 @@ fn shortened(ui: &Ui, text: &str) -> String {
         .map_or_else(|| cut(1), cut)
 }
 
-/// Begins a new line where the rest of this one is too short for a chip.
+/// Begins a new line if the rest of this one is too short for a chip.
 pub fn make_room(ui: &mut Ui, text: &str) {
     let width = width(ui, &shortened(ui, text));
     let begun = ui.cursor().left() > ui.max_rect().left() + 1.0;
@@ -57,7 +57,7 @@ fn button(text: &str, left: bool, right: bool) -> Button<'static> {
         })
 }
 
-/// A chip without a menu; a click takes it out.
+/// A chip without a menu; a click removes it.
 pub fn plain(ui: &mut Ui, text: &str) -> Response {
     let shown = shortened(ui, text);
     let response = ui.add(button(&format!("{shown}  ×"), true, true));
@@ -71,7 +71,7 @@ pub fn plain(ui: &mut Ui, text: &str) -> Response {
 /// The text of a chip, with a menu; [`end`] follows.
 pub fn menu(ui: &mut Ui, text: &str, add: impl FnOnce(&mut Ui)) -> Response {
     let gap = std::mem::replace(&mut ui.spacing_mut().item_spacing.x, SEAM);
-    // What is in it is typed into and dragged; what chooses closes it.
+    // Fields in the menu are typed into and dragged, so a click inside does not close it.
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let shown = shortened(ui, text);
     let menu = MenuButton::from_button(button(&shown, true, false)).config(config);
@@ -87,7 +87,7 @@ pub fn menu(ui: &mut Ui, text: &str, add: impl FnOnce(&mut Ui)) -> Response {
     }
 }
 
-/// The end of a chip with a menu: a click takes it out.
+/// The end of a chip with a menu; a click removes the chip.
 pub fn end(ui: &mut Ui) -> Response {
     ui.add(button("×", false, true))
 }

@@ -1,12 +1,11 @@
-//! Which rectangles of the window look different from the frame before: where triangles changed, and where a texture
-//! that they show did.
+//! Rectangles of the window that differ from the frame before: where triangles changed, or a texture that they show.
 
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{Pos2, Rect, TextureId, pos2};
 
 use viewport::ui_mesh::{UiMesh, UiVertex};
 
-/// Rectangles up to which they are kept apart; more are joined.
+/// Most rectangles that stay separate; more are joined.
 const MOST: usize = 8;
 
 /// All triangles of a frame.
@@ -14,11 +13,11 @@ const MOST: usize = 8;
 pub(crate) struct Frame {
     pub vertices: Vec<UiVertex>,
     pub indices: Vec<u32>,
-    /// Triangles of one texture each in a rectangle, points.
+    /// Triangles of one texture each, with their clip rectangle, points.
     pub parts: Vec<(Rect, TextureId, UiMesh)>,
 }
 
-/// A texture that was written to: all of it, or a part, as shares of its width and height.
+/// A texture that was written to: completely, or a part as shares of its width and height.
 pub(crate) type Touched = (TextureId, Option<Rect>);
 
 impl Frame {
@@ -59,12 +58,12 @@ impl Frame {
         }
     }
 
-    /// The rectangle that a part covers at most, points.
+    /// The bounding rectangle of a part, points.
     pub fn bounds(&self, i: usize) -> Rect {
         self.part(i).bounds()
     }
 
-    /// Rectangles, points, outside of which this looks the same as the frame before.
+    /// Rectangles, points, outside of which this frame equals the frame before.
     pub fn damage(&self, before: &Frame, touched: &[Touched]) -> Vec<Rect> {
         let (new, old) = (self.parts.len(), before.parts.len());
         let same = (0..new.min(old))
@@ -113,7 +112,7 @@ impl Part<'_> {
         Rect::from_points(&all.collect::<Vec<_>>()).intersect(self.clip)
     }
 
-    /// Triangles with a vertex in a range.
+    /// Bounding rectangle of the triangles with a vertex in a range.
     fn around(&self, range: std::ops::Range<usize>) -> Rect {
         let mut out = Rect::NOTHING;
         for triangle in self.indices.chunks_exact(3) {
@@ -124,7 +123,7 @@ impl Part<'_> {
         out.intersect(self.clip)
     }
 
-    /// Where two parts look different.
+    /// Rectangles in which two parts differ.
     fn differs_from(&self, before: &Part<'_>) -> Vec<Rect> {
         if self == before {
             return Vec::new();
@@ -139,7 +138,7 @@ impl Part<'_> {
             .take_while(|&i| a[a.len() - 1 - i] == b[b.len() - 1 - i])
             .count();
         if a.len() == b.len() && same == a.len() {
-            // The same corners, joined in another way.
+            // Equal corners, joined in another way.
             return vec![self.bounds(), before.bounds()];
         }
         vec![
@@ -148,7 +147,8 @@ impl Part<'_> {
         ]
     }
 
-    /// Where a share of the texture is shown; of a picture that is one rectangle.
+    /// The rectangle in which a share of the texture is shown, for a part that is one rectangle; else the bounds of the
+    /// part.
     fn showing(&self, share: Option<Rect>) -> Rect {
         let all = self.bounds();
         let Some(share) = share.filter(|_| self.vertices.len() == 4) else {
@@ -166,12 +166,12 @@ impl Part<'_> {
         };
         let min = pos2(along(0, share.min.x), along(1, share.min.y));
         let max = pos2(along(0, share.max.x), along(1, share.max.y));
-        // The pixel beside it takes part in the interpolation.
+        // The neighbouring pixel takes part in the interpolation.
         Rect::from_min_max(min, max).expand(2.0).intersect(all)
     }
 }
 
-/// Rectangles that touch become one, and the nearest ones until they are few.
+/// Joins rectangles that touch, then the nearest ones until at most [`MOST`] are left.
 fn joined(rects: Vec<Rect>) -> Vec<Rect> {
     let mut out: Vec<Rect> = Vec::new();
     for mut rect in rects {
@@ -238,7 +238,7 @@ mod tests {
             row(6, false).damage(&row(7, false), &[]),
             [square(240.0, 100.0).union(square(280.0, 100.0))]
         );
-        // One that is put in or taken out between others.
+        // A shape is added or removed between others.
         assert_eq!(row(5, true).damage(&row(5, false), &[]), [square(500.0, 300.0)]);
         assert_eq!(row(5, false).damage(&row(5, true), &[]), [square(500.0, 300.0)]);
     }
@@ -267,7 +267,7 @@ mod tests {
         assert_eq!(touching.len(), 2);
     }
 
-    /// What is outside of the damage is drawn by the same triangles as before.
+    /// Outside the damage, the same triangles are drawn as before.
     #[test]
     fn a_window_is_undamaged_where_nothing_changed() {
         let ctx = Context::default();

@@ -1,19 +1,20 @@
-//! Fonts for languages whose letters egui's own fonts lack: a small one comes along for the texts of the interface, and one of
-//! the system, if there is one, for all else that may be typed.
+//! Fonts for languages whose letters egui's own fonts lack: a small bundled font for the texts of the interface, and a
+//! font of the system, if there is one, for any other text that may be typed.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::{Context, FontData, FontDefinitions, FontFamily};
 
-/// Letters of the texts of the interface, cut out of Noto Sans CJK (SIL Open Font License 1.1) by
+/// Bundled fonts with the letters of the interface's texts, cut out of Noto Sans CJK (SIL Open Font License 1.1) by
 /// `assets/languages/fonts.py`.
 const JAPANESE: &[u8] = include_bytes!("../../../assets/languages/ja.otf");
 const CHINESE: &[u8] = include_bytes!("../../../assets/languages/zh.otf");
-/// Letters with which languages name themselves.
+/// Bundled font with the letters of the languages' own names.
 const NAMES: &[u8] = include_bytes!("../../../assets/languages/names.otf");
 
-/// Whole fonts where systems keep them, and which face of the file: first those with Japanese forms, then with Chinese ones.
+/// Complete fonts of common systems, each with the face of the file: first those with Japanese forms, then with Chinese
+/// ones.
 const OF_JAPANESE: [(&str, u32); 6] = [
     ("/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc", 0),
     ("/usr/share/fonts/noto-cjk/NotoSansCJK-Regular.ttc", 0),
@@ -39,7 +40,7 @@ pub fn apply(ctx: &Context, code: &str) {
     ctx.set_fonts(definitions(code, true));
 }
 
-/// The fonts of a language, with or without one of the system.
+/// The fonts of a language, with or without a font of the system.
 fn definitions(code: &str, system_too: bool) -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
     let needs = match code {
@@ -64,7 +65,7 @@ fn definitions(code: &str, system_too: bool) -> FontDefinitions {
     fonts
 }
 
-/// Behind the fonts that there are.
+/// Adds a font behind the existing ones.
 fn add(fonts: &mut FontDefinitions, name: &str, font: FontData) {
     fonts.font_data.insert(name.into(), Arc::new(font));
     for family in [FontFamily::Proportional, FontFamily::Monospace] {
@@ -106,7 +107,7 @@ mod tests {
         }
     }
 
-    /// A sign in the program that no font has is drawn as an empty square: an icon is what it should be.
+    /// A character that no font has would be drawn as an empty square; an icon has to be used instead.
     #[test]
     fn every_sign_that_is_drawn_has_a_shape() {
         let ctx = Context::default();
@@ -119,7 +120,7 @@ mod tests {
             let text = std::fs::read_to_string(&file).expect("source");
             let program = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or("");
             let lines = program.lines().filter(|l| !l.trim_start().starts_with("//"));
-            // Those of other scripts are words that are understood, or names of fonts.
+            // Characters of other scripts are words that the parser understands, or names of fonts.
             let drawn = lines
                 .flat_map(str::chars)
                 .filter(|c| !c.is_ascii() && *c < '\u{2e80}' && *c != IN_THE_TITLE);
@@ -133,7 +134,7 @@ mod tests {
         assert!(signs.is_empty(), "{signs:?}");
     }
 
-    /// Of a scene that is not saved, in the window's title, which the system draws.
+    /// Mark of an unsaved scene in the window's title, which the system draws.
     const IN_THE_TITLE: char = '●';
 
     fn rust_files(folder: &Path) -> Vec<PathBuf> {

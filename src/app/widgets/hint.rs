@@ -1,4 +1,4 @@
-//! Lines that explain, in small letters.
+//! Explanations in small letters.
 
 use egui::Ui;
 

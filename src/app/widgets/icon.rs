@@ -1,10 +1,10 @@
-//! Icons drawn as lines, each in a square of 16 points; their shapes are in `icon_shapes.rs`.
+//! Icons drawn as lines, each in a square of 16 points. `icon_shapes.rs` holds their shapes.
 
 use egui::{Color32, Rect, Shape, Stroke, Ui, Vec2, vec2};
 
 use super::icon_shapes::{self as shapes, Part, Point};
 
-/// A picture on a button.
+/// An icon on a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Icon {
     /// Arrow of the select tool.
@@ -98,7 +98,7 @@ pub enum Icon {
 }
 
 impl Icon {
-    /// The icon that a tool names; an arrow for a name that is none.
+    /// The icon of a name that a tool gives; an arrow for an unknown name.
     pub fn named(name: &str) -> Self {
         match name {
             "brush" => Self::Brush,

@@ -7,11 +7,11 @@ pub(crate) type Point = (f32, f32);
 pub(crate) enum Part {
     /// A line from point to point.
     Line(&'static [Point]),
-    /// The same, back to its beginning.
+    /// A closed line through points.
     Closed(&'static [Point]),
     /// A filled convex shape.
     Solid(&'static [Point]),
-    /// Part of a circle: centre, radius, from and to in degrees, clockwise from the right.
+    /// An arc: centre, radius, start and end in degrees, clockwise from the right.
     Arc(Point, f32, f32, f32),
     /// The lower (1) or the upper (-1) lid of an eye.
     Lid(f32),

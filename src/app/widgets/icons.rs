@@ -6,7 +6,7 @@ use egui::{Color32, Pos2, Rect, Response, Sense, Stroke, Ui, Vec2, WidgetInfo, p
 pub use super::icon::Icon;
 use crate::theme;
 
-/// A square button with an icon. `name` is what a screen reader and the tooltip say.
+/// A square button with an icon. `name` is for the screen reader and the tooltip.
 pub fn button(ui: &mut Ui, icon: Icon, name: &str, hint: &str, selected: bool, enabled: bool) -> Response {
     let size = Vec2::splat(theme::ROW + 4.0);
     let sense = if enabled { Sense::click() } else { Sense::hover() };
@@ -35,7 +35,7 @@ pub fn button(ui: &mut Ui, icon: Icon, name: &str, hint: &str, selected: bool, e
     response.on_hover_ui(|ui| tip(ui, name, hint))
 }
 
-/// What a tooltip says: the name, and the key or an explanation in weak type.
+/// Content of a tooltip: the name, and the key or an explanation in weak type.
 pub fn tip(ui: &mut Ui, name: &str, hint: &str) {
     ui.horizontal(|ui| {
         ui.label(name);
@@ -45,7 +45,7 @@ pub fn tip(ui: &mut Ui, name: &str, hint: &str) {
     });
 }
 
-/// The ring around what has the keyboard's focus.
+/// Draws a ring around a widget that has the keyboard's focus.
 pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect) {
     if response.has_focus() {
         let stroke = Stroke::new(1.0, theme::accent());
@@ -54,18 +54,18 @@ pub fn focus_ring(ui: &Ui, response: &Response, rect: Rect) {
     }
 }
 
-/// A small filled square with rounded corners: the colour of a class or layer.
+/// A small filled square with rounded corners, in the colour of a class or layer.
 pub fn swatch(ui: &Ui, center: Pos2, size: f32, color: Color32) {
     let rect = Rect::from_center_size(center, Vec2::splat(size));
     ui.painter().rect_filled(rect, 3.0, color);
-    // White on white is seen by its edge.
+    // An edge makes a white square visible on white.
     let alpha = if ui.visuals().dark_mode { 0.25 } else { 0.6 };
     let edge = Stroke::new(1.0, theme::text_weak().gamma_multiply(alpha));
     ui.painter()
         .rect_stroke(rect, 3.0, edge, egui::StrokeKind::Inside);
 }
 
-/// A row of a list: a swatch, a name, something weak on the right. Chosen rows are filled.
+/// A row of a list: a swatch, a name, and a weak text on the right. Chosen rows are filled.
 pub fn row(ui: &mut Ui, color: Color32, name: &str, right: &str, selected: bool, label: &str) -> Response {
     let size = vec2(ui.available_width(), theme::ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
@@ -91,7 +91,7 @@ pub fn row(ui: &mut Ui, color: Color32, name: &str, right: &str, selected: bool,
     let name_rect = ui
         .painter()
         .text(name_at, egui::Align2::LEFT_CENTER, name, body, text);
-    // Where both do not fit, the name stays.
+    // If both do not fit, only the name is drawn.
     let right = ui
         .painter()
         .layout_no_wrap(right.to_owned(), small, theme::text_weak());
@@ -106,8 +106,8 @@ pub fn row(ui: &mut Ui, color: Color32, name: &str, right: &str, selected: bool,
     response
 }
 
-/// Choices side by side where there is room for them, else as a list that opens; true if another was chosen. `label`
-/// names the list for screen readers.
+/// Choices side by side if they fit, else as a drop-down list. Returns true if another was chosen. `label` names the
+/// list for screen readers.
 pub fn choice<T: Copy + PartialEq>(
     ui: &mut Ui,
     chosen: &mut T,
@@ -132,7 +132,7 @@ pub fn choice<T: Copy + PartialEq>(
     *chosen != before
 }
 
-/// Width that choices side by side take, points.
+/// Width of choices side by side, points.
 pub fn segments_width<T>(ui: &Ui, choices: &[(T, &str, &str)]) -> f32 {
     let font = egui::TextStyle::Button.resolve(ui.style());
     let width = |name: &str| {
@@ -144,7 +144,7 @@ pub fn segments_width<T>(ui: &Ui, choices: &[(T, &str, &str)]) -> f32 {
     choices.iter().map(|(_, name, _)| width(name)).sum::<f32>() + 4.0
 }
 
-/// Choices side by side, one of them chosen; true if it changed.
+/// Choices side by side, one of them chosen. Returns true if the choice changed.
 pub fn segments<T: Copy + PartialEq>(ui: &mut Ui, chosen: &mut T, choices: &[(T, &str, &str)]) -> bool {
     let before = *chosen;
     let frame = egui::Frame::new()
@@ -156,7 +156,7 @@ pub fn segments<T: Copy + PartialEq>(ui: &mut Ui, chosen: &mut T, choices: &[(T,
         ui.spacing_mut().interact_size.y = theme::ROW - 4.0;
         ui.spacing_mut().button_padding = vec2(8.0, 1.0);
         ui.horizontal(|ui| {
-            // From left to right also where the bar is laid out from the right.
+            // From left to right, even in a bar that is laid out from the right.
             let mut choices: Vec<_> = choices.iter().collect();
             if ui.layout().prefer_right_to_left() {
                 choices.reverse();

@@ -1,11 +1,11 @@
-//! Menus that hold fields: a click into one does not close them. No list drops down in them: egui keeps one of both open at
-//! a time, so that the list would close the menu it is in.
+//! Menus that hold fields: a click into a field does not close them. They hold no drop-down lists: egui keeps only one
+//! popup open at a time, so a list would close its menu.
 
 use crate::icons::{self, Icon};
 use egui::containers::menu::{MenuButton, MenuConfig, SubMenuButton, is_in_menu};
 use egui::{Align, Layout, Popup, PopupCloseBehavior, Response, Ui, vec2};
 
-/// A button, or an entry of a menu, whose menu stays open until a click outside, Escape, or `ui.close()` in it.
+/// A button, or an entry of a menu, with a menu that stays open until a click outside, Escape, or `ui.close()` in it.
 pub fn with_fields(ui: &mut Ui, title: impl Into<String>, content: impl FnOnce(&mut Ui)) -> Response {
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     match is_in_menu(ui) {
@@ -14,7 +14,7 @@ pub fn with_fields(ui: &mut Ui, title: impl Into<String>, content: impl FnOnce(&
     }
 }
 
-/// The same at a button that shows an icon.
+/// A button with an icon and such a menu.
 pub fn of_icon(ui: &mut Ui, icon: Icon, name: &str, hint: &str, content: impl FnOnce(&mut Ui)) -> Response {
     let button = icons::button(ui, icon, name, hint, false, true);
     Popup::menu(&button)
@@ -23,12 +23,12 @@ pub fn of_icon(ui: &mut Ui, icon: Icon, name: &str, hint: &str, content: impl Fn
     button
 }
 
-/// Room for the line between two columns of a menu, points.
+/// Width of the gap with the line between two columns of a menu, points.
 const LINE: f32 = 9.0;
 
-/// Two columns of a menu with a line between them, as high as the higher one. A separator would be as high as the menu was in
-/// the frame before, and what is below it would be added to that: the menu would grow with each frame until it has no room and
-/// jumps up.
+/// Two columns of a menu with a line between them, as high as the higher column. A separator would have the height of
+/// the menu in the frame before, and the contents below would be added to it: the menu would grow with each frame until
+/// it has no room and jumps up.
 pub fn side_by_side(ui: &mut Ui, left: impl FnOnce(&mut Ui), right: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), 0.0);
     let layout = Layout::left_to_right(Align::Min);
@@ -43,7 +43,7 @@ pub fn side_by_side(ui: &mut Ui, left: impl FnOnce(&mut Ui), right: impl FnOnce(
     ui.painter().vline(row.inner, row.response.rect.y_range(), stroke);
 }
 
-/// The same at a right click on something.
+/// Such a menu at a right click on a widget.
 pub fn on_right_click(response: &Response, content: impl FnOnce(&mut Ui)) {
     Popup::context_menu(response)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)

@@ -1,6 +1,5 @@
-//! On a software rasteriser the window's panels are drawn by a shader of ours, and only where they changed: the shapes
-//! that egui is about to hand over are replaced by one callback, which brings a picture of the window up to date and
-//! shows it.
+//! Drawing of the window's panels on a software rasteriser, by a shader of ours and only where they changed. The shapes
+//! that egui is about to hand over are replaced by one callback, which updates a picture of the window and shows it.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,7 +12,8 @@ use super::damage::{Frame, Touched};
 use crate::theme;
 use viewport::ui_mesh::{UiMesh, UiPainter};
 
-/// Puts itself between egui and its renderer. Only where it pays, and where the target is not sRGB-converting.
+/// Installs the plugin between egui and its renderer, on a software rasteriser with a target that does not convert to
+/// sRGB.
 pub fn install(ctx: &Context, render_state: &RenderState) {
     let software = render_state.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
     if software && !render_state.target_format.is_srgb() {
@@ -31,19 +31,19 @@ pub fn install(ctx: &Context, render_state: &RenderState) {
     }
 }
 
-/// Says that a texture which egui does not own was drawn into; `share` is the part of it, 0 to 1, none: all.
+/// Notes that a texture which egui does not own was drawn into. `share` is the part of it, 0 to 1; `None`: all of it.
 pub fn picture_changed(ctx: &Context, texture: TextureId, share: Option<Rect>) {
     ctx.data_mut(|data| {
         let list: &mut Arc<Mutex<Vec<Touched>>> = data.get_temp_mut_or_default(Id::unique("pictures drawn"));
         let mut list = list.lock().unwrap_or_else(PoisonError::into_inner);
-        // Nobody takes them where a graphics card draws.
+        // On a graphics card no plugin takes these notes.
         if list.len() < 64 {
             list.push((texture, share));
         }
     });
 }
 
-/// What of the window has to be drawn again.
+/// Part of the window that has to be drawn again.
 enum Damage {
     All,
     Parts(Vec<Rect>), // points
@@ -60,7 +60,7 @@ impl Damage {
 
 struct Shared {
     painter: UiPainter,
-    /// Not drawn yet.
+    /// Damage that is not drawn yet.
     waiting: Damage,
 }
 
@@ -82,7 +82,7 @@ struct SoftwareUi {
 }
 
 impl SoftwareUi {
-    /// Takes note of the textures that were written; false if one was that all text comes from.
+    /// Notes the textures that were written to. Returns false if the texture of all text was replaced.
     fn note_textures(&mut self, ctx: &Context, output: &FullOutput) -> bool {
         let pictures: Arc<Mutex<Vec<Touched>>> = ctx.data_mut(|data| {
             data.get_temp_mut_or_default::<Arc<Mutex<Vec<Touched>>>>(Id::unique("pictures drawn"))
@@ -94,7 +94,7 @@ impl SoftwareUi {
         let written = output.textures_delta.set.iter();
         for (id, delta) in written.flat_map(|(id, deltas)| deltas.iter().map(move |d| (id, d))) {
             match (*id == TextureId::default(), delta.pos) {
-                // New letters beside those there.
+                // New letters were added beside the old ones.
                 (true, Some(_)) => {}
                 (true, None) => fonts_stay = false,
                 (false, None) => {
@@ -159,7 +159,7 @@ impl egui::Plugin for SoftwareUi {
     }
 }
 
-/// The pixels of a rectangle, as egui rounds them: left, top, width, height; none if it is empty.
+/// The pixels of a rectangle, as egui rounds them: left, top, width, height; `None` if it is empty.
 fn scissor(rect: Rect, scale: f32, size: [u32; 2]) -> Option<[u32; 4]> {
     let pixel = |v: f32, most: u32| ((v * scale).round().max(0.0) as u32).min(most);
     let (left, top) = (pixel(rect.min.x, size[0]), pixel(rect.min.y, size[1]));
@@ -167,7 +167,7 @@ fn scissor(rect: Rect, scale: f32, size: [u32; 2]) -> Option<[u32; 4]> {
     (right > left && bottom > top).then(|| [left, top, right - left, bottom - top])
 }
 
-/// What two rectangles of pixels share.
+/// The intersection of two rectangles of pixels; `None` if it is empty.
 fn common(a: [u32; 4], b: [u32; 4]) -> Option<[u32; 4]> {
     let low = [0, 1].map(|i| a[i].max(b[i]));
     let high = [0, 1].map(|i| (a[i] + a[i + 2]).min(b[i] + b[i + 2]));
@@ -211,7 +211,7 @@ impl CallbackTrait for Painted {
         let (size, scale) = (info.screen_size_px, info.pixels_per_point);
         let damage: Vec<[u32; 4]> = match std::mem::replace(&mut shared.waiting, Damage::Parts(Vec::new())) {
             Damage::All => vec![[0, 0, size[0], size[1]]],
-            // Outward to whole pixels: they are smooth at their edges.
+            // Rounded outward to whole pixels, because shapes are smooth at their edges.
             Damage::Parts(rects) => rects
                 .into_iter()
                 .filter_map(|r| scissor(r.expand(1.0 / scale), scale, size))
@@ -248,7 +248,7 @@ impl CallbackTrait for Painted {
     }
 }
 
-/// Texels of a texture as shares of its width and height, with one more on each side: they may be averaged.
+/// Texels of a texture as shares of its width and height, with one more on each side, since they may be averaged.
 fn part_of(at: [usize; 2], part: [usize; 2], size: [usize; 2]) -> Rect {
     let low = at.map(|v| v.saturating_sub(1));
     let high = [0, 1].map(|i| (at[i] + part[i] + 1).min(size[i]));

@@ -1,4 +1,4 @@
-//! How the window is painted: a dark and a light theme, one spacing scale, the colours that panels share.
+//! The look of the window: a dark and a light theme, the spacing scale, and the colours of panels.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use scene::Class;
 
-/// Which theme the window has.
+/// Theme of the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Theme {
@@ -76,7 +76,7 @@ const LIGHT: Colors = Colors {
     bad: Color32::from_rgb(168, 30, 26),
 };
 
-/// The theme of this process's window: there is one, and its colours are asked for everywhere.
+/// The theme of this process's window. It is global, because its colours are used everywhere.
 static LIGHT_THEME: AtomicBool = AtomicBool::new(false);
 
 fn colors() -> &'static Colors {
@@ -92,89 +92,90 @@ pub fn is_light() -> bool {
     LIGHT_THEME.load(Ordering::Relaxed)
 }
 
-/// Behind everything: gaps between panels.
+/// Colour behind everything, in the gaps between panels.
 pub fn background() -> Color32 {
     colors().background
 }
 
-/// Surface of panels and bars.
+/// Colour of panels and bars.
 pub fn panel() -> Color32 {
     colors().panel
 }
 
-/// Surface of empty picture frames and text fields.
+/// Colour of empty picture frames and text fields.
 pub fn well() -> Color32 {
     colors().well
 }
 
-/// A row or field on a panel.
+/// Colour of a row or field on a panel.
 pub fn field() -> Color32 {
     colors().field
 }
 
-/// The same under the pointer.
+/// Colour of a row or field under the pointer.
 pub fn field_hover() -> Color32 {
     colors().field_hover
 }
 
-/// The same while pressed.
+/// Colour of a row or field while pressed.
 pub fn field_active() -> Color32 {
     colors().field_active
 }
 
-/// Text that matters.
+/// Colour of normal text.
 pub fn text() -> Color32 {
     colors().text
 }
 
-/// Titles and chosen things.
+/// Colour of titles and of the selection.
 pub fn text_strong() -> Color32 {
     colors().text_strong
 }
 
-/// Units, hints, captions.
+/// Colour of units, hints and captions.
 pub fn text_weak() -> Color32 {
     colors().text_weak
 }
 
-/// What is chosen or runs.
+/// Accent colour, for the selection and for running work.
 pub fn accent() -> Color32 {
     colors().accent
 }
 
-/// Surface of what is chosen.
+/// Fill colour of the selection.
 pub fn accent_fill() -> Color32 {
     colors().accent_fill
 }
 
-/// All is well.
+/// Colour of success.
 pub fn good() -> Color32 {
     colors().good
 }
 
-/// Draws attention.
+/// Colour of warnings.
 pub fn warn() -> Color32 {
     colors().warn
 }
 
-/// This failed.
+/// Colour of failures.
 pub fn bad() -> Color32 {
     colors().bad
 }
 
-/// Around the grid of the bird's-eye view. Views are dark in both themes: their colours are made for it.
+/// Colour around the grid of the bird's-eye view. Views are dark in both themes, because their colours are made for
+/// dark.
 pub const CANVAS: Color32 = Color32::from_rgb(20, 22, 26);
-/// Text on views and pictures.
+/// Colour of text on views and pictures.
 pub const ON_CANVAS: Color32 = Color32::from_rgb(236, 239, 243);
 
 /// One step of the spacing scale, points.
 pub const GAP: f32 = 8.0;
 /// Height of a row, a button, a field, points.
 pub const ROW: f32 = 24.0;
-/// Corners of fields and buttons, points.
+/// Corner radius of fields and buttons, points.
 pub const RADIUS: u8 = 4;
 
-/// Puts the theme on a context.
+/// Applies the theme to a context.
 pub fn apply(ctx: &egui::Context, theme: Theme) {
     LIGHT_THEME.store(theme == Theme::Light, Ordering::Relaxed);
     let theme = match theme {
@@ -252,7 +253,7 @@ fn visuals(v: &mut egui::Visuals) {
     widget(&mut w.noninteractive, panel(), text());
     w.noninteractive.bg_stroke = Stroke::new(1.0, colors().edge);
     widget(&mut w.inactive, field(), text());
-    // Boxes of ticks, rings of choices, rails: on a dialog they would not be seen.
+    // Without this, checkboxes, radio rings and rails would be invisible on a dialog.
     w.inactive.bg_fill = field_active();
     widget(&mut w.hovered, field_hover(), text_strong());
     widget(&mut w.active, field_active(), text_strong());
@@ -269,12 +270,12 @@ pub fn rgb([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// The same, with an opacity of 0 to 1.
+/// Colour of an sRGB triple with an opacity of 0 to 1.
 pub fn rgba([r, g, b]: [u8; 3], opacity: f32) -> Color32 {
     Color32::from_rgba_unmultiplied(r, g, b, (opacity.clamp(0.0, 1.0) * 255.0) as u8)
 }
 
-/// Colour of a class on a panel; free space, black as a voxel, shows as a dim grey.
+/// Colour of a class on a panel. Free space, which is black as a voxel, is a dim grey.
 pub fn class_color(class: Class) -> Color32 {
     match class {
         Class::Free => Color32::from_rgb(70, 76, 86),
@@ -282,18 +283,18 @@ pub fn class_color(class: Class) -> Color32 {
     }
 }
 
-/// Frame of a side panel. Not filled: the window is cleared with [`panel`], and pixels drawn twice
-/// cost on a software rasteriser.
+/// Frame of a side panel. It is not filled: the window is cleared with [`panel`], and pixels drawn twice are slow on a
+/// software rasteriser.
 pub fn panel_frame() -> egui::Frame {
     egui::Frame::new().inner_margin(Margin::symmetric(12, 10))
 }
 
-/// Frame of a bar; not filled either.
+/// Frame of a bar, not filled either.
 pub fn bar_frame() -> egui::Frame {
     egui::Frame::new().inner_margin(Margin::symmetric(10, 4))
 }
 
-/// First letter large: `driveable surface` becomes `Driveable surface`.
+/// The text with its first letter in upper case: `driveable surface` becomes `Driveable surface`.
 pub fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     letters

@@ -1,4 +1,4 @@
-//! Small maps: lanes, crossings and boxes as the bird's-eye view shows them, ahead of the ego vehicle upward.
+//! Small maps: lanes, crossings and boxes as in the bird's-eye view, ahead of the ego vehicle is up.
 
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, pos2};
 use glam::DVec2;
@@ -7,7 +7,7 @@ use crate::theme;
 use place::holds::ego;
 use scene::{BevLayout, PolylineKind, SceneBox};
 
-/// Metres that the shorter side of a map shows, a little more than the grid is wide.
+/// Length that the shorter side of a map shows, m: a little more than the width of the grid.
 const SIDE_M: f32 = 84.0;
 /// Width of a lane, m.
 const LANE_M: f32 = 3.6;
@@ -15,7 +15,7 @@ const LANE_M: f32 = 3.6;
 /// Side of an enlarged map, points.
 const LARGE: f32 = 380.0;
 
-/// The same large, beside what the pointer rests on, over a line that says what a click does.
+/// An enlarged map as the tooltip of a widget, above the text `says`.
 pub fn enlarged(over: &egui::Response, layout: &BevLayout, boxes: &[SceneBox], says: &str) {
     let tip = egui::Tooltip::for_enabled(over).width(LARGE);
     tip.show(|ui| {
@@ -26,7 +26,7 @@ pub fn enlarged(over: &egui::Response, layout: &BevLayout, boxes: &[SceneBox], s
     });
 }
 
-/// The road, what stands on it, and the ego vehicle.
+/// Draws the road, the boxes on it, and the ego vehicle.
 pub fn scene(ui: &Ui, rect: Rect, layout: &BevLayout, boxes: &[SceneBox]) {
     let painter = ui.painter().with_clip_rect(rect);
     let scale = rect.width().min(rect.height()) / SIDE_M;
@@ -58,7 +58,7 @@ pub fn scene(ui: &Ui, rect: Rect, layout: &BevLayout, boxes: &[SceneBox]) {
     quad(&ego(), theme::accent());
     for b in boxes {
         quad(b, theme::class_color(b.class));
-        // Small ones would not be seen otherwise.
+        // A dot keeps small boxes visible.
         painter.circle_filled(at(b.center_m.truncate()), 1.2, theme::class_color(b.class));
     }
 }

@@ -1,4 +1,4 @@
-//! The form that makes a batch: variants of the open scene, or a plan from a file.
+//! The form for a batch: variants of the open scene, or a plan from a file.
 
 use std::path::{Path, PathBuf};
 
@@ -12,10 +12,10 @@ use widgets::{icons, theme};
 
 /// Name of the scene in the batch's folder.
 pub const BASE: &str = "base.loom";
-/// Steps of an offset at most.
+/// Most steps of an offset.
 const MOST_STEPS: usize = 41;
 
-/// How far the chosen object is moved: from minus to plus this, in so many steps.
+/// Offsets of the chosen object: from minus to plus `reach_m`, in a number of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Range {
     on: bool,
@@ -48,15 +48,15 @@ impl Range {
     }
 }
 
-/// What the user has filled in.
+/// Input of the user in the form.
 pub struct PlanForm {
-    /// A plan from a file, not variants of the open scene.
+    /// True for a plan from a file, false for variants of the open scene.
     pub from_file: bool,
     /// The plan's file.
     pub plan_file: String,
-    /// Where the variants go.
+    /// Folder for the variants.
     pub folder: String,
-    /// Why the last try did not work.
+    /// Why the last attempt to add the batch failed.
     pub problem: Option<String>,
     times: Vec<TimeOfDay>,
     weathers: Vec<Weather>,
@@ -71,7 +71,7 @@ pub struct PlanForm {
 }
 
 impl PlanForm {
-    /// For a folder beside the scene's file.
+    /// A form with a folder beside the scene's file.
     pub fn new(folder: &Path) -> Self {
         Self {
             from_file: false,
@@ -91,12 +91,12 @@ impl PlanForm {
         }
     }
 
-    /// The folder, without spaces around it.
+    /// The folder, without surrounding spaces.
     pub fn output(&self) -> PathBuf {
         PathBuf::from(self.folder.trim())
     }
 
-    /// Variants of a scene that lies in the output folder.
+    /// The plan for variants of a scene that lies in the output folder.
     pub fn plan(&self, scene: &Scene, chosen: Option<BoxId>) -> Plan {
         let mut sweep = Vec::new();
         let mut axis = |name: &str, values: Vec<Value>| {
@@ -158,7 +158,7 @@ impl PlanForm {
         }
     }
 
-    /// Draws the form; true if a batch is to be added. `qualities` are the names of presets.
+    /// Draws the form; returns true if a batch is to be added. `qualities` are the names of presets.
     pub fn ui(&mut self, ui: &mut Ui, scene: &Scene, chosen: Option<BoxId>, qualities: &[String]) -> bool {
         let kinds = [
             (
@@ -365,7 +365,7 @@ mod tests {
             })
             .collect();
         assert_eq!(offsets, [-2.0, 0.0, 2.0]);
-        // Without an object nothing is moved; with networks there are seeds.
+        // Without an object there are no offsets; with networks there are seeds.
         form.quality = Some("draft".into());
         assert_eq!(form.plan(&scene, None).count(), 8);
     }

@@ -1,4 +1,4 @@
-//! The window of batches: a queue, and the variants of one of them as small pictures to star and to discard.
+//! The window of batches: the queue, and the variants of one batch as small pictures that can be starred and discarded.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -14,28 +14,28 @@ use widgets::{icons, theme};
 
 /// Size of a small picture, points.
 const PICTURE: egui::Vec2 = vec2(226.0, 81.0);
-/// Below it: number and changes, star.
+/// Height of the caption below it, with number, changes and star, points.
 const CAPTION: f32 = 22.0;
-/// Height of the window at most, points.
+/// Largest height of the window, points.
 const HEIGHT: f32 = 640.0;
-/// Pictures read from disk in one frame.
+/// Most pictures read from disk in one frame.
 const READ_AT_ONCE: usize = 6;
-/// Pictures kept in memory.
+/// Most pictures kept in memory.
 const MOST_PICTURES: usize = 400;
 
-/// What the window shows of the application.
+/// Input of the window.
 pub struct BatchesInput<'a> {
     /// The open scene.
     pub scene: &'a Scene,
-    /// The object that is chosen in it.
+    /// The chosen object of the scene.
     pub chosen: Option<BoxId>,
-    /// Names of the presets of quality.
+    /// Names of the quality presets.
     pub qualities: &'a [String],
 }
 
-/// What the user asked for.
+/// Request of the user.
 pub enum Asked {
-    /// Add what the form says.
+    /// Add the batch of the form.
     Add,
     /// Open a variant as a scene.
     Open(u64, usize),
@@ -45,7 +45,7 @@ pub enum Asked {
     Discard(u64, usize),
 }
 
-/// Which variants are shown.
+/// Filter of the variants.
 #[derive(Clone, Copy, Default, PartialEq)]
 enum Shown {
     #[default]
@@ -55,11 +55,11 @@ enum Shown {
     Failed,
 }
 
-/// What is chosen in the window.
+/// State of the window.
 pub struct BatchesWindow {
     /// The form.
     pub form: PlanForm,
-    /// The form is shown in place of a batch.
+    /// True if the form is shown in place of a batch.
     pub is_new: bool,
     /// The batch whose variants are shown.
     pub chosen: Option<u64>,
@@ -68,7 +68,7 @@ pub struct BatchesWindow {
 }
 
 impl BatchesWindow {
-    /// With the form, for a folder beside the scene's file.
+    /// A window with the form, for a folder beside the scene's file.
     pub fn new(folder: &std::path::Path) -> Self {
         Self {
             form: PlanForm::new(folder),
@@ -79,7 +79,7 @@ impl BatchesWindow {
         }
     }
 
-    /// Draws it.
+    /// Draws the window. Returns the request of the user.
     pub fn ui(
         &mut self,
         ui: &Ui,
@@ -199,7 +199,7 @@ impl BatchesWindow {
         asked
     }
 
-    /// The small picture of a variant, if it is there.
+    /// The small picture of a variant; `None` if it is not there, or not read yet.
     fn picture(&mut self, ui: &Ui, path: PathBuf, may_read: &mut usize) -> Option<egui::TextureId> {
         if let Some(Some(texture)) = self.pictures.get(&path) {
             return Some(texture.id());
@@ -220,7 +220,7 @@ impl BatchesWindow {
         Some(id)
     }
 
-    /// Forgets the pictures, which another run may have made anew.
+    /// Forgets the pictures, because another run may have replaced them.
     pub fn forget_pictures(&mut self) {
         self.pictures.clear();
     }
@@ -230,7 +230,7 @@ fn cell_size() -> egui::Vec2 {
     PICTURE + vec2(0.0, CAPTION)
 }
 
-/// State in a colour and a word.
+/// The state of a batch as a colour and a text.
 fn told(item: &Item, is_next: bool) -> (Color32, String) {
     let of = item.plan.count();
     match &item.state {
@@ -323,7 +323,7 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
     }
 }
 
-/// One variant on the sheet.
+/// One variant in the list.
 struct Cell<'a> {
     item: &'a Item,
     variant: usize,
@@ -404,7 +404,7 @@ impl Cell<'_> {
         asked
     }
 
-    /// Number and what is other than in the base, short.
+    /// The variant's number and its changes from the base, short.
     fn changes(&self) -> String {
         use crate::batch::plan::Change;
         let values = self.item.plan.values_of(self.variant);

@@ -1,4 +1,4 @@
-//! The dialog of pictures: what is shown, how large, with what beside it; and the 3D view turned once around.
+//! The dialog of pictures: subject, size and annotations; also a turntable of the 3D view.
 
 use egui::{DragValue, Ui, Window};
 
@@ -11,30 +11,30 @@ use sensors::cameras;
 use widgets::icons::section;
 use widgets::theme;
 
-/// What is set in the dialog.
+/// Settings of the dialog.
 #[derive(Clone, Debug)]
 pub struct CaptureDialog {
-    /// It is shown.
+    /// True if it is shown.
     pub open: bool,
-    /// How a picture is taken.
+    /// Options of the picture.
     pub options: CaptureOptions,
-    /// The 3D view turns once around what it looks at.
+    /// True for a turntable of the 3D view.
     pub turns: bool,
-    /// How long a turn takes, s.
+    /// Duration of the turntable, s.
     pub seconds: f64,
-    /// Moving pictures of the scene from its first moment to its last; see [`Self::is_clip`].
+    /// True for moving pictures of the scene from its first moment to its last; see [`Self::is_clip`].
     pub moves: bool,
-    /// The camera that moving pictures show; all if none.
+    /// The camera of moving pictures; all if `None`.
     pub camera: Option<usize>,
 }
 
 impl CaptureDialog {
-    /// True if moving pictures of what happens are saved, not one picture or a turn.
+    /// True if a clip of the scene is saved, not one picture or a turntable.
     pub fn is_clip(&self) -> bool {
         self.moves && !self.turns && Self::can_move(self.options.subject)
     }
 
-    /// True for what a clip can show.
+    /// True for subjects that a clip can show.
     fn can_move(subject: Subject) -> bool {
         matches!(subject, Subject::View | Subject::Map | Subject::Cameras)
     }
@@ -61,7 +61,7 @@ impl Default for CaptureDialog {
     }
 }
 
-/// Usual sizes: their names, of the 3D view or a map.
+/// Usual sizes of the 3D view or a map, with their names.
 const SIZES: [(&str, [u32; 2]); 5] = [
     ("HD", [1280, 720]),
     ("Full HD", [1920, 1080]),
@@ -75,7 +75,7 @@ const CAMERA_SIZES: [(&str, [u32; 2]); 3] = [
     ("Medium", [800, 450]),
     ("Whole", [1600, 900]),
 ];
-/// Largest side that is offered, pixels.
+/// Largest side that can be set, pixels.
 const MOST_PX: u32 = 16_384;
 
 /// Draws the dialog while it is open.
@@ -166,7 +166,7 @@ fn subject(ui: &mut Ui, dialog: &mut CaptureDialog, scene: &Scene) {
     ui.add_space(theme::GAP / 2.0);
 }
 
-/// Which cameras a clip shows.
+/// The choice of the cameras in a clip.
 fn cameras_of(ui: &mut Ui, chosen: &mut Option<usize>, cameras: &[Camera]) {
     *chosen = chosen.filter(|i| *i < cameras.len());
     let name = |i: Option<usize>| match i.and_then(|i| cameras.get(i)) {
@@ -263,7 +263,7 @@ mod tests {
         assert!(dialog.is_clip() && dialog.open && dialog.options.subject == Subject::View);
         dialog.options.subject = Subject::Map;
         assert!(dialog.is_clip());
-        // What was ticked for one does not count for others.
+        // Settings for one subject do not count for others.
         dialog.options.subject = Subject::Occupancy;
         assert!(!dialog.is_clip());
     }

@@ -1,4 +1,4 @@
-//! The dialog in which a scene is exported: what, how, where to.
+//! The dialog that exports a scene: format, options, path.
 
 use std::path::Path;
 
@@ -11,41 +11,41 @@ use language::{t, tf};
 use sensors::cameras::{self, ViewId};
 use widgets::{icons, theme};
 
-/// Height of the list of formats at most, points.
+/// Largest height of the list of formats, points.
 const LIST_HEIGHT: f32 = 280.0;
 
-/// What the dialog shows of the application.
+/// Input of the dialog.
 pub struct ExportInput<'a> {
-    /// The export that is under way.
+    /// Progress of the running export.
     pub busy: Option<&'a ExportProgress>,
-    /// A dialog of the system can be asked for the path.
+    /// True if the system's file dialog can be used for the path.
     pub browse: bool,
-    /// Findings of severity error.
+    /// Number of findings of severity error.
     pub errors: usize,
 }
 
-/// What the user asked the dialog for.
+/// Request of the user.
 pub enum Asked {
-    /// Write these.
+    /// Write these formats.
     Write(Vec<Format>),
-    /// Choose the path by a dialog of the system.
+    /// Choose the path with the system's file dialog.
     Browse,
-    /// Show what the checks found.
+    /// Show the findings of the checks.
     Checks,
 }
 
-/// What the user has chosen so far.
+/// Choices of the user.
 #[derive(Clone, Debug)]
 pub struct ExportDialog {
-    /// What is exported; none: everything, into one folder.
+    /// The format; `None`: all formats except Gaussians, into one folder.
     pub format: Option<Format>,
-    /// How.
+    /// The options.
     pub options: ExportOptions,
-    /// Where to.
+    /// The path.
     pub path: String,
-    /// Where the last export went: that it is there is no surprise.
+    /// Path of the last export; replacing it needs no warning.
     pub written: String,
-    /// Errors of the checks do not hold it back.
+    /// True if the user exports in spite of errors of the checks.
     pub anyway: bool,
     search: String,
     folder: std::path::PathBuf,
@@ -53,7 +53,7 @@ pub struct ExportDialog {
 }
 
 impl ExportDialog {
-    /// With paths beside the scene's file.
+    /// A dialog with paths beside the scene's file.
     pub fn new(scene_file: &Path) -> Self {
         let stem = scene_file
             .file_stem()
@@ -74,7 +74,7 @@ impl ExportDialog {
         dialog
     }
 
-    /// A place for the chosen format: a file, or a folder for the formats that fill one.
+    /// A path for the chosen format: a file, or a folder for the formats that fill one.
     fn suggested(&self) -> String {
         let name = match self.format.map(|f| (f.file_name, f.id)) {
             Some((Some(file), _)) => format!("{}_{file}", self.stem),
@@ -84,13 +84,13 @@ impl ExportDialog {
         self.folder.join(name).display().to_string()
     }
 
-    /// True if the path names a folder, which is filled.
+    /// True if the path names a folder that is filled.
     pub fn fills_a_folder(&self) -> bool {
         self.format.is_none_or(|f| f.file_name.is_none())
     }
 }
 
-/// Draws the dialog; what the user asks for.
+/// Draws the dialog. Returns the request of the user.
 pub fn export_window(
     ui: &Ui,
     input: &ExportInput<'_>,
@@ -158,7 +158,7 @@ pub fn export_window(
     asked
 }
 
-/// How far the export is, and the button that ends it.
+/// Draws the progress of the export, and the button that cancels it.
 fn busy(ui: &mut Ui, progress: &ExportProgress) {
     let stop = !progress.is_cancelled();
     if ui
@@ -189,12 +189,12 @@ fn busy(ui: &mut Ui, progress: &ExportProgress) {
     };
     let bar = egui::ProgressBar::new(share).desired_width(150.0);
     ui.add(bar.text(text)).accessible_name(t("Export progress"));
-    // Nobody else wakes the window while a picture is made.
+    // No other event wakes the window while a picture is made.
     ui.ctx()
         .request_repaint_after(std::time::Duration::from_millis(250));
 }
 
-/// Headings of the list, and how the titles below each begin; the last takes all others.
+/// Headings of the list, each with the prefixes of its titles. The last one takes all other formats.
 const GROUPS: [(&str, &[&str]); 4] = [
     ("Occupancy and meshes", &["Occupancy: ", "Meshes: ", "Splats: "]),
     ("LiDAR", &["LiDAR: "]),
@@ -202,13 +202,13 @@ const GROUPS: [(&str, &[&str]); 4] = [
     ("Boxes, roads, clips", &[]),
 ];
 
-/// Heading that a format stands under.
+/// The index of the heading of a format.
 fn group_of(format: Format) -> usize {
     let begins = |(_, starts): &(&str, &[&str])| starts.iter().any(|s| format.title.starts_with(s));
     GROUPS.iter().position(begins).unwrap_or(GROUPS.len() - 1)
 }
 
-/// The formats that hold every word that was typed, by heading.
+/// The formats that contain every word of a search, by heading.
 fn found(search: &str) -> [Vec<Format>; GROUPS.len()] {
     let words: Vec<String> = search.split_whitespace().map(str::to_lowercase).collect();
     let mut out: [Vec<Format>; GROUPS.len()] = Default::default();
@@ -221,7 +221,7 @@ fn found(search: &str) -> [Vec<Format>; GROUPS.len()] {
     out
 }
 
-/// A search that hides what was chosen chooses the first that it finds.
+/// If a search hides the chosen format, the first found one is chosen.
 fn pick_found(dialog: &mut ExportDialog) {
     let found = found(&dialog.search).concat();
     let is_found = dialog.format.is_some_and(|f| found.iter().any(|g| g.id == f.id));
@@ -230,7 +230,7 @@ fn pick_found(dialog: &mut ExportDialog) {
     }
 }
 
-/// Its title without how those below a heading begin, which the heading says.
+/// The title of a format without its prefix, which the heading repeats.
 fn short(format: Format, starts: &[&str]) -> &'static str {
     let own = t(format.title);
     match starts.iter().any(|s| format.title.starts_with(s)) {
@@ -319,7 +319,7 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
                 size(ui, &mut options.camera_size);
                 ui.horizontal(|ui| {
                     ui.label(t("From"));
-                    // The usual one first.
+                    // The default source comes first.
                     for source in cameras::sources_of(ViewId::SEMANTIC).into_iter().rev() {
                         ui.radio_value(&mut options.source, source.id(), t(source.id().name()));
                     }

@@ -9,7 +9,7 @@ use language::{t, tf};
 use scene::{Camera, Lens, ReadOut, Shutter};
 use widgets::theme;
 
-/// A lens to begin with, and its name.
+/// A kind of lens, with the values to begin with.
 struct Kind {
     title: &'static str,
     hint: &'static str,
@@ -55,7 +55,7 @@ const READ_OUTS: [(ReadOut, &str); 4] = [
     (ReadOut::RightToLeft, "from the right"),
 ];
 
-/// Draws the rows; what changes becomes an edit of the rig by `set`.
+/// Draws the rows. A change becomes an edit of the rig by `set`.
 pub fn rows(ui: &mut Ui, camera: &Camera, set: &dyn Fn(Camera) -> Edit, commands: &mut Vec<Command>) {
     let of = |lens: &Lens| {
         KINDS
@@ -72,7 +72,7 @@ pub fn rows(ui: &mut Ui, camera: &Camera, set: &dyn Fn(Camera) -> Edit, commands
                     let mut new = camera.clone();
                     let fov_deg = new.fov_deg();
                     new.lens = kind.lens;
-                    // What it sees stays as wide as it was.
+                    // The field of view stays as it was.
                     new.set_fov_deg(fov_deg);
                     commands.push(Command::Apply("Change lens", vec![set(new)]));
                     ui.close();

@@ -1,4 +1,4 @@
-//! Which windows are open over the panes, and what is chosen in them.
+//! The windows that are open over the panes, and their selections.
 
 use super::capture::CaptureDialog;
 use super::tour::Tour;
@@ -6,9 +6,9 @@ use super::tour::Tour;
 /// A sensor of the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorChoice {
-    /// By index.
+    /// A camera, by index.
     Camera(usize),
-    /// By index.
+    /// A LiDAR, by index.
     Lidar(usize),
 }
 
@@ -29,18 +29,18 @@ pub struct OpenWindows {
     pub settings: bool,
     /// The start screen.
     pub start: bool,
-    /// The tour of the first minutes; none while nobody is on it.
+    /// The tour of the first minutes; `None` while it is not running.
     pub tour: Option<Tour>,
     /// The dialog of pictures.
     pub capture: CaptureDialog,
-    /// The sensors' window.
+    /// The window of the sensors.
     pub sensors: bool,
-    /// The sensor chosen in it.
+    /// The sensor chosen in that window.
     pub sensor: SensorChoice,
 }
 
 impl OpenWindows {
-    /// Closes the one window that a person most likely looks at; false if none is open.
+    /// Closes the one window that the user most likely looks at. Returns false if none is open.
     pub fn close_one(&mut self) -> bool {
         let all = [
             &mut self.capture.open,

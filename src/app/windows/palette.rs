@@ -1,4 +1,4 @@
-//! The command palette: whatever the window can do or show, found by a few letters.
+//! The command palette: finds every command, setting and object by a few letters.
 
 mod items;
 
@@ -10,19 +10,19 @@ pub use items::Known;
 use language::t;
 use widgets::theme;
 
-/// Lines that are shown at most.
+/// Most lines that are shown.
 const SHOWN: usize = 12;
 
-/// What has been typed, and the line chosen.
+/// The typed query, and the chosen line.
 #[derive(Clone, Debug, Default)]
 pub struct Palette {
-    /// It is open.
+    /// True if it is open.
     pub open: bool,
     query: String,
     chosen: usize,
 }
 
-/// What a line of the palette does.
+/// Effect of a line.
 enum Does {
     Action(usize),
     Commands(Vec<Command>),
@@ -30,14 +30,14 @@ enum Does {
 
 struct Item {
     title: String,
-    /// The title in the language that is shown.
+    /// The title in the language of the interface.
     shown: String,
     right: String,
     does: Does,
 }
 
 impl Palette {
-    /// Opens it empty, or closes it.
+    /// Opens the palette empty, or closes it.
     pub fn toggle(&mut self) {
         *self = Self {
             open: !self.open,
@@ -45,7 +45,7 @@ impl Palette {
         };
     }
 
-    /// Draws it while it is open.
+    /// Draws the palette while it is open.
     pub fn show(&mut self, ui: &Ui, known: &Known<'_>, commands: &mut Vec<Command>) {
         if !self.open {
             return;
@@ -82,9 +82,9 @@ impl Palette {
             }
             ui.add_space(theme::GAP);
             ui.spacing_mut().item_spacing.y = 1.0;
-            // As high with few lines as with many: the field stays where it is.
+            // The same height for few lines as for many, so the field stays in place.
             ui.set_min_height(SHOWN as f32 * (theme::ROW + 1.0));
-            // The chosen line stays in sight.
+            // The list scrolls so that the chosen line is visible.
             let first = self.chosen.saturating_sub(SHOWN - 1);
             for (i, item) in items.iter().enumerate().skip(first).take(SHOWN) {
                 let name = egui::RichText::new(&item.shown).color(theme::text());
@@ -118,8 +118,9 @@ impl Palette {
     }
 }
 
-/// Those in which every word of the query begins a word, then those that hold it, the best ones first. If there are none, those
-/// that hold its letters in order and not far apart. The English title counts as much as the one that is shown.
+/// The items in which every word of the query begins a word or is contained, the best first. If there are none, the
+/// items that contain the letters of the query in order and close together. The English title counts as much as the
+/// translated one.
 fn matching(items: Vec<Item>, query: &str) -> Vec<Item> {
     let best = |item: &Item, of: fn(&str, &str) -> Option<u32>| {
         let own = (item.shown != item.title).then(|| of(&item.shown, query));
@@ -141,7 +142,7 @@ fn matching(items: Vec<Item>, query: &str) -> Vec<Item> {
     found.into_iter().map(|(_, item)| item).collect()
 }
 
-/// How well a text holds every word of a query: lower is better, none if it lacks one.
+/// Cost of matching every word of a query in a text; lower is better, `None` if a word is missing.
 fn by_words(text: &str, query: &str) -> Option<u32> {
     let text = text.to_lowercase();
     let mut cost = 0;
@@ -150,7 +151,7 @@ fn by_words(text: &str, query: &str) -> Option<u32> {
         cost += match () {
             () if words().any(|word| word == wanted) => 0,
             () if words().any(|word| word.starts_with(wanted)) => 1,
-            // (where words are not parted, one letter is one)
+            // (one letter is enough in scripts without spaces between words)
             () if (wanted.chars().count() > 1 || !wanted.is_ascii()) && text.contains(wanted) => 4,
             () => return None,
         };
@@ -158,8 +159,8 @@ fn by_words(text: &str, query: &str) -> Option<u32> {
     Some(cost * 256 + text.chars().count() as u32)
 }
 
-/// How far apart the letters of a query lie in a text, first ones counted from the beginning of a word; none if they
-/// are not all there in this order. Lower is better.
+/// Cost of matching the letters of a query in a text: how far apart they are, where the beginning of a word counts as
+/// near. Lower is better; `None` if they are not all there in this order, or are too far apart.
 fn score(text: &str, query: &str) -> Option<u32> {
     let text: Vec<char> = text.to_lowercase().chars().collect();
     let (mut at, mut cost) = (0, 0);
@@ -175,7 +176,7 @@ fn score(text: &str, query: &str) -> Option<u32> {
         cost += gap;
         at = next + 1;
     }
-    // Letters that lie all over a text were not meant.
+    // Letters that are spread over the whole text are no match.
     let most = query.chars().count() as u32;
     (cost <= most).then_some(cost * 64 + text.len() as u32)
 }

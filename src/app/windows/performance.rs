@@ -1,4 +1,4 @@
-//! The performance overlay: how long frames and edits take, what the worker does, what it costs.
+//! The performance overlay: times of frames and edits, the stages of the worker, and processor time.
 
 use egui::accesskit::Role;
 use egui::{Align2, Color32, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
@@ -7,7 +7,7 @@ use crate::shell::perf::{BLOCKED_S, Perf, Quantiles, SHOWN};
 use language::{t, tf};
 use widgets::theme;
 
-/// Draws it into the upper right corner of `over` while it is open.
+/// Draws the overlay into the upper right corner of `over` while it is open.
 pub fn performance_ui(ui: &Ui, over: Rect, perf: &mut Perf) {
     if !perf.open {
         return;
@@ -82,7 +82,7 @@ fn row(ui: &mut Ui, name: &str, q: Quantiles) {
     ui.end_row();
 }
 
-/// The newest frames as bars, with a line at 50 ms.
+/// Draws the newest frames as bars, with a line at 50 ms.
 fn bars(ui: &mut Ui, perf: &Perf) {
     const MOST_S: f64 = 0.1;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 44.0), Sense::hover());

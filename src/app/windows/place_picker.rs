@@ -1,4 +1,5 @@
-//! Where on a network of roads a scene begins: the whole network from above, a click chooses the place.
+//! The window that chooses the place of a scene on a network of roads: the whole network from above; a click chooses
+//! the place.
 
 use egui::accesskit::Role;
 use egui::{Color32, DragValue, Pos2, Rect, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
@@ -11,19 +12,19 @@ use widgets::theme;
 
 /// Size of the picture, points.
 const PICTURE_POINTS: egui::Vec2 = vec2(660.0, 440.0);
-/// Distance between two points of a road that is drawn, m, at least.
+/// Least distance between two points of a drawn road, m.
 const STEP_M: f64 = 2.0;
-/// Points of a road at most.
+/// Most points of a road.
 const MOST_POINTS: f64 = 400.0;
 /// Width of a road in the picture, m.
 const ROAD_M: f64 = 7.0;
-/// Points per metre at most.
+/// Most points per metre.
 const LARGEST_SCALE: f64 = 20.0;
 
-/// The network, and what is chosen.
+/// The network, and the choices of the user.
 pub struct PlacePicker {
     network: RoadNetwork,
-    /// What the scene is called.
+    /// Name of the new scene.
     pub name: String,
     roads_m: Vec<Vec<DVec2>>,
     bounds_m: [DVec2; 2],
@@ -38,7 +39,7 @@ pub struct PlacePicker {
 }
 
 impl PlacePicker {
-    /// At the place that the network suggests.
+    /// A picker at the place that the network suggests.
     pub fn new(network: RoadNetwork, name: String) -> Self {
         let line = |road: &formats::opendrive::Road| {
             let length_m = road.length_m();
@@ -64,12 +65,12 @@ impl PlacePicker {
         }
     }
 
-    /// The roads.
+    /// The road network.
     pub fn into_network(self) -> RoadNetwork {
         self.network
     }
 
-    /// What was chosen.
+    /// The choices of the user.
     pub fn placement(&self) -> Placement {
         let usual = self.size_m == [80.0; 2];
         Placement {
@@ -83,7 +84,7 @@ impl PlacePicker {
         }
     }
 
-    /// Chooses the lane nearest to a place.
+    /// Moves to the lane nearest to a place.
     fn choose(&mut self, at_m: DVec2) {
         if let Some(pose) = self.network.pose_on_lane_near(at_m) {
             self.at = (pose.position_m, pose.heading_rad);
@@ -213,7 +214,7 @@ impl PlacePicker {
     }
 }
 
-/// Draws the window; true once a scene is to be made.
+/// Draws the window; returns true once a scene is to be made.
 pub fn place_picker(ui: &Ui, picker: &mut PlacePicker, open: &mut bool) -> bool {
     let mut make = false;
     egui::Window::new(tf!("A place on {roads}", roads = picker.name))

@@ -1,4 +1,4 @@
-//! Asks what should become of a scene that a session left behind when it died.
+//! The dialog about a scene from a session that died.
 
 use egui::{Id, Modal, Ui};
 
@@ -6,7 +6,7 @@ use crate::shell::recovery::{Stale, ago};
 use language::{t, tf};
 use widgets::theme;
 
-/// What the user wants.
+/// Answer of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
     /// Open it.
@@ -17,7 +17,7 @@ pub enum Answer {
     Later,
 }
 
-/// Asks about one scene; `None` until there is an answer. `more` others wait.
+/// Asks about one scene; `None` until there is an answer. `more` is the number of further offers.
 pub fn recovery_ui(ui: &Ui, offer: &Stale, more: usize) -> Option<Answer> {
     let mut answer = None;
     let modal = Modal::new(Id::unique("recovery"))

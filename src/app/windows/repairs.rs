@@ -1,4 +1,4 @@
-//! The list of what repairs would do, shown before any of it is done.
+//! The list of planned repairs, shown before they are applied.
 
 use egui::{RichText, Ui};
 
@@ -11,11 +11,11 @@ use language::{t, tf};
 use scene::SceneRev;
 use widgets::theme;
 
-/// Size of the window, points.
+/// Width of the window, and height of the list, points.
 const WIDTH: f32 = 560.0;
 const LIST: f32 = 300.0;
 
-/// Draws the window; `now` is the state that the repairs would be done to.
+/// Draws the window; `now` is the state to which the repairs would be applied.
 pub fn repairs_ui(ui: &Ui, shown: &Shown, now: SceneRev, commands: &mut Vec<Command>) {
     let mut open = true;
     egui::Window::new(t("Repairs"))
@@ -140,7 +140,7 @@ impl Row<'_> {
     }
 }
 
-/// Why a finding stays, as the beginning of a line.
+/// The reason why a finding stays, as the beginning of a line.
 fn reason(why: Stays) -> &'static str {
     match why {
         Stays::NoBetter => t("Stays, as its repair makes nothing better"),

@@ -1,4 +1,4 @@
-//! The window of rows of copies: numbers, with what would come shown over the map, then one undo step.
+//! The window of rows of copies: its numbers are previewed over the map, then applied as one undo step.
 
 use egui::{DragValue, Ui};
 
@@ -12,7 +12,7 @@ use widgets::theme;
 
 use crate::tools::{Hand, ToolCommand};
 
-/// The copies that the row of the dialog would add: boxes, and things (world frame).
+/// The copies that the row would add: boxes, and things (world frame).
 pub(crate) fn coming(scene: &Scene, hand: &Hand) -> (Vec<SceneBox>, Vec<Form>) {
     let things: Vec<&Form> = hand
         .things
@@ -23,13 +23,13 @@ pub(crate) fn coming(scene: &Scene, hand: &Hand) -> (Vec<SceneBox>, Vec<Form>) {
     (rows::row_boxes(scene.frame(), &hand.chosen(), &hand.row), forms)
 }
 
-/// Draws the windows of the tools that are open.
+/// Draws the window while it is open.
 pub fn show(ui: &Ui, scene: &Scene, hand: &mut Hand, commands: &mut Vec<Command>) {
     if !hand.row_open {
         return;
     }
     let mut done = None;
-    // Below the views, undimmed: they show what would come.
+    // Below the views, which are not dimmed, since they show the preview.
     let id = egui::Id::unique("row of copies");
     let area = egui::Modal::default_area(id).anchor(egui::Align2::CENTER_BOTTOM, egui::vec2(0.0, -60.0));
     let modal = egui::Modal::new(id)

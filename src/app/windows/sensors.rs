@@ -1,4 +1,4 @@
-//! The window in which the vehicle's sensors are placed, aimed, added and taken away.
+//! The window in which the vehicle's sensors are placed, aimed, added and removed.
 
 use egui::Ui;
 use glam::DVec3;
@@ -17,7 +17,7 @@ use scene::{Camera, LidarPattern, SensorRig};
 use widgets::icons::{self, Icon, section};
 use widgets::theme;
 
-/// Sensors of a kind that a rig may have; a strip of more cameras could not be read.
+/// Most sensors of a kind in a rig; a strip of more cameras would be too small to read.
 const MAX_CAMERAS: usize = 12;
 const MAX_LIDARS: usize = 8;
 
@@ -33,7 +33,7 @@ pub fn sensors_ui(
     egui::Window::new(t("Sensors"))
         .id(egui::Id::unique("sensors"))
         .open(&mut open)
-        // Beside the views, in which the fields of view are shown.
+        // Beside the views, which show the fields of view.
         .default_pos(egui::pos2(ui.max_rect().right() - 356.0, 60.0))
         .default_width(330.0)
         .resizable(false)
@@ -60,7 +60,7 @@ pub fn sensors_ui(
     windows.sensors = open;
 }
 
-/// The rig after a change, as an edit.
+/// The edit that sets the rig after a change.
 fn changed(rig: &SensorRig, change: impl FnOnce(&mut SensorRig)) -> Edit {
     let mut rig = Box::new(rig.clone());
     change(&mut rig);
@@ -200,7 +200,7 @@ fn lists(
     });
 }
 
-/// `CAM_1`, or the next number that is free.
+/// The first free name: `CAM_1`, `CAM_2` and so on.
 fn free_name(stem: &str, rig: &SensorRig) -> String {
     let names = rig
         .cameras
@@ -375,7 +375,7 @@ fn lidar_fields(
     ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
 }
 
-/// A name that is taken when the field is left.
+/// A field for a name. Returns true when the focus leaves the field with a new name.
 fn name_row(ui: &mut Ui, name: &mut String) -> bool {
     let memory = ui.scope_id().with("sensor name");
     let mut text = ui.data(|d| d.get_temp::<(String, String)>(memory));

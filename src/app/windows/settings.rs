@@ -1,4 +1,4 @@
-//! The window of settings, all in one place: language, looks, memory, keys, the first minutes, assistants.
+//! The window of all settings: language, looks, memory, keys, the first minutes, assistants.
 
 use egui::{Ui, Window};
 
@@ -22,13 +22,13 @@ const NAMES: f32 = 130.0;
 /// Height of the bars at the top and at the bottom, points.
 const BARS: f32 = 42.0;
 
-/// What the window sets.
+/// Data that the window changes or shows.
 pub struct Choices<'a> {
-    /// What is kept between sessions.
+    /// The settings.
     pub settings: &'a mut Settings,
-    /// Which key does what.
+    /// The chords of all actions.
     pub keymap: &'a mut Keymap,
-    /// Whether assistants may come in.
+    /// State of the door for assistants.
     pub guests: &'a Guests,
 }
 
@@ -46,7 +46,7 @@ pub fn settings_ui(ui: &Ui, choices: Choices<'_>, windows: &mut OpenWindows, com
         .collapsible(false)
         .default_pos(ui.max_rect().center() - egui::vec2(WIDTH / 2.0, 240.0))
         .show(ui.ctx(), |ui| {
-            // In a low window its contents are scrolled.
+            // In a low window the contents scroll.
             let scroll = egui::ScrollArea::vertical()
                 .max_height(most)
                 .min_scrolled_height(most);
@@ -83,7 +83,7 @@ pub fn settings_ui(ui: &Ui, choices: Choices<'_>, windows: &mut OpenWindows, com
     windows.settings &= open;
 }
 
-/// Rows of a name and what it is set to.
+/// Rows of names and values.
 fn rows(ui: &mut Ui, salt: &str, add: impl FnOnce(&mut Ui)) {
     egui::Grid::new(("settings", salt))
         .num_columns(2)
@@ -120,7 +120,7 @@ fn looks(ui: &mut Ui, settings: &mut Settings) {
             .range(50.0..=300.0)
             .speed(5.0)
             .suffix(" %")
-            .update_while_editing(false); // what is typed into stays as large as it is meanwhile
+            .update_while_editing(false); // the field keeps its size while it is typed into
         if ui.add(slider).on_hover_text(t("Ctrl + and Ctrl −")).changed() {
             settings.ui_scale = percent / 100.0;
             ui.ctx().set_zoom_factor(settings.ui_scale);
@@ -129,7 +129,7 @@ fn looks(ui: &mut Ui, settings: &mut Settings) {
     });
 }
 
-/// English and all that there is a file of.
+/// Choice of the language: English, and all languages that have a file.
 fn languages(ui: &mut Ui, settings: &mut Settings) {
     let all = language::all();
     let name = |code: &str| all.iter().find(|l| l.code == code).map_or("English", |l| &l.name);
@@ -191,7 +191,7 @@ fn work(ui: &mut Ui, settings: &mut Settings, keymap: &mut Keymap, windows: &mut
     });
 }
 
-/// Which weights paint camera pictures, and how.
+/// Settings of the weights that paint camera pictures.
 fn painting(ui: &mut Ui, painting: &mut PaintWish, commands: &mut Vec<Command>) {
     rows(ui, "painting", |ui| {
         ui.label(t("Weights"));
@@ -249,7 +249,7 @@ fn painting(ui: &mut Ui, painting: &mut PaintWish, commands: &mut Vec<Command>) 
     });
 }
 
-/// What public weights take besides.
+/// Further settings for public weights.
 fn public_weights(ui: &mut Ui, painting: &mut PaintWish, options: &PaintOptions) {
     ui.label(t("Strength"));
     let mut strength = options.strength;
@@ -318,7 +318,7 @@ fn assistants(ui: &mut Ui, settings: &mut Settings, guests: &Guests) {
     }
 }
 
-/// Where assistants ask, and what they must show.
+/// Draws the address and the token for assistants.
 fn door_ui(ui: &mut Ui, door: &OpenDoor) {
     ui.add_space(theme::GAP);
     let row = |ui: &mut Ui, name: &str, copies: &str, value: &str| {

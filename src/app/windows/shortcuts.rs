@@ -1,4 +1,4 @@
-//! The sheet of keys: searched, changed by a click and a press, with presets.
+//! The sheet of keys: it can be searched, a click and a press change a chord, and presets can be chosen.
 
 use egui::accesskit::Role;
 use egui::{Id, Key, Modal, Ui, WidgetInfo, vec2};
@@ -8,7 +8,7 @@ use crate::shell::keymap::{Chord, Chords, Keymap, PRESETS};
 use language::{t, tf};
 use widgets::theme;
 
-/// What no preset changes: the pointer, and keys that go with it.
+/// Inputs that no preset changes: the pointer, and keys that go with it.
 const FIXED: [(&str, &str); 9] = [
     ("Hold \\", "Show the version before, in every view"),
     ("Middle drag", "Orbit; pan in the bird's-eye view"),
@@ -21,7 +21,7 @@ const FIXED: [(&str, &str); 9] = [
     ("Double click on a header", "Maximize the pane"),
 ];
 
-/// True for keys that come before the one that a chord is named by.
+/// True for keys that are only modifiers of a chord.
 fn is_modifier(key: Key) -> bool {
     matches!(
         key,
@@ -36,12 +36,12 @@ fn is_modifier(key: Key) -> bool {
     )
 }
 
-/// What is typed, and the action whose chord is awaited.
+/// The search text, and the action that waits for a chord.
 #[derive(Clone, Debug, Default)]
 pub struct Shortcuts {
     query: String,
     awaiting: Option<&'static str>,
-    said: String, // what the last change took from others
+    said: String, // actions that lost a chord in the last change
 }
 
 impl Shortcuts {

@@ -55,7 +55,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                 let text = t(
                     "Scenes that you open or save appear here. A file can also be dropped on the window: a scene, a road (OpenDRIVE, Lanelet2, CommonRoad), labels, a point cloud, a glTF model.",
                 );
-                // Columns justify what is in them; words do not want that.
+                // Columns justify their contents; text should not be justified.
                 left.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
                     ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
                 });
@@ -100,15 +100,15 @@ fn wide(ui: &mut Ui, name: &str, keys: &str) -> egui::Response {
     response
 }
 
-/// What is typed at the start.
+/// State of the description field.
 #[derive(Clone, Default)]
 struct Described {
     words: String,
-    /// The last pass in which it was drawn: the field takes the focus when it comes.
+    /// The last pass in which it was drawn; the field takes the focus when it appears.
     drawn: Option<u64>,
 }
 
-/// The field in which a scene is described; the words once they are to become one.
+/// The field for a description. Returns the words once a scene is to be made of them.
 fn describe(ui: &mut Ui) -> Option<String> {
     let id = Id::unique("described at the start");
     let mut typed: Described = ui.data(|d| d.get_temp(id)).unwrap_or_default();
@@ -135,14 +135,14 @@ fn describe(ui: &mut Ui) -> Option<String> {
         .inner;
     let words = made.then(|| typed.words.trim().to_owned());
     ui.data_mut(|d| {
-        // Made, it is not there again the next time.
+        // A description that became a scene is cleared.
         let left = if made { Described::default() } else { typed };
         d.insert_temp(id, left);
     });
     words
 }
 
-/// A scene on a road of that kind; none if there is no picture.
+/// Picture of a scene on a road of this kind; `None` if there is no picture.
 fn picture(ui: &Ui, name: &str) -> Option<egui::TextureHandle> {
     let bytes = match name {
         "straight" => assets::thumbnails::STRAIGHT,
@@ -155,7 +155,7 @@ fn picture(ui: &Ui, name: &str) -> Option<egui::TextureHandle> {
         "suburb" => assets::thumbnails::SUBURB,
         _ => return None,
     };
-    // The same picture each time: decoded once.
+    // The picture is decoded once.
     let id = Id::unique(("road to begin with", name));
     let kept: Option<egui::TextureHandle> = ui.data(|d| d.get_temp(id));
     kept.or_else(|| {

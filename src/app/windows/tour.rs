@@ -1,4 +1,4 @@
-//! A tour in three steps for the first minutes: paint, place, look. Each step is done by doing it, or skipped.
+//! The tour in three steps for the first minutes: paint, place, look. A step ends when the user does it or skips it.
 
 use egui::{Align2, Area, Id, Order, Rect, Ui, vec2};
 
@@ -7,17 +7,17 @@ use language::{t, tf};
 use scene::Conditions;
 use widgets::theme;
 
-/// Where somebody is on the tour.
+/// Progress on the tour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tour {
     step: usize,
-    /// Steps of the history when the present step of the tour began.
+    /// Position in the history when the present step of the tour began.
     from: usize,
-    /// Light and air then.
+    /// Conditions at that time.
     conditions: Conditions,
 }
 
-/// What is asked for, and how it is done.
+/// Title and instructions of each step.
 const STEPS: [(&str, &str); 3] = [
     (
         "Paint the map",
@@ -34,7 +34,7 @@ const STEPS: [(&str, &str); 3] = [
 ];
 
 impl Tour {
-    /// At its beginning.
+    /// The beginning of the tour.
     pub fn begin(document: &Document) -> Self {
         Self {
             step: 0,
@@ -50,7 +50,7 @@ impl Tour {
         };
     }
 
-    /// True if what the step asks for has been done since it began.
+    /// True if the task of the step was done since it began.
     fn is_done(&self, document: &Document) -> bool {
         let began = |words: &str| {
             let new = document.history().skip(self.from + 1);
@@ -66,10 +66,10 @@ impl Tour {
     }
 }
 
-/// Draws the tour over the lower edge of `over` while it lasts.
+/// Draws the tour over the lower edge of `over` while it is running.
 pub fn tour_ui(ui: &Ui, over: Rect, tour: &mut Option<Tour>, document: &Document) {
     let Some(at) = tour else { return };
-    // Another scene is open, or steps were undone.
+    // The history may be shorter: another scene is open, or steps were undone.
     at.from = at.from.min(document.position());
     if at.is_done(document) && !document.is_dragging() {
         at.next(document);

@@ -1,22 +1,23 @@
-//! The dialog over everything: unsaved changes.
+//! The dialog about unsaved changes, over everything.
 
 use egui::{Id, Modal, Ui};
 
 use language::{t, tf};
 use widgets::theme;
 
-/// What the user wants to become of unsaved changes.
+/// Decision of the user about unsaved changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsaved {
     /// Save them, then go on.
     Save,
     /// Go on without them.
     Discard,
-    /// Stay.
+    /// Keep editing.
     Stay,
 }
 
-/// Asks what should become of unsaved changes; `None` until there is an answer. `waits`: what is said of a scene that waits for it.
+/// Asks about unsaved changes; `None` until there is an answer. `waits` is a text about a scene that waits for the
+/// answer.
 pub fn unsaved_ui(ui: &Ui, name: &str, waits: Option<&str>) -> Option<Unsaved> {
     let mut answer = None;
     let modal = Modal::new(Id::unique("unsaved"))
@@ -45,7 +46,7 @@ pub fn unsaved_ui(ui: &Ui, name: &str, waits: Option<&str>) -> Option<Unsaved> {
                 }
             });
         });
-    // Keys go on working over the buttons: Enter is the one that is filled.
+    // Keys also work: Enter is the filled button.
     if answer.is_none() && ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Enter)) {
         answer = Some(Unsaved::Save);
     }

@@ -1,4 +1,4 @@
-//! One finding in a line: what it is, and what can be done about it.
+//! One finding in a line: its text, and its repairs.
 
 use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
@@ -43,7 +43,7 @@ pub(super) fn row(
                         WidgetInfo::labeled(Role::Button, true, tf!("Ways to fix: {finding}", finding = says))
                     });
                 }
-                // What makes the map larger is done only by its name.
+                // The button of a repair that enlarges the map shows its name; the others say Fix.
                 let name = match first.enlarges_the_map() {
                     true => t(first.label),
                     false => t("Fix"),
@@ -72,7 +72,7 @@ pub(super) fn row(
                     let name = format!("{}: {says}", theme::sentence(t(finding.severity.name())));
                     WidgetInfo::selected(Role::Button, true, chosen, name)
                 });
-                // Read already where it fits.
+                // A text that is shown in full needs no hover text.
                 let cut = response
                     .intrinsic_size()
                     .is_some_and(|s| s.x > response.rect.width() + 1.0);
@@ -95,12 +95,13 @@ pub(super) fn row(
     );
 }
 
-/// Tells findings apart.
+/// Key of a finding.
 pub(super) fn key(finding: &Finding) -> String {
     format!("{} {:?} {:.1}", finding.check, finding.box_id, finding.where_m)
 }
 
-/// A disc with a bar through it for errors, a triangle for warnings, an i for what is worth knowing: told apart by shape, not only by colour.
+/// Draws the sign of a severity: a disc with a bar for errors, a triangle for warnings, an i for infos. Signs differ in
+/// shape, not only in colour.
 pub(super) fn sign(ui: &mut Ui, severity: Severity) {
     let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
     let (painter, c) = (ui.painter(), rect.center());

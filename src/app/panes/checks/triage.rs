@@ -1,4 +1,4 @@
-//! Which findings are listed, and in which groups: by severity, by words, by kind or by object.
+//! Filter and grouping of the listed findings: by severity, by words, by kind or by object.
 
 use std::collections::BTreeSet;
 
@@ -6,20 +6,20 @@ use editor::checks::{Finding, Severity, title};
 use language::t;
 use scene::BoxId;
 
-/// How the list is parted.
+/// Grouping of the list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Grouping {
-    /// By the check that found it.
+    /// By the check.
     #[default]
     Kind,
     /// By the box that it is about.
     Object,
-    /// Not at all.
+    /// A plain list without groups.
     List,
 }
 
 impl Grouping {
-    /// Every one, with name and hint.
+    /// Every grouping, with name and hint.
     pub(super) const ALL: [(Grouping, &'static str, &'static str); 3] = [
         (Grouping::Kind, "By kind", "What a check found, together"),
         (Grouping::Object, "By object", "What is about a box, together"),
@@ -27,31 +27,31 @@ impl Grouping {
     ];
 }
 
-/// What the user wants to see.
+/// Filter and grouping chosen by the user.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Triage {
-    /// How the list is parted.
+    /// Grouping of the list.
     pub grouping: Grouping,
-    /// Severities that are left out.
+    /// Severities that are not listed.
     pub hidden: [bool; Severity::ALL.len()],
-    /// Words that all have to be in a finding.
+    /// Words that must all be in a listed finding.
     pub words: String,
-    /// Groups that were folded, or unfolded, by a click: what is worth knowing alone is folded at first.
+    /// Groups that a click folded or unfolded. Groups of infos only are folded at first.
     pub turned: BTreeSet<String>,
 }
 
 /// A line of the list.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Line {
-    /// The head of a group.
+    /// Header of a group.
     Group {
-        /// What it is called.
+        /// Title of the group.
         title: String,
         /// Its findings, by index.
         of: Vec<usize>,
-        /// The worst of them.
+        /// The worst severity among them.
         worst: Severity,
-        /// They are not listed.
+        /// True if the findings are not listed.
         folded: bool,
     },
     /// A finding, by index.
@@ -86,7 +86,7 @@ impl Triage {
         }
     }
 
-    /// The lines for findings that are sorted by severity, the worst first; `name` is what a box is called.
+    /// The lines for findings that are sorted by severity, the worst first; `name` gives the name of a box.
     pub(super) fn lines(&self, findings: &[&Finding], name: &dyn Fn(BoxId) -> String) -> Vec<Line> {
         let shown = (0..findings.len()).filter(|i| self.shows(findings[*i]));
         if self.grouping == Grouping::List {
@@ -102,7 +102,7 @@ impl Triage {
         }
         let mut out = Vec::new();
         for (title, of) in groups {
-            // One alone that is a mistake needs no head.
+            // A single error or warning needs no header.
             if let ([only], true) = (&of[..], findings[of[0]].severity > Severity::Info) {
                 out.push(Line::Finding(*only));
                 continue;

@@ -1,4 +1,4 @@
-//! Findings that were waived, and how one is.
+//! Waived findings, and the field that waives one.
 
 use egui::Ui;
 use egui::WidgetInfo;
@@ -12,11 +12,11 @@ use editor::checks::{Finding, waive};
 use language::{t, tf};
 use widgets::theme;
 
-/// What the title of the waived findings takes at the bottom, and what they take unfolded, points.
+/// Height of the title of the waived findings, and of their list when it is unfolded, points.
 const WAIVED_TITLE: f32 = 30.0;
 const WAIVED_LIST: f32 = 94.0;
 
-/// How much room the waived findings take, points.
+/// Height of the waived findings, points.
 pub(super) fn height(ui: &Ui, waived: &[&Finding]) -> f32 {
     let unfolded = ui.data(|d| d.get_temp::<bool>(waived_unfolded()).unwrap_or_default());
     match (waived.is_empty(), unfolded) {
@@ -26,19 +26,19 @@ pub(super) fn height(ui: &Ui, waived: &[&Finding]) -> f32 {
     }
 }
 
-/// Where the reason is kept while it is typed: check and box or place, and the text.
+/// Id of the waiver that is being typed: key of the finding, and text of the reason.
 fn typing() -> egui::Id {
     egui::Id::unique("reason of a waiver")
 }
 
-/// The waiver for whose reason the field took the focus.
+/// Id of the waiver whose field has taken the focus.
 fn asked() -> egui::Id {
     egui::Id::unique("reason that was asked for")
 }
 
 type Typing = Option<(String, String)>;
 
-/// Forgets a waiver that was begun.
+/// Forgets a waiver that is being typed.
 pub(super) fn forget(ctx: &egui::Context) {
     ctx.data_mut(|d| {
         d.remove_temp::<Typing>(typing());
@@ -77,7 +77,7 @@ pub(super) fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Comma
             .hint_text(t("Why it may stay"))
             .desired_width((ui.available_width() - 150.0).max(120.0));
         let field = ui.add(field).accessible_name(t("Reason of the waiver"));
-        // Once, when the waiver begins.
+        // The field takes the focus once, when the waiver begins.
         let asked = asked();
         if ui.data(|d| d.get_temp::<String>(asked)).as_ref() != Some(&of) {
             ui.data_mut(|d| d.insert_temp(asked, of.clone()));
@@ -109,7 +109,7 @@ pub(super) fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Comma
     ui.data_mut(|d| d.insert_temp(typing(), left));
 }
 
-/// What was waived, with the reasons, and the way back.
+/// Draws the waived findings with their reasons, each with a button that takes the waiver back.
 pub(super) fn waived_ui(
     ui: &mut Ui,
     waived: &[&Finding],

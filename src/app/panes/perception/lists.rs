@@ -1,4 +1,4 @@
-//! What a network misses, what it sees, and what it sees where there is nothing, as lists.
+//! Predictions of the networks as lists: missed boxes, detected boxes, and false detections.
 
 use egui::{RichText, Ui};
 
@@ -15,10 +15,11 @@ use sensors::perceived_voxels::SeenInVoxels;
 use widgets::icons::section;
 use widgets::theme;
 
-/// Fewer pixels of things where there are none are not worth a line.
+/// Fewest pixels of false detections in a camera that are listed.
 const LEAST_GHOST_PX: usize = 20;
 
-/// Boxes that are missed, which come first, or those that are seen, or both; none if nothing is known yet.
+/// Lists the missed boxes, the detected boxes, or both. `boxes` has the missed ones first; `None` before the first
+/// prediction.
 fn missed_and_seen<B>(
     ui: &mut Ui,
     boxes: Option<&[B]>,
@@ -41,7 +42,7 @@ fn missed_and_seen<B>(
     }
 }
 
-/// How many boxes of the scene are on no list.
+/// Tells how many boxes of the scene are in no list.
 fn left_out(ui: &mut Ui, listed: usize, cx: &PaneContext<'_>) {
     let n = cx.document.scene().frame().boxes.len().saturating_sub(listed);
     if n > 0 {
@@ -53,7 +54,7 @@ fn left_out(ui: &mut Ui, listed: usize, cx: &PaneContext<'_>) {
     }
 }
 
-/// What the LiDAR's network misses and what it sees where there is nothing, or what it sees, or both.
+/// Lists for the LiDAR network: missed boxes and false detections, or detected boxes, or both.
 pub(super) fn sweep_ui(
     ui: &mut Ui,
     perceiving: &Perceiving,
@@ -91,7 +92,7 @@ pub(super) fn sweep_ui(
     }
 }
 
-/// What the network of both sensors misses and what it sees where there is nothing, or what it sees, or both.
+/// Lists for the network of both sensors: missed boxes and false detections, or detected boxes, or both.
 pub(super) fn told_ui(
     ui: &mut Ui,
     perceiving: &Perceiving,
@@ -136,7 +137,7 @@ pub(super) fn told_ui(
     }
 }
 
-/// A box in the sweep: a click chooses it.
+/// Row of a box in the sweep; a click chooses it.
 fn swept_row(ui: &mut Ui, seen: &SeenBySweep, cx: &PaneContext<'_>, commands: &mut Vec<Command>) {
     let Some(b) = cx.document.scene().frame().boxes.get(&seen.id) else {
         return;
@@ -156,7 +157,7 @@ fn swept_row(ui: &mut Ui, seen: &SeenBySweep, cx: &PaneContext<'_>, commands: &m
     choose_on_click(&response, b, commands);
 }
 
-/// What is missed and things where there are none, or what is seen, or both.
+/// Lists for the camera network: missed boxes and false detections, or detected boxes, or both.
 pub(super) fn report_ui(
     ui: &mut Ui,
     perceiving: &Perceiving,
@@ -197,7 +198,7 @@ pub(super) fn report_ui(
     }
 }
 
-/// A box: a click chooses it.
+/// Row of a box in the cameras; a click chooses it.
 fn row(ui: &mut Ui, seen: &SeenByRig, cx: &PaneContext<'_>, commands: &mut Vec<Command>) {
     let id = seen.thing.id;
     let (Some(b), Some(camera)) = (
@@ -223,7 +224,7 @@ fn row(ui: &mut Ui, seen: &SeenByRig, cx: &PaneContext<'_>, commands: &mut Vec<C
     choose_on_click(&response, b, commands);
 }
 
-/// A click on the line of a box chooses it and moves the views there, as in the list of checks.
+/// A click on the row of a box chooses it and moves the views there, as in the list of checks.
 fn choose_on_click(response: &egui::Response, b: &SceneBox, commands: &mut Vec<Command>) {
     if response.clicked() {
         commands.push(Command::Select(Some(b.id)));

@@ -1,5 +1,5 @@
-//! What small networks see of the scene in its cameras, its LiDAR and both: boxes that they miss, things where there are none, and a
-//! search for a change after which one misses the chosen box.
+//! Predictions of small networks from the cameras, the LiDAR and both: missed boxes, false detections, and a search for
+//! a change after which a network misses the chosen box.
 
 mod lists;
 mod search;
@@ -26,20 +26,20 @@ use crate::perceiving::Perceiving;
 use lists::{report_ui, sweep_ui, told_ui};
 use search::search_ui;
 
-/// From this width on there are columns, points.
+/// Least width for columns, points.
 const WIDE: f32 = 560.0;
 
-/// The pane.
+/// The pane of the predictions.
 pub struct Perception {
     perceiving: Option<Perceiving>,
     vary: Vary,
     by: Sensor,
-    /// What stands is shown over the map.
+    /// True if the predicted kind of each column is shown over the map.
     stands: bool,
-    /// The voxels that are told are shown in the 3D view.
+    /// True if the predicted voxels are shown in the 3D view.
     told: bool,
     marks: Kept,
-    /// As [`UiState::opened`](crate::state::UiState::opened) counted the scenes last.
+    /// Last value of [`UiState::opened`](crate::state::UiState::opened), which counts opened scenes.
     opened: u64,
 }
 
@@ -98,7 +98,7 @@ impl Pane for Perception {
             ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
         }
         if let Some((text, what)) = summary(perceiving, self.by) {
-            // It takes what room the controls leave.
+            // The text takes the width that the controls leave.
             ui.add_space(4.0);
             let text = RichText::new(text).small().color(theme::text_weak());
             ui.add(egui::Label::new(text).truncate()).on_hover_text(what);
@@ -114,7 +114,7 @@ impl Pane for Perception {
             ui.label(t("The system gives no thread for it"));
             return;
         };
-        // What was seen of a state before stays until the network has looked again, but not that of another scene.
+        // Predictions of an earlier state stay until the network is done again, but not those of another scene.
         let opened = cx.state.opened;
         if std::mem::replace(&mut self.opened, opened) != opened {
             perceiving.forget();
@@ -164,10 +164,10 @@ impl Pane for Perception {
     }
 }
 
-/// Room that a tick or the edge of a button takes beside its text, points.
+/// Width of a checkbox or of a button's edge beside its text, points.
 const BESIDE_TEXT: f32 = 14.0;
 
-/// What of a network's answer can be shown in the large views.
+/// Switches for the predictions in the large views.
 struct Shows<'a> {
     by: Sensor,
     stands: &'a mut bool,
@@ -183,7 +183,7 @@ impl Shows<'_> {
         }
     }
 
-    /// Width that they take in a row, points.
+    /// Width of the switches in a row, points.
     fn width(&self, ui: &Ui) -> f32 {
         let texts = self.texts().iter();
         texts
@@ -209,7 +209,7 @@ impl Shows<'_> {
     }
 }
 
-/// How much a network says rightly, and what it is.
+/// The share that a network predicts correctly, and a description of the network. `None` before its first prediction.
 fn summary(perceiving: &Perceiving, by: Sensor) -> Option<(String, &'static str)> {
     let percent = |right: f64| format!("{:.1}", right * 100.0);
     Some(match by {
@@ -248,7 +248,7 @@ fn summary(perceiving: &Perceiving, by: Sensor) -> Option<(String, &'static str)
     })
 }
 
-/// A column that is scrolled by itself.
+/// A column with its own scroll area.
 fn scrolled(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
     let area = egui::ScrollArea::vertical().id_salt(name).auto_shrink(false);
     area.show(ui, |ui| {
@@ -257,7 +257,7 @@ fn scrolled(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// What is shown in the large views.
+/// Prediction whose marks are shown in the large views.
 #[derive(Clone)]
 enum Shown {
     Swept(Arc<SweepReport>),
@@ -274,10 +274,11 @@ impl Shown {
     }
 }
 
-/// The marks that are shown, of what and how.
+/// The marks on screen, with the report and the switches that they were made from.
 type Kept = Option<(Shown, [bool; 2], Arc<DetectionMarks>)>;
 
-/// Has the marks of a report drawn over the views, or none; with what stands over the map, with what is told in the 3D view.
+/// Sets the marks of a report for the views, or none; with the kinds of columns over the map (`stands`) and the
+/// predicted voxels in the 3D view (`told`).
 fn show_marks(
     ui: &Ui,
     kept: &mut Kept,
@@ -309,7 +310,7 @@ fn show_marks(
             }
             (report, with, Arc::new(marks))
         });
-        // The views are drawn before this pane or after it.
+        // Some views are drawn before this pane, so another frame is needed.
         ui.ctx().request_repaint();
     }
     cx.state.shown.detection_marks = kept.as_ref().map(|(.., marks)| marks.clone());
@@ -345,7 +346,7 @@ fn of_voxels(of: SceneRev, report: &VoxelReport, scene: &Scene) -> DetectionMark
     }
 }
 
-/// What stands in each column of what is told.
+/// The kind of each column of the predicted voxels.
 fn standing_of(report: &VoxelReport) -> Vec<Stands> {
     let labels = standing(&report.voxels).into_iter();
     labels
@@ -353,7 +354,7 @@ fn standing_of(report: &VoxelReport) -> Vec<Stands> {
         .collect()
 }
 
-/// The scene with the voxels that are told in place of its own.
+/// The scene with the predicted voxels in place of its own.
 fn with_told(scene: &Scene, report: &VoxelReport) -> Arc<Scene> {
     let mut still = scene.still();
     let told = on_map(&report.voxels, scene.frame().extent(), &report.map_from_vehicle);
@@ -361,7 +362,7 @@ fn with_told(scene: &Scene, report: &VoxelReport) -> Arc<Scene> {
     Arc::new(still)
 }
 
-/// What stands in each column of the window, ahead is up.
+/// Picture of the kind of each column of the window, ahead is up.
 fn from_above(stands: &[Stands], window: Extent) -> egui::ColorImage {
     let [nx, ny] = [window.nx(), window.ny()];
     let at = |x: usize, y: usize| theme::class_color(stands[x * ny + y].class());

@@ -18,7 +18,7 @@ use crate::panes::id::PaneId;
 use crate::panes::pane::PaneContext;
 use crate::perceiving::{Found, Perceiving};
 
-/// The search for a change after which the chosen box is missed.
+/// Draws the search for a change after which the chosen box is missed.
 pub(super) fn search_ui(
     ui: &mut Ui,
     perceiving: &mut Perceiving,
@@ -64,7 +64,7 @@ pub(super) fn search_ui(
     }
 }
 
-/// What is to be varied, and the button that starts the search.
+/// The choice of the property to vary, and the button that starts the search.
 fn wish_ui(
     ui: &mut Ui,
     perceiving: &mut Perceiving,
@@ -102,7 +102,7 @@ fn wish_ui(
     });
 }
 
-/// What a search found.
+/// Draws the result of a search.
 fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
     let Some(last) = found.search.tried.last() else {
         return;
@@ -129,7 +129,7 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
         });
         return;
     }
-    // The last try may show too little of it to be judged.
+    // In the last try too little of the box may be visible to judge it.
     let tried = &found.search.tried;
     let judged = tried.iter().rev().find(|t| t.sight.is_judged());
     let last = judged.unwrap_or(last);
@@ -209,7 +209,7 @@ fn keep_version(
     }
 }
 
-/// How a try shows the box.
+/// The prediction of the box in a try, in words.
 fn sight(tried: &Tried) -> String {
     let (n, percent) = (tried.sight.visible, format!("{:.0}", tried.sight.share * 100.0));
     match tried.sight.by {
@@ -219,7 +219,7 @@ fn sight(tried: &Tried) -> String {
     }
 }
 
-/// A change in the language that is shown.
+/// A change in words of the interface's language.
 fn words(change: Change) -> String {
     let m = |m: f64| format!("{m:.1}");
     match change {

@@ -1,10 +1,10 @@
-//! Ends of the word at the caret: what the prompt field offers while one types.
+//! Completions of the word at the caret, offered by the prompt field while the user types.
 
 use std::ops::Range;
 
-/// Fewer letters than this begin too many words.
+/// Fewest letters for which completions are offered; fewer match too many words.
 const LEAST_LETTERS: usize = 3;
-/// Words offered at once.
+/// Most completions at once.
 const MOST: usize = 4;
 
 const WORDS: [&str; 61] = [
@@ -71,17 +71,17 @@ const WORDS: [&str; 61] = [
     "without",
 ];
 
-/// The word that ends at the caret, and what it may become.
+/// The word that ends at the caret, and its completions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Completion {
-    /// Bytes of the text that the word takes.
+    /// Byte range of the word in the text.
     pub word: Range<usize>,
-    /// The best first.
+    /// The completions, the best first.
     pub ends: Vec<&'static str>,
 }
 
 impl Completion {
-    /// Of the word that ends at a caret, given in characters; none inside a word or where nothing begins so.
+    /// The completions at a caret, given in characters; `None` inside a word, or if no known word begins so.
     pub fn at(text: &str, caret: usize) -> Option<Self> {
         let end = byte_of(text, caret);
         let (before, after) = text.split_at(end);
@@ -104,7 +104,7 @@ impl Completion {
         })
     }
 
-    /// Puts an end in, and a space behind it; the caret that follows, in characters.
+    /// Replaces the word by a completion with a space behind it. Returns the new caret, in characters.
     pub fn take(&self, text: &mut String, end: &str) -> usize {
         let spaced = text[self.word.end..].starts_with(' ');
         text.replace_range(self.word.clone(), end);
@@ -116,7 +116,7 @@ impl Completion {
     }
 }
 
-/// The byte at which a character begins; the end of the text for all beyond.
+/// The byte at which a character begins; the end of the text for larger indices.
 fn byte_of(text: &str, character: usize) -> usize {
     text.char_indices()
         .nth(character)

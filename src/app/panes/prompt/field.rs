@@ -1,4 +1,4 @@
-//! The prompt: words that become a scene or change the one at hand; each part that was read is a chip.
+//! The prompt field: words that become a scene or change the open one. Each part that was read is a chip.
 
 use egui::accesskit::Role;
 use egui::text::{CCursor, CCursorRange};
@@ -16,7 +16,7 @@ use scene::Scene;
 use widgets::icons::section;
 use widgets::theme;
 
-/// Prompts kept.
+/// Most prompts in the history.
 const HISTORY: usize = 50;
 
 const EXAMPLES: [&str; 5] = [
@@ -27,33 +27,34 @@ const EXAMPLES: [&str; 5] = [
     "add a pedestrian 8 m ahead on the crossing",
 ];
 
-/// What is typed, and what came of it.
+/// The prompt field: its text, its reading, and the result of its words.
 #[derive(Default)]
 pub struct PromptField {
     pub(super) prompt: String,
     pub(super) seed: u64,
     pub(super) history: Vec<String>,
-    /// What was typed for the scene that is open.
+    /// Prompts typed for the open scene, the oldest first.
     typed: Vec<String>,
-    /// Words that the user keeps; the settings hold them.
+    /// Prompts that the user keeps; saved with the settings.
     pub favourites: Vec<String>,
-    pub(super) back: usize, // steps back in the history; 0 is what is typed
+    pub(super) back: usize, // steps back in the history; 0 is the text being typed
     pub(super) draft: String,
     pub(super) read: Option<Both>,
-    /// What came of the words that were carried out last, and what must be answered first.
+    /// The answer to the words that were carried out last, and whether it asks a question back (`asks`).
     pub(super) done: Option<String>,
     pub(super) asks: bool,
-    /// Enter was pressed on words that describe a scene: which of the two is meant?
+    /// Enter was pressed on words that describe a scene; the user is asked whether to change this scene or make a new
+    /// one.
     pub(super) offers: bool,
     pub(super) notes: Vec<String>,
     pub(super) wants_focus: bool,
     pub(super) offered: Option<Completion>,
-    pub(super) is_sent: bool, // and not changed since
+    pub(super) is_sent: bool, // carried out, and not changed since
     /// The words that last changed the scene on screen.
     changed: Option<String>,
-    /// The last step of the document.
+    /// Name of the last undo step of the document.
     pub(crate) last_step: Option<String>,
-    /// The change was taken back and is to be drawn again by another seed.
+    /// The change was undone and is to be made again with another seed.
     redraws: bool,
     pub(super) plan: Plan,
 }
@@ -62,7 +63,7 @@ fn field_id() -> egui::Id {
     egui::Id::unique("prompt field")
 }
 
-/// Puts a line at the end of a list that has each once, and takes the first one out if it is too long.
+/// Appends a line to a list without duplicates, and removes the first line if the list is too long.
 fn keep(lines: &mut Vec<String>, line: &str, most: usize) {
     lines.retain(|l| l != line);
     lines.push(line.to_owned());
@@ -72,28 +73,28 @@ fn keep(lines: &mut Vec<String>, line: &str, most: usize) {
 }
 
 impl PromptField {
-    /// What was typed for the scene that is open, the oldest first.
+    /// Prompts typed for the open scene, the oldest first.
     pub fn typed(&self) -> &[String] {
         &self.typed
     }
 
-    /// What is typed, with its wildcards drawn by the seed: what is read, carried out and recorded.
+    /// The text with its wildcards drawn by the seed. This text is read, carried out and recorded.
     pub(super) fn said(&self) -> String {
         wildcards::drawn(&self.prompt, self.seed)
     }
 
-    /// The next frame gives the field the focus.
+    /// Gives the field the focus in the next frame.
     pub fn focus(&mut self) {
         self.wants_focus = true;
     }
 
-    /// Where the thread that makes a scene tells how it came about.
+    /// Cell in which the thread that makes a scene reports how its layout was made.
     pub fn told(&self) -> Told {
         self.plan.told()
     }
 
-    /// Another scene is open: words that were typed for the one before go, unless it was made of them. They stay in the
-    /// history.
+    /// Notes that another scene is open. The words for the one before are cleared, unless the new scene was made of
+    /// them. They stay in the history.
     pub fn opened(&mut self, scene: &Scene) {
         if scene.words.contains(&self.said()) {
             self.typed = vec![self.prompt.clone()];
@@ -134,7 +135,7 @@ impl PromptField {
             self.complete(ui.ctx(), first);
         }
         if has_focus && self.is_sent {
-            // The field has nothing to take back that its user means.
+            // After the words were carried out, Ctrl+Z and Ctrl+Shift+Z undo and redo in the scene, not in the text.
             let undone = [
                 (Modifiers::CTRL, Command::Undo),
                 (Modifiers::CTRL | Modifiers::SHIFT, Command::Redo),
@@ -154,10 +155,10 @@ impl PromptField {
             .return_key(None);
         let output = field.show(ui);
         let field = output.response.response;
-        // A click on what is offered takes the focus first.
+        // A click on a completion takes the focus first.
         if field.has_focus() {
             let caret = output.cursor_range.map(|range| range.primary.index);
-            // Words that were taken want no other end.
+            // Words that were carried out get no completions.
             let caret = caret.filter(|_| !self.is_sent);
             self.offered = caret.and_then(|caret| Completion::at(&self.prompt, caret.0));
         }
@@ -195,13 +196,13 @@ impl PromptField {
             ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
         }
         if change && !self.offers && self.read.as_ref().is_some_and(Both::is_described) {
-            // (a whole scene was described: which is meant is asked once, with what each would do)
+            // (the words describe a whole scene: the user is asked once, with the effect of each choice)
             (self.offers, change) = (true, false);
         }
         let (changes, makes) = self.choices(ui);
         change |= changes;
         make |= makes;
-        // In one flow: what they take is missed by the history and the examples below.
+        // In one row that wraps: a taller one would take height from the history and the examples below.
         ui.horizontal_wrapped(|ui| {
             let some = !self.prompt.trim().is_empty();
             let dice = ui.button(t("Re-roll")).on_hover_text(t(
@@ -230,7 +231,8 @@ impl PromptField {
         }
     }
 
-    /// Draws the same words by the next seed: true for a new scene. A change is taken back and drawn again.
+    /// Draws the same words with the next seed. Returns true if a new scene is to be made; a change is undone and made
+    /// again.
     fn roll(&mut self, commands: &mut Vec<Command>) -> bool {
         let said = self.said();
         let is_change = self.changed.as_ref() == Some(&said);
@@ -260,13 +262,14 @@ impl PromptField {
         self.is_sent = true;
     }
 
-    /// The words are others now: nothing that came of those before holds.
+    /// Drops the results of the words before the text changed.
     pub(super) fn touched(&mut self) {
         (self.done, self.asks, self.offers, self.is_sent) = (None, false, false, false);
         self.notes.clear();
     }
 
-    /// The two things that words can do; where they describe a scene, with what each would do. Which was clicked.
+    /// Draws the two buttons, to change the scene or make a new one; for words that describe a scene, with the effect
+    /// of each. Returns which was clicked.
     pub(super) fn choices(&self, ui: &mut Ui) -> (bool, bool) {
         let some = !self.prompt.trim().is_empty();
         let button = |ui: &mut Ui, name: &str, hint: &str, first: bool| {
@@ -306,7 +309,7 @@ impl PromptField {
         (change, make)
     }
 
-    /// Reads what is typed, if it is not read yet.
+    /// Reads the text, if it is not read yet.
     pub(super) fn listen(&mut self, scene: &Scene) {
         if self.prompt.trim().is_empty() {
             self.read = None;
@@ -315,7 +318,7 @@ impl PromptField {
         let said = self.said();
         match &mut self.read {
             Some(read) if read.text == said => {
-                // (what was carried out is not carried out again for a preview)
+                // (words that were carried out are not applied again for a preview)
                 if !self.is_sent {
                     read.follow(scene, self.seed);
                 }
@@ -325,7 +328,7 @@ impl PromptField {
     }
 
     pub(super) fn make(&mut self, seed: u64, scene: &Scene, commands: &mut Vec<Command>) {
-        // (another seed draws other words)
+        // (another seed draws other words from wildcards)
         self.listen(scene);
         let said = self.said();
         match self.read.as_ref().map(|r| &r.prompted) {
@@ -342,7 +345,7 @@ impl PromptField {
         }
     }
 
-    /// Variants, how the last scene came about, and the scene graph.
+    /// Variants, the origin of the last scene, and the scene graph.
     pub(super) fn beyond_words(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let Some(Ok(prompted)) = self.read.as_ref().map(|r| &r.prompted) else {
             return;
@@ -354,7 +357,7 @@ impl PromptField {
         self.plan.origin(ui);
         let place = self.plan.graph(ui, &ask.description, self.seed, scene, commands);
         if let Some(seed) = chosen {
-            // A variant is one of the words as they were drawn for it.
+            // A variant is made of the words as they were drawn for it.
             self.prompt = self.said();
             self.seed = seed;
         }
@@ -364,7 +367,7 @@ impl PromptField {
         }
     }
 
-    /// Offers ends of the word at the caret; Tab takes the first.
+    /// Offers completions of the word at the caret; Tab takes the first.
     pub(super) fn completions(&mut self, ui: &mut Ui) {
         let Some(offered) = &self.offered else { return };
         let mut taken = None;
@@ -391,7 +394,7 @@ impl PromptField {
         }
     }
 
-    /// The words were taken: the next ones replace them as they are typed.
+    /// Notes that the words were carried out: the next text that is typed replaces them.
     pub(super) fn sent(&mut self, ctx: &egui::Context) {
         (self.offered, self.is_sent) = (None, true);
         let mut state = TextEditState::load(ctx, field_id()).unwrap_or_default();
@@ -415,7 +418,7 @@ impl PromptField {
         state.store(ctx, field_id());
     }
 
-    /// Carries out the words as edits of the scene at hand; what must be asked first is shown.
+    /// Carries out the words as edits of the open scene; questions that come back are shown.
     pub(super) fn change(&mut self, scene: &Scene, commands: &mut Vec<Command>) {
         self.remember();
         self.listen(scene);
@@ -436,7 +439,7 @@ impl PromptField {
         if !edits.is_empty() && !self.asks {
             commands.push(Command::ApplyWords(self.said(), edits));
             self.changed = Some(self.said());
-            // (carried out again, the words are read again)
+            // (to be carried out again, the words are read again)
             self.read = None;
         }
     }

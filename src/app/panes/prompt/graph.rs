@@ -1,4 +1,4 @@
-//! The scene graph of a prompt: shown as who stands how to what, and edited by hand.
+//! The scene graph of a prompt: a picture of its relations, and fields to edit it.
 
 use egui::accesskit::Role;
 use egui::{Align2, FontId, Pos2, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
@@ -43,16 +43,16 @@ fn relation_name(r: RelationKind) -> String {
     t(&r.name().replace('_', " ")).to_owned()
 }
 
-/// One line of the picture: what stands in a relation to a node.
+/// One line of the picture: the objects that stand in a relation to a node.
 #[derive(Debug, PartialEq)]
 struct Row {
     to: String,
     relation: String,
-    /// Class, and how many of it.
+    /// Classes, with their number of objects.
     objects: Vec<(Class, usize)>,
 }
 
-/// Relations gathered by what they are to, in the order in which they come; last the objects that have none.
+/// Relations grouped by their target, in the order in which they come; last the objects without a relation.
 fn rows(graph: &SceneGraph) -> Vec<Row> {
     let mut keys: Vec<(u32, RelationKind, Option<u32>)> = Vec::new();
     let mut found: Vec<Vec<(Class, usize)>> = Vec::new();
@@ -109,7 +109,7 @@ fn rows(graph: &SceneGraph) -> Vec<Row> {
     rows
 }
 
-/// Who stands how to what: a line for each relation, objects of a class together.
+/// Draws the relations: a line for each, with the objects of a class together.
 pub(super) fn picture(ui: &mut Ui, graph: &SceneGraph) {
     let rows = rows(graph);
     let width = ui.available_width().max(120.0);
@@ -155,7 +155,7 @@ pub(super) fn picture(ui: &mut Ui, graph: &SceneGraph) {
     }
 }
 
-/// Objects with their class; which of them is to be placed again.
+/// Draws the objects with their classes. Returns the one that is to be placed again.
 pub(super) fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u32> {
     let mut rolled = None;
     let mut gone = None;
@@ -208,7 +208,7 @@ pub(super) fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u3
     rolled
 }
 
-/// Relations, each with its kind and what it is to.
+/// Draws the relations, each with its kind and its target.
 pub(super) fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
     section(ui, t("Relations"));
     let all: Vec<(u32, String)> = graph.nodes.iter().map(|n| (n.id, name_of(graph, n.id))).collect();

@@ -1,5 +1,5 @@
-//! What a prompt became, to be changed by hand before a scene is made of it or in the open one: chips that are locked,
-//! re-rolled, counted otherwise; the scene graph; variants side by side.
+//! The plan that a prompt became, to be edited before a scene is made of it or in the open scene: chips that can be
+//! locked, re-rolled or given another number; the scene graph; variants side by side.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::mpsc::{Receiver, channel};
@@ -22,14 +22,14 @@ use widgets::thumbnail;
 
 use scene::{BoxId, Scene, SceneBox};
 
-/// Variants that are shown side by side.
+/// Number of variants side by side.
 const VARIANTS: u64 = 4;
 
-/// What the last scene from words was made with, told by the thread that made it.
+/// Origin of the last scene from words, reported by the thread that made it.
 #[derive(Clone, Debug, Default)]
 pub struct Told(Arc<Mutex<Option<WhatWasTold>>>);
 
-/// What memory filled in, what the network placed, what fell short.
+/// Details filled in from memory, boxes placed by the network, and notes about shortfalls.
 type WhatWasTold = (
     Option<(Remembered, Option<Recalled>)>,
     Option<Diffused>,
@@ -37,7 +37,7 @@ type WhatWasTold = (
 );
 
 impl Told {
-    /// Tells how a layout came about.
+    /// Reports how a layout was made.
     pub fn tell(&self, laid: &Laid) {
         let mut notes = laid.notes.clone();
         notes.extend(crate::text::shortfalls(laid));
@@ -102,11 +102,11 @@ struct Variants {
     of: Ask,
     coming: Receiver<Result<(u64, Laid), Panicked>>,
     found: BTreeMap<u64, Laid>,
-    /// Why there are no more.
+    /// Why there are no more variants.
     problem: Option<String>,
 }
 
-/// What is wanted of the words beyond the words.
+/// Settings for a new scene besides the words.
 #[derive(Default)]
 pub struct Plan {
     placer: Placer,
@@ -123,12 +123,12 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Where the thread that makes a scene tells how it came about.
+    /// Cell in which the thread that makes a scene reports how its layout was made.
     pub fn told(&self) -> Told {
         self.told.clone()
     }
 
-    /// Forgets what was meant for other words.
+    /// Drops the settings that belonged to other words.
     pub fn follow(&mut self, prompt: &str) {
         if self.prompt != prompt {
             self.prompt = prompt.to_string();
@@ -152,7 +152,8 @@ impl Plan {
         }
     }
 
-    /// What to make of these words. Locked objects keep their places and the road where the open scene was made of them.
+    /// The request for a scene of these words. If the open scene was made of the same words, locked objects keep their
+    /// places, and the road stays with them.
     pub fn ask(&mut self, prompt: &str, read: &Description, seed: u64, scene: &Scene) -> Ask {
         self.follow(prompt);
         let description = read.clone();
@@ -182,17 +183,17 @@ impl Plan {
         }
     }
 
-    /// True if the last scene from words was made of these.
+    /// True if the last scene from words was made of this prompt.
     pub fn made_of(&self, prompt: &str) -> bool {
         self.made.as_ref().is_some_and(|(of, _)| of == prompt)
     }
 
-    /// Notes that a scene is made of these words.
+    /// Notes that a scene is made of this prompt.
     pub fn makes(&mut self, prompt: &str, seed: u64) {
         self.made = Some((prompt.to_string(), seed));
     }
 
-    /// Placer, memory, and what of the open scene stays.
+    /// Draws the switches: placer, memory, and the part of the open scene that stays.
     pub fn switches(&mut self, ui: &mut Ui) {
         let mut diffusion = self.placer == Placer::Diffusion;
         let said = t(
@@ -237,8 +238,8 @@ impl Plan {
         });
     }
 
-    /// A chip of an object: a menu with its number, a lock, another place. Commands change the open scene. The number that
-    /// was wanted instead.
+    /// Draws the chip of an object with its menu: number, lock, other place. Commands change the open scene. Returns
+    /// the new number if the user chose one.
     pub fn object_menu(
         &mut self,
         ui: &mut Ui,
@@ -249,7 +250,7 @@ impl Plan {
         commands: &mut Vec<Command>,
     ) -> Option<u32> {
         let prompt = self.prompt.clone();
-        // (the first is what was named; others are what it is placed by, or more of it in a row)
+        // (the first object is the one that was named; the others are its anchors, or more of it in a row)
         let first = *objects.first()?;
         let class = read.foreground.get(first)?.class;
         let alike = objects
@@ -314,7 +315,7 @@ impl Plan {
         wanted
     }
 
-    /// Other places for some objects of the open scene, as one undo step.
+    /// Moves some objects of the open scene to other places, as one undo step.
     fn roll(&mut self, objects: &[usize], scene: &Scene, read: &Description) -> Option<Command> {
         let (prompt, made_seed) = self.made.clone()?;
         self.follow(&prompt);
@@ -381,7 +382,7 @@ impl Plan {
         (!edits.is_empty()).then_some(Command::Apply("Re-roll", edits))
     }
 
-    /// Lays variants out on a thread of its own.
+    /// Starts a thread that lays out the variants.
     fn start_variants(&mut self, ask: &Ask, ctx: &egui::Context) {
         let (send, coming) = channel();
         let (work, wake) = (ask.clone(), ctx.clone());
@@ -392,7 +393,7 @@ impl Plan {
                     seed: work.seed.wrapping_add(k),
                     ..work.clone()
                 };
-                // Nobody listens once others are asked for.
+                // The receiver is gone once other variants are asked for.
                 if send.send(Ok((ask.seed, ask.lay_out()))).is_err() {
                     break;
                 }
@@ -413,7 +414,7 @@ impl Plan {
         });
     }
 
-    /// Seed of the first variant that comes.
+    /// Seed of the first variant that arrives.
     #[cfg(test)]
     pub(super) fn first_variant(&mut self, ask: &Ask) -> Result<u64, String> {
         self.start_variants(ask, &egui::Context::default());
@@ -426,7 +427,7 @@ impl Plan {
         }
     }
 
-    /// Variants: the seed that was chosen.
+    /// Draws the variants. Returns the seed of the chosen one.
     pub fn variants(&mut self, ui: &mut Ui, ask: &Ask) -> Option<u64> {
         let mut chosen = None;
         let button = ui
@@ -448,7 +449,7 @@ impl Plan {
             let text = tf!("No more variants: {problem}", problem = problem);
             ui.label(egui::RichText::new(text).small().color(theme::warn()));
         }
-        // Square, as the map is.
+        // Square, like the map.
         let width = ((ui.available_width() - 8.0) / 2.0).clamp(80.0, 260.0);
         let first = variants.of.seed;
         for pair in 0..VARIANTS / 2 {
@@ -502,19 +503,19 @@ impl Plan {
         chosen
     }
 
-    /// The remembered scene that is nearest to the words, while memory is on.
+    /// Draws the remembered scene that is nearest to the words, while memory is on.
     pub fn recalled(&mut self, ui: &mut Ui, ask: &Ask) {
         if self.memory {
             self.recall.show(ui, ask);
         }
     }
 
-    /// How the last scene came about.
+    /// Draws how the last scene was made.
     pub fn origin(&self, ui: &mut Ui) {
         self.told.show(ui);
     }
 
-    /// The scene graph, editable; true if it is to be placed again.
+    /// Draws the scene graph, which can be edited. Returns true if it is to be placed again.
     pub fn graph(
         &mut self,
         ui: &mut Ui,

@@ -1,4 +1,4 @@
-//! What was read: a chip for each part, what is doubtful, and the questions that it asks back.
+//! The reading of a prompt: a chip for each part, doubtful parts, and the questions that come back.
 
 use egui::accesskit::Role;
 use egui::{Ui, WidgetInfo, vec2};
@@ -20,15 +20,15 @@ use words::hear::Heard;
 use words::reading::{Reading, What};
 
 impl PromptField {
-    /// Each part of what was read: to be changed, locked, re-rolled or taken out. Of a change that was carried out nothing is
-    /// left to change.
+    /// Draws a chip for each part of the reading, which can be changed, locked, re-rolled or removed. A change that was
+    /// carried out has no chips.
     pub(super) fn chips(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let said = self.said();
         let Some(both) = &self.read else { return };
         if self.is_sent && self.done.is_some() && !self.plan.made_of(&said) {
             return;
         }
-        // (chips are of what Enter would do)
+        // (the chips are of the reading that Enter would carry out)
         let as_change = !both.is_described() && !self.plan.made_of(&said) && both.edited.is_ok();
         let (mut gone, mut number, mut other, mut beside) = (None, None, None, None);
         let takes_other;
@@ -128,8 +128,8 @@ impl PromptField {
         }
     }
 
-    /// What of the words is doubtful or not in the reading; after they were carried out the answer says it. True if what the other
-    /// reader says is taken.
+    /// Tells which words were doubtful or not read; after they were carried out the answer tells it. Returns true if
+    /// the user takes the other reader's reading.
     fn say_doubts(&self, ui: &mut Ui, heard: &Heard) -> bool {
         let said = self.said();
         for m in &heard.mended {
@@ -164,9 +164,9 @@ impl PromptField {
             .clicked()
     }
 
-    /// What came of the words, in a sentence; what must be answered first.
+    /// Draws the answer to the words in a sentence, and the questions that must be answered first.
     pub(super) fn answers(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
-        // (a question stands below, with what can be answered)
+        // (a question is drawn below, with its possible answers)
         if let Some(done) = self.done.as_ref().filter(|_| !self.asks) {
             ui.add(egui::Label::new(egui::RichText::new(done).color(theme::text())).wrap());
         }
@@ -176,7 +176,7 @@ impl PromptField {
         if !self.asks {
             return;
         }
-        // (of another scene other boxes are meant)
+        // (in another scene, the candidates are other boxes)
         if let Some(read) = &mut self.read
             && read.follow(scene, self.seed)
             && let Ok(edited) = &read.edited
@@ -232,7 +232,7 @@ impl PromptField {
     }
 }
 
-/// A chip whose value may be another of its kind.
+/// A chip whose value can be replaced by another of its kind.
 fn style_menu(
     ui: &mut Ui,
     text: &str,

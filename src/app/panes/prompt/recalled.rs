@@ -1,4 +1,4 @@
-//! The remembered scene that memory goes by: a small map of it, what it is, and how near it is to the words.
+//! The remembered scene that memory uses: a small map of it, its description, and its similarity to the words.
 
 use std::sync::mpsc::{Receiver, channel};
 
@@ -15,7 +15,7 @@ use widgets::thumbnail;
 /// Side of the map, points.
 const SIDE: f32 = 84.0;
 
-/// A remembered scene to be shown.
+/// A remembered scene, ready to be shown.
 #[derive(Clone, Debug)]
 pub struct Recalled {
     text: String,
@@ -25,7 +25,7 @@ pub struct Recalled {
 }
 
 impl Recalled {
-    /// The nearest of what was found; none if its road cannot be read any more.
+    /// The nearest of the remembered scenes; `None` if its road cannot be read.
     pub fn of(found: &Remembered) -> Option<Self> {
         let entry = found.nearest.as_ref()?;
         Some(Self {
@@ -36,7 +36,7 @@ impl Recalled {
         })
     }
 
-    /// Draws it; the pointer enlarges it.
+    /// Draws the scene; hovering enlarges it.
     pub fn show(&self, ui: &mut Ui, title: &str) {
         ui.horizontal(|ui| {
             let (rect, response) = ui.allocate_exact_size(vec2(SIDE, SIDE), Sense::hover());
@@ -59,7 +59,7 @@ impl Recalled {
     }
 }
 
-/// As much of a description as stands beside the map.
+/// A description cut to the length that fits beside the map.
 fn shortened(text: &str) -> String {
     const MOST: usize = 72;
     if text.chars().count() <= MOST {
@@ -70,10 +70,10 @@ fn shortened(text: &str) -> String {
     format!("{whole}…")
 }
 
-/// Words, and what was found for them or why nothing could be looked up.
+/// Words with the remembered scene for them, or why none could be looked up.
 type Found = (String, Result<Option<Recalled>, Panicked>);
 
-/// Looks up the remembered scene for words that are being typed, on a thread of its own.
+/// Looks up the remembered scene for the words that are being typed, on a thread of its own.
 #[derive(Default)]
 pub struct Recall {
     shown: Option<Found>,
@@ -90,14 +90,14 @@ impl Recall {
             found.as_ref().and_then(Recalled::of)
         };
         let thread = job::guard::spawn("recall", recall, move |found| {
-            // Nobody listens once the pane is gone.
+            // The receiver is gone once the pane is closed.
             let _ = send.send((words, found));
             wake.request_repaint();
         });
         self.coming = thread.ok().map(|_| coming);
     }
 
-    /// Draws the scene for these words; the one before until it is found.
+    /// Draws the scene for these words; until it is found, the one before.
     pub fn show(&mut self, ui: &mut Ui, ask: &Ask) {
         if let Some(found) = self.coming.as_ref().and_then(|c| c.try_recv().ok()) {
             (self.shown, self.coming) = (Some(found), None);

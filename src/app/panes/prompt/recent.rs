@@ -1,4 +1,4 @@
-//! Words to take again: those that the user keeps, and those that were typed before.
+//! Prompts to use again: those that the user keeps, and the last ones typed.
 
 use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
@@ -8,13 +8,13 @@ use language::{t, tf};
 use widgets::icons::{self, section};
 use widgets::theme;
 
-/// Lines of the history that are offered.
+/// Lines of the history that are listed.
 const RECENT: usize = 5;
-/// Words that are kept at most.
+/// Most prompts that are kept.
 const MOST: usize = 100;
 
 impl PromptField {
-    /// Keeps words, or no more; the newest stand first.
+    /// Keeps a prompt, or no longer keeps it; the newest stands first.
     pub fn star(&mut self, words: &str) {
         let before = self.favourites.len();
         self.favourites.retain(|kept| kept != words);

@@ -1,5 +1,5 @@
-//! What was typed, as it was read both ways: as a change of the scene at hand and as a new scene. Chips change the reading
-//! itself, not the words.
+//! A prompt read both ways: as a change of the open scene and as a new scene. Chips change the reading itself, not the
+//! words.
 
 use crate::text::{self, Edited, Prompted};
 use scene::{BoxId, Scene, SceneRev};
@@ -7,13 +7,13 @@ use words::hear::{By, Heard};
 use words::notation;
 use words::reading::{Quantity, Reading, Thing, What};
 
-/// Both readings of a text.
+/// The two readings of a text.
 pub struct Both {
     /// The text.
     pub text: String,
-    /// As a new scene; an error in one line.
+    /// The reading as a new scene; an error in one line.
     pub prompted: Result<Prompted, String>,
-    /// As a change, with what it would do to the scene of this revision.
+    /// The reading as a change, with its effect on the scene of revision `rev`.
     pub edited: Result<Edited, String>,
     rev: SceneRev,
     seed: u64,
@@ -32,7 +32,7 @@ impl Both {
         }
     }
 
-    /// Carries the change out again where the scene or the seed is another one; true if it was.
+    /// Applies the change again if the scene or the seed is another one; returns true if it did.
     pub fn follow(&mut self, scene: &Scene, seed: u64) -> bool {
         if (scene.rev, seed) == (self.rev, self.seed) {
             return false;
@@ -40,7 +40,7 @@ impl Both {
         (self.rev, self.seed) = (scene.rev, seed);
         let again = text::read_edit(&self.text, scene, seed);
         self.edited = match (again, &self.edited) {
-            // (changed by hand: what was changed stays, but boxes of another scene are not meant)
+            // (a reading that was changed by hand stays, unless it names boxes: those may be of another scene)
             (Ok(_), Ok(old)) if old.heard.by == By::Hand && !names_boxes(&old.heard.reading) => {
                 Ok(text::edited(old.heard.clone(), scene, seed))
             }
@@ -49,7 +49,8 @@ impl Both {
         true
     }
 
-    /// True if the words describe a whole scene rather than a change: a road, or light and things.
+    /// True if the words describe a whole scene rather than a change: things with a road, or with light, weather or
+    /// density.
     pub fn is_described(&self) -> bool {
         let Ok(p) = &self.prompted else { return false };
         let acts = || p.heard.reading.acts.iter().map(|a| &a.what);
@@ -81,7 +82,7 @@ impl Both {
         things && (road || light) && !changes
     }
 
-    /// Takes what the other reader says of the new scene.
+    /// Takes the other reader's reading of the new scene.
     pub fn take_other_prompt(&mut self) {
         if let Ok(p) = &self.prompted
             && let Some(other) = p.heard.other.clone()
@@ -90,7 +91,7 @@ impl Both {
         }
     }
 
-    /// The same of the change.
+    /// Takes the other reader's reading of the change.
     pub fn take_other_edit(&mut self, scene: &Scene) {
         if let Ok(e) = &self.edited
             && let Some(other) = e.heard.other.clone()
@@ -99,7 +100,7 @@ impl Both {
         }
     }
 
-    /// Another reading of the new scene.
+    /// Changes the reading of the new scene by hand.
     pub fn set_prompt(&mut self, change: impl FnOnce(&mut Reading)) {
         if let Ok(p) = &self.prompted {
             let heard = by_hand(&p.heard, change);
@@ -107,7 +108,7 @@ impl Both {
         }
     }
 
-    /// Another reading of the change.
+    /// Changes the reading of the change by hand.
     pub fn set_edit(&mut self, scene: &Scene, change: impl FnOnce(&mut Reading)) {
         if let Ok(e) = &self.edited {
             let heard = by_hand(&e.heard, change);
@@ -125,7 +126,7 @@ fn by_hand(heard: &Heard, change: impl FnOnce(&mut Reading)) -> Heard {
     heard
 }
 
-/// The reading with an act less, or with one thing of an act less.
+/// Removes an act of the reading, or one thing of an act.
 pub fn take_out(reading: &mut Reading, act: usize, thing: Option<usize>) {
     let Some(a) = reading.acts.get_mut(act) else {
         return;
@@ -141,7 +142,7 @@ pub fn take_out(reading: &mut Reading, act: usize, thing: Option<usize>) {
     reading.acts.remove(act);
 }
 
-/// Another number of a thing that is added.
+/// Sets the number of a thing that is added; 0 removes it.
 pub fn set_number(reading: &mut Reading, act: usize, thing: usize, n: u32) {
     if n == 0 {
         take_out(reading, act, Some(thing));
@@ -154,8 +155,8 @@ pub fn set_number(reading: &mut Reading, act: usize, thing: usize, n: u32) {
     }
 }
 
-/// Says which box is meant where several fit: `asked` is the thing in notation. Of two that are meant one is named and the
-/// other is still asked for.
+/// Answers which box is meant if several match. `asked` is the thing in notation. If several boxes are meant, this one
+/// is named and the others are still asked for.
 pub fn answer(reading: &mut Reading, act: usize, asked: &str, id: BoxId) {
     let Some(a) = reading.acts.get_mut(act) else {
         return;
@@ -192,7 +193,7 @@ pub fn answer(reading: &mut Reading, act: usize, asked: &str, id: BoxId) {
     });
 }
 
-/// This box and no other.
+/// Makes a thing stand for this box only.
 fn named(t: &mut Thing, id: BoxId) {
     t.id = Some(id.0);
     (t.quantity, t.pick, t.nth, t.other) = (Quantity::The, None, None, false);

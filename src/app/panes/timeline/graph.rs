@@ -1,4 +1,4 @@
-//! Speed and distance over time, of what is chosen or of the ego vehicle.
+//! Curves of speed and distance over time, for the selection or the ego vehicle.
 
 use egui::{Align2, Pos2, Rect, Shape, Stroke, TextStyle, Ui, pos2, vec2};
 
@@ -11,7 +11,7 @@ use widgets::theme;
 /// Time between two points of a curve, s.
 const STEP_S: f64 = 0.1;
 
-/// Draws the curves under the times of the rows.
+/// Draws the curves on the time axis of the rows.
 pub(super) fn show(ui: &mut Ui, scene: &Scene, id: Option<BoxId>, track: Track) {
     let clip = scene.clip();
     let id = id.filter(|id| clip.tracks.contains_key(id));

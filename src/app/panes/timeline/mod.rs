@@ -1,4 +1,4 @@
-//! Time: play, scrub, step; what moves, its keyframes and speeds.
+//! The timeline: play, scrub, step; moving objects, their keyframes and speeds.
 
 mod graph;
 mod row_menu;
@@ -18,13 +18,13 @@ use language::{t, tf};
 use widgets::icons::Icon;
 use widgets::theme;
 
-/// The timeline.
+/// The pane of the timeline.
 #[derive(Default)]
 pub struct Timeline {
     rows: rows::Rows,
 }
 
-/// Length of a clip that the button makes, s.
+/// Length of a clip made by the button, s.
 const USUAL_LENGTH_S: f64 = 8.0;
 
 impl Pane for Timeline {
@@ -71,7 +71,7 @@ impl Pane for Timeline {
     }
 }
 
-/// A scene of one moment: what makes it a clip.
+/// Draws the pane for a scene of one moment, with the buttons that turn it into a clip.
 fn still(ui: &mut Ui, scene: &scene::Scene, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
     ui.label(t("This scene is one moment: nothing in it moves."));
     let hint =

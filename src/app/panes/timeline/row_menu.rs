@@ -1,4 +1,4 @@
-//! What can be done with the motion of a row: retimed, mirrored, copied, attached, trimmed.
+//! The menu of a row, which edits its motion: retime, mirror, copy, attach, trim.
 
 use egui::Ui;
 
@@ -12,7 +12,7 @@ use editor::{Edit, keyframes};
 use language::t;
 use widgets::theme;
 
-/// How many neighbours a thing can be attached to from the menu.
+/// Most neighbours in the menu to which an object can be attached.
 const MOST_NEIGHBOURS: usize = 8;
 
 /// Draws the menu's entries.
@@ -135,7 +135,7 @@ pub(super) fn entries(
     }
 }
 
-/// A keyframe at the moment that is shown comes, or goes.
+/// Entries that make a keyframe at the moment shown, or delete it.
 fn keyframe_entries(ui: &mut Ui, scene: &Scene, id: Option<BoxId>, commands: &mut Vec<Command>) {
     let steps = [
         ("Keyframe here", "Make keyframe", keyframes::key_here(scene, id)),
@@ -157,7 +157,7 @@ fn keyframe_entries(ui: &mut Ui, scene: &Scene, id: Option<BoxId>, commands: &mu
     ui.separator();
 }
 
-/// The ways to trim the span, s, in which a thing is there.
+/// The ways to trim the span, s, in which an object exists.
 fn trims(there_s: [Option<f64>; 2], now_s: f64) -> [(&'static str, [Option<f64>; 2]); 3] {
     let [from_s, to_s] = there_s;
     [
@@ -173,7 +173,7 @@ fn trims(there_s: [Option<f64>; 2], now_s: f64) -> [(&'static str, [Option<f64>;
     ]
 }
 
-/// What the row's thing is called.
+/// The title of the row's object.
 fn title(scene: &Scene, id: Option<BoxId>) -> String {
     match id.and_then(|id| scene.frame().boxes.get(&id)) {
         Some(b) => format!("{} {}", theme::sentence(&called(b)), b.id.0),
@@ -181,7 +181,7 @@ fn title(scene: &Scene, id: Option<BoxId>) -> String {
     }
 }
 
-/// When a motion leaves the place where it begins, s.
+/// Time at which a motion leaves its starting place, s.
 fn start_s(motion: &Motion) -> f64 {
     let stands = match motion {
         Motion::Keys(keys) => keys
@@ -198,7 +198,7 @@ fn start_s(motion: &Motion) -> f64 {
     motion.times_s().get(stands).copied().unwrap_or(0.0)
 }
 
-/// The motion as many times as fast, from where it starts to move on.
+/// The motion sped up by a factor from the time at which it begins to move.
 fn quicker(motion: &Motion, times: f64) -> Motion {
     let start_s = start_s(motion);
     let later = |t: f64| {
@@ -209,7 +209,7 @@ fn quicker(motion: &Motion, times: f64) -> Motion {
         }
     };
     let mut out = motion.retimed(later);
-    // A steady speed has no times by which it could be told.
+    // A path with one steady speed has no times to retime, so the speed itself is scaled.
     if let Motion::Path(path) = &mut out
         && let [only] = path.speeds.as_mut_slice()
     {
@@ -219,7 +219,7 @@ fn quicker(motion: &Motion, times: f64) -> Motion {
     out
 }
 
-/// Other moving objects, the nearest first, that are not themselves attached to anything.
+/// Other moving objects that are not attached to anything, the nearest first.
 fn neighbours(scene: &Scene, own: BoxId, here: &Moving) -> Vec<(BoxId, Moving, String)> {
     let clip = scene.clip();
     let free = clip

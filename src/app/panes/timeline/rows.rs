@@ -1,4 +1,4 @@
-//! The ruler and a row for everything that moves: when it is there, its keyframes, which can be dragged.
+//! The ruler and a row for every moving object: the span in which it exists, and its keyframes, which can be dragged.
 
 use egui::accesskit::Role;
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
@@ -20,12 +20,12 @@ const NAME_POINTS: f32 = 150.0;
 /// Height of the ruler and of a row, points.
 const RULER_POINTS: f32 = 20.0;
 const ROW_POINTS: f32 = 20.0;
-/// How near to a keyframe the pointer takes it, points.
+/// Distance within which the pointer grabs a keyframe, points.
 const REACH_POINTS: f32 = 6.0;
-/// Two keyframes stay this far apart, s.
+/// Least time between two keyframes, s.
 const APART_S: f64 = 0.02;
 
-/// Where times are on the screen.
+/// Mapping of times to the screen.
 #[derive(Clone, Copy)]
 pub(super) struct Track {
     left: f32,
@@ -34,19 +34,19 @@ pub(super) struct Track {
 }
 
 impl Track {
-    /// Where a time is.
+    /// The screen x of a time.
     pub(super) fn x(&self, time_s: f64) -> f32 {
         let part = (time_s / self.length_s.max(1e-9)) as f32;
         self.left + part * (self.right - self.left)
     }
 
-    /// The time at a place, within the clip.
+    /// The time at a screen x, clamped to the clip.
     fn time_s(&self, x: f32) -> f64 {
         let part = f64::from((x - self.left) / (self.right - self.left).max(1.0));
         (part * self.length_s).clamp(0.0, self.length_s)
     }
 
-    /// From where to where it goes.
+    /// Left and right end on the screen.
     pub(super) fn ends(&self) -> (f32, f32) {
         (self.left, self.right)
     }
@@ -61,14 +61,14 @@ struct Drag {
     index: usize,
 }
 
-/// The rows, and what is dragged in them.
+/// The rows, and the keyframe that is dragged.
 #[derive(Default)]
 pub(super) struct Rows {
     drag: Option<Drag>,
 }
 
 impl Rows {
-    /// Draws them in so many points of height.
+    /// Draws the rows with a total height, points.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -170,7 +170,7 @@ impl Rows {
         let shade = if motion.is_some() { 0.55 } else { 0.15 };
         painter.rect_filled(bar, 2.0, color.gamma_multiply(shade));
         let keys = motion.map(Motion::times_s).unwrap_or_default();
-        // The speeds of a follower are one every tenth of a second: no keys for a hand.
+        // Followers have a speed every tenth of a second; these are no keyframes to drag.
         let many = keys.len() > 64;
         for time_s in keys.iter().filter(|_| !many) {
             diamond(&painter, pos2(track.x(*time_s), middle), color);
@@ -239,7 +239,7 @@ impl Rows {
     }
 }
 
-/// The motion with one of its times elsewhere; the others stay.
+/// The motion with one of its times moved; the others stay.
 fn with_key_at(motion: &Motion, old_s: f64, new_s: f64) -> Motion {
     let mut out = motion.clone();
     let time = |t: &mut f64| {
@@ -270,7 +270,7 @@ fn diamond(painter: &egui::Painter, at: Pos2, color: Color32) {
     ));
 }
 
-/// Moments at which the checks found something, marked over all rows; a click shows them.
+/// Marks moments with findings over all rows; a click shows the moment.
 fn faults(
     ui: &Ui,
     area: Rect,
@@ -306,7 +306,7 @@ fn faults(
     }
 }
 
-/// Times with ticks; a click or a drag shows that moment.
+/// Draws times with ticks; a click or a drag shows that moment.
 fn ruler(ui: &Ui, rect: Rect, track: Track, scene: &Scene, state: &UiState, commands: &mut Vec<Command>) {
     let (left, right) = track.ends();
     let strip = Rect::from_x_y_ranges(left - 6.0..=right + 6.0, rect.y_range());
@@ -338,7 +338,7 @@ fn ruler(ui: &Ui, rect: Rect, track: Track, scene: &Scene, state: &UiState, comm
             Stroke::new(1.0, theme::text_weak()),
         );
         let digits = usize::from(step_s < 1.0);
-        // The last one has no room to its right.
+        // The last time has no room to its right.
         let (place, align) = match right - x < 30.0 {
             true => (x - 3.0, Align2::RIGHT_TOP),
             false => (x + 3.0, Align2::LEFT_TOP),
@@ -352,7 +352,7 @@ fn ruler(ui: &Ui, rect: Rect, track: Track, scene: &Scene, state: &UiState, comm
         );
     }
     let x = track.x(scene.time_s());
-    // It leaves the times above it readable.
+    // The handle leaves the times above it readable.
     let top = rect.bottom() - 9.0;
     let knob = vec![pos2(x - 5.0, top), pos2(x + 5.0, top), pos2(x, rect.bottom())];
     painter.add(egui::Shape::convex_polygon(knob, theme::accent(), Stroke::NONE));

@@ -1,4 +1,4 @@
-//! Buttons that play and step, the time in numbers, and what edits mean for other moments.
+//! Buttons that play and step, the time in numbers, and the moments for which edits count.
 
 use egui::{RichText, Ui};
 
@@ -15,7 +15,7 @@ use language::{t, tf};
 use widgets::icons::{self, Icon};
 use widgets::theme;
 
-/// What a scope is called.
+/// The name of a scope.
 pub(crate) fn scope_name(scope: Scope) -> &'static str {
     match scope {
         Scope::Moment => "This moment",
@@ -24,7 +24,7 @@ pub(crate) fn scope_name(scope: Scope) -> &'static str {
     }
 }
 
-/// Which moments an edit of a moving object is for.
+/// Draws the choice of moments for which an edit of a moving object counts.
 pub(super) fn scope(ui: &mut Ui, state: &mut UiState) {
     let choices = [
         (
@@ -52,7 +52,7 @@ pub(super) fn scope(ui: &mut Ui, state: &mut UiState) {
     ui.label(RichText::new(t("Moving objects:")).color(theme::text_weak()));
 }
 
-/// The row of buttons and numbers.
+/// Draws the row of buttons and numbers.
 pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mut Vec<Command>) {
     let clip = scene.clip();
     ui.horizontal_wrapped(|ui| {
@@ -147,7 +147,7 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
     });
 }
 
-/// The button that lets things drive that only say how fast.
+/// The button that gives a path to objects that have only a speed.
 fn traffic(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
     let standing = scene.canvas().boxes.values();
     let waiting = standing.filter(|b| b.velocity_mps.length() > 0.3).count();
@@ -155,17 +155,17 @@ fn traffic(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         "{n} objects have a speed but stand still: they drive along their lanes and keep their distance",
         n = waiting
     );
-    // It stays where it is: the button beside it would come under the pointer.
+    // The button stays in place when disabled, or the button beside it would come under the pointer.
     let button = ui.add_enabled(waiting > 0, egui::Button::new(t("Let traffic drive")));
     if button.on_hover_text(hint).clicked() {
         commands.push(Command::Time(TimeCommand::Traffic));
     }
 }
 
-/// How much longer a forecast makes a scene, s.
+/// Time by which a forecast lengthens a scene, s.
 const FORECAST_S: f64 = 3.0;
 
-/// The button that lets the scene go on.
+/// The button that makes a forecast.
 pub(super) fn forecast(ui: &mut Ui, commands: &mut Vec<Command>) {
     let hint = t(
         "3 s more: what moves goes on along its lane and behind whoever is ahead, so do we, and the map grows",

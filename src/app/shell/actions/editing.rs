@@ -1,4 +1,4 @@
-//! Actions that many tools share, and those of the selection.
+//! Actions that many tools share, and actions of the selection.
 
 use glam::DVec2;
 
@@ -19,7 +19,7 @@ const fn raise(steps: i32) -> Command {
     Command::Tools(ToolCommand::Thing(ThingCommand::Raise(steps)))
 }
 
-/// What belongs to no one tool: tools, then the selection.
+/// Actions that belong to no single tool: of tools, then of the selection.
 pub(super) const ACTIONS: &[ActionDef] = &[
     action(Tools, "brush_smaller", "Smaller brush", "[", || {
         Command::BrushSize(-1)

@@ -1,4 +1,4 @@
-//! Everything that a key can call for: the one list behind keys, the sheet of keys and the command palette.
+//! The list of all actions that a key can trigger, used for keys, the sheet of keys and the command palette.
 
 mod editing;
 mod window;
@@ -11,25 +11,25 @@ use crate::command::Command;
 use crate::tools::ToolCommand;
 use editor::tools::{self, Shortcut};
 
-/// Where a chord counts; what stands later wins over what stands before.
+/// Where a chord counts. If several apply, the later variant wins over the earlier one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum When {
     /// Everywhere.
     Always,
-    /// With the pointer over the 3D view.
+    /// While the pointer is over the 3D view.
     Over3d,
-    /// While a box or a thing is chosen and the tool in hand is one for them.
+    /// While a box or a thing is chosen, and the tool in hand does not paint.
     Chosen,
-    /// While a thing beside the road is chosen and no brush is in hand.
+    /// While a thing beside the road is chosen and the tool in hand is no brush.
     Things,
-    /// With a tool in hand that paints.
+    /// While the tool in hand paints.
     Painting,
-    /// While a new result waits for a decision.
+    /// While a staged result waits for a decision.
     Staged,
 }
 
 impl When {
-    /// True if a chord cannot mean two things in these two places: only `Always` gives way to the others.
+    /// True if one chord may not have two actions in these places. In different places the later one wins.
     pub fn meets(self, other: Self) -> bool {
         self == other
     }
@@ -67,27 +67,27 @@ impl Group {
 /// One action.
 #[derive(Clone, Copy)]
 pub struct ActionDef {
-    /// Its name in key files.
+    /// Its id in key files.
     pub id: &'static str,
     /// Section of the sheet.
     pub group: Group,
-    /// What it does, for a person.
+    /// Its title for the user.
     pub title: &'static str,
-    /// Where its chords count.
+    /// The condition under which its chords count.
     pub when: When,
-    /// Default chords, separated by blanks.
+    /// Default chords, separated by spaces.
     pub keys: &'static str,
-    /// Goes on while the key is held.
+    /// True if it repeats while the key is held.
     pub repeats: bool,
     does: Does,
 }
 
-/// What an action does.
+/// Effect of an action.
 #[derive(Clone, Copy)]
 enum Does {
-    /// Asks for something.
+    /// Pushes a command.
     Command(fn() -> Command),
-    /// The shortcut of a tool of that name.
+    /// The shortcut of a tool, by the action's id.
     Shortcut,
 }
 
@@ -110,7 +110,7 @@ const fn action(
 }
 
 impl ActionDef {
-    /// What the action asks for.
+    /// The command of the action.
     pub fn command(&self) -> Command {
         match self.does {
             Does::Command(command) => command(),
@@ -149,14 +149,14 @@ impl ActionDef {
     }
 }
 
-/// Every action: those of the tools, and all others.
+/// Every action: those of the tools, then all others.
 pub static ACTIONS: LazyLock<Vec<ActionDef>> = LazyLock::new(|| {
     let of_tools = tools::all().iter().flat_map(|tool| tool.shortcuts).map(of_tool);
     let others = editing::ACTIONS.iter().chain(window::ACTIONS);
     of_tools.chain(others.copied()).collect()
 });
 
-/// The action that a tool has.
+/// The action for a shortcut of a tool.
 fn of_tool(shortcut: &'static Shortcut) -> ActionDef {
     ActionDef {
         id: shortcut.id,
@@ -176,8 +176,8 @@ fn of_tool(shortcut: &'static Shortcut) -> ActionDef {
     }
 }
 
-/// Nudges of the chosen box by the arrows, which no preset changes: direction in the ego frame, as the bird's-eye view
-/// shows it (forward is up).
+/// Direction in which an arrow key nudges the chosen box, in the ego frame as the bird's-eye view shows it (forward is
+/// up). No preset changes these keys.
 pub fn nudge_direction(key: egui::Key) -> Option<DVec3> {
     use egui::Key;
     Some(match key {

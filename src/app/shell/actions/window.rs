@@ -11,7 +11,7 @@ use viewport::ViewPreset;
 
 macro_rules! bookmarks {
     ($($slot:literal),*) => {
-        /// Goes to a kept view.
+        /// Action that goes to a kept view.
         const fn go(slot: u8) -> ActionDef {
             match slot {
                 $($slot => action(
@@ -25,7 +25,7 @@ macro_rules! bookmarks {
             }
         }
 
-        /// Keeps a view.
+        /// Action that keeps a view.
         const fn keep(slot: u8) -> ActionDef {
             match slot {
                 $($slot => action(
@@ -43,7 +43,7 @@ macro_rules! bookmarks {
 
 bookmarks!(1, 2, 3, 4, 5, 6, 7, 8, 9);
 
-/// Views, generation, files.
+/// Actions of views, generation and files.
 pub(super) const ACTIONS: &[ActionDef] = &[
     action(Views, "frame_selection", "Frame the selection", "F", || {
         Command::View(ViewCommand::FrameSelection)

@@ -17,11 +17,11 @@ use scene::{Class, Scene, TimeOfDay, Weather};
 use sensors::cameras;
 use world::template::TEMPLATES;
 
-/// Objects that are listed at most.
+/// Most objects that are listed.
 const MOST_OBJECTS: usize = 2000;
-/// What is said of lines that change light and air.
+/// Text on the right of lines that change the conditions.
 const CONDITIONS: &str = "conditions";
-/// What the window of settings holds, as it is looked for.
+/// Contents of the settings window, as search texts.
 const SETTINGS: [&str; 6] = [
     "theme, dark or light",
     "class colours, safe for colour-blind people",
@@ -31,25 +31,25 @@ const SETTINGS: [&str; 6] = [
     "assistants may drive this editor",
 ];
 
-/// What the palette can offer.
+/// Data that the lines of the palette are made of.
 pub struct Known<'a> {
-    /// Keys of the actions.
+    /// Chords of the actions.
     pub keymap: &'a Keymap,
-    /// Files that were open.
+    /// Recent files.
     pub recent: &'a [PathBuf],
-    /// What is open.
+    /// The open scene.
     pub scene: &'a Scene,
 }
 
-/// A title in English, and in the language that is shown.
+/// A title in English, and in the language of the interface.
 type Title = [String; 2];
 
-/// A title with a name in it that is a text of the interface.
+/// A title that contains a name; the name is a text of the interface.
 fn titled(text: &str, name: &str) -> Title {
     titled_as(text, [name, t(name)])
 }
 
-/// The same with a name in English and as it is shown.
+/// A title that contains a name, given in English and in the language of the interface.
 fn titled_as(text: &str, [english, own]: [&str; 2]) -> Title {
     [
         filled(text, &[("name", &english)]),
@@ -57,7 +57,7 @@ fn titled_as(text: &str, [english, own]: [&str; 2]) -> Title {
     ]
 }
 
-/// A title of its own inside a line: small in English, as it is in other languages.
+/// A title for use inside a line: in lower case in English, unchanged in other languages.
 fn inside(title: &str) -> [String; 2] {
     let (small, own) = (title.to_lowercase(), t(title));
     let own = if own == title {
@@ -68,7 +68,7 @@ fn inside(title: &str) -> [String; 2] {
     [small, own]
 }
 
-/// Every line there is.
+/// All lines.
 pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
     let (keymap, scene) = (known.keymap, known.scene);
     let mut out: Vec<Item> = ACTIONS
@@ -88,7 +88,7 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
             shown,
             right: right.to_owned(),
             does: Does::Commands(match right {
-                // Light and air are seen in pictures.
+                // Conditions are visible in pictures only.
                 CONDITIONS => vec![command, Command::View(ViewCommand::ShowLight)],
                 _ => vec![command],
             }),
@@ -158,7 +158,7 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
     out
 }
 
-/// Every kind of thing that a tool draws or puts down.
+/// Every kind of thing that has a tool.
 fn kinds() -> Vec<(ThingKind, Title)> {
     let trees = TREES.map(|(kind, name, _)| {
         let names = inside(name);
