@@ -328,7 +328,7 @@ mod tests {
             view,
             on_by,
             drawn: u8::from(drawn),
-            legend: false,
+            ..OwnCamera::default()
         };
         shown.own.insert(0, own(Some(pictures::VIEW.id), 0, true));
         shown.own.insert(4, own(Some(pictures::VIEW.id), 3, true));
@@ -342,6 +342,31 @@ mod tests {
             others,
             [(cameras::source_of(pictures::VIEW.id, shown.source).id(), 0b11)]
         );
+    }
+
+    #[test]
+    fn a_large_pane_asks_for_a_large_picture_while_it_is_drawn() {
+        use sensors::cameras::pictures;
+        let mut shown = CamerasShown::default();
+        let large = OwnCamera {
+            view: Some(pictures::VIEW.id),
+            on_by: 2,
+            drawn: 1,
+            large: true,
+            ..OwnCamera::default()
+        };
+        shown.own.insert(1, large);
+        let wanted = |shown: &CamerasShown| Wanted::of(shown, &LidarShown::default(), 6);
+        let source = cameras::source_of(pictures::VIEW.id, shown.source).id();
+        assert_eq!(wanted(&shown).large, Some((source, 3)));
+        assert_eq!(wanted(&shown).large_of(source), Some(3));
+        assert_eq!(wanted(&shown).large_of(shown.shown_source().id()), None);
+        // The enlarged camera comes first; it shows what the strip shows.
+        shown.enlarged = Some(0);
+        assert_eq!(wanted(&shown).large, Some((shown.shown_source().id(), 0)));
+        shown.enlarged = None;
+        shown.frame_ended();
+        assert_eq!(wanted(&shown).large, None);
     }
 
     #[test]

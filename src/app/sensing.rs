@@ -20,7 +20,7 @@ use language::tf;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene, SceneRev, SensorRig};
 use sensors::appearance::Quality;
-use sensors::cameras::{Card, Detail, Ready, RenderContext, RenderOptions, SourceId, learned};
+use sensors::cameras::{CameraSource, Card, Detail, Ready, RenderContext, RenderOptions, SourceId, learned};
 use sensors::caster::Caster;
 use sensors::learned::Drops;
 use sensors::learned_caster::{LearnedCaster, Sampled};
@@ -416,12 +416,7 @@ fn drops(shown: bool) -> Drops {
 }
 
 fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
-    let Request {
-        scene,
-        wanted,
-        preview,
-    } = request;
-    let rig = &scene.rig;
+    let Request { scene, wanted, .. } = request;
     let swept = (scene.rev, wanted.lidar, wanted.lost_echoes);
     if kept.swept != Some(swept) {
         let sweep = kept.sweep(scene, wanted);
@@ -433,12 +428,23 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         ctx.tell(News::Lidar(scene.rev, sweep, sampled));
         kept.swept = Some(swept);
     }
+    // Learned pictures are painted on a thread of their own.
+    let painted = wanted.camera_source().id() == learned::ID;
+    if painted || strip(request, kept, ctx) {
+        other_sources(request, kept, ctx);
+    }
+}
+
+/// Renders the pictures of the strip; false if the work should stop.
+fn strip(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) -> bool {
+    let Request {
+        scene,
+        wanted,
+        preview,
+    } = request;
+    let rig = &scene.rig;
     let key = (scene.rev, wanted.pictures());
     let source = wanted.camera_source();
-    // Learned pictures are painted on a thread of their own.
-    if source.id() == learned::ID {
-        return other_sources(request, kept, ctx);
-    }
     let mut of_scene = Views::new(source, scene, &mut kept.graphics);
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
     let mut render = |quick: bool| -> Option<Vec<CameraView>> {
@@ -466,9 +472,9 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
                 ctx.tell(News::Cameras(scene.rev, *wanted, views));
             }
             if *preview {
-                return other_sources(request, kept, ctx);
+                return true;
             }
-            let Some(views) = render(false) else { return };
+            let Some(views) = render(false) else { return false };
             kept.views = Some((key, views.clone()));
             views
         }
@@ -479,7 +485,7 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     {
         ctx.tell(News::Cameras(scene.rev, *wanted, views));
     }
-    other_sources(request, kept, ctx);
+    true
 }
 
 /// Renders the other sources that panes of single cameras show.
