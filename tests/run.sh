@@ -30,7 +30,7 @@ cargo fmt --all --check
 cargo clippy --profile checked --workspace --all-targets --quiet -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --profile checked --workspace --no-deps --document-private-items --quiet
 # No comment holds an example to run, so doc tests, which would read every room again, are left out.
-cargo test --profile checked --workspace --lib --bins --tests
+cargo test --profile checked --workspace --tests
 
 # The Python package, with the program that was just built.
 if python3 -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then

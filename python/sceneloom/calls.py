@@ -197,7 +197,7 @@ class Calls:
 
         template: Kind of street.
         seed: Fixes every random draw: the same seed gives the same scene.
-        setting: What kind of place; one that suits the road if left out.
+        setting: Kind of place; one that suits the road if left out.
         terrain: The lie of the land.
         """
         args = _given(
@@ -225,15 +225,15 @@ class Calls:
         picture that this program made (.png), or another format that is read. It can be undone. list_files
         tells what is there.
 
-        at_m: Of a road file: where the ego vehicle stands in the file's frame, m; a good place on a lane if
+        at_m: For a road file: position of the ego vehicle in the file's frame, m; a good place on a lane if
             left out.
         file: File in the folder of this session, such as `a.loom`, `road.xodr` or `labels.npz`; without it
             the scene that ships with the program.
-        heading_deg: Of a road file: its heading, degrees counter-clockwise from x; along the lane if left
-            out.
-        lift_m: Of a point cloud: how far it is lifted, m, 0 for not at all; if left out, a sweep whose
-            ground lies beside the map is lifted onto it, and `notes` says by how much.
-        size_m: Of a road file: length and width of the map, m; 80 x 80 if left out.
+        heading_deg: For a road file: heading of the ego vehicle, degrees counter-clockwise from x; along
+            the lane if left out.
+        lift_m: For a point cloud: height by which it is lifted, m, 0 for not at all; if left out, a sweep
+            whose ground lies beside the map is lifted onto it, and `notes` says by how much.
+        size_m: For a road file: length and width of the map, m; 80 x 80 if left out.
         """
         args = _given(
             {
@@ -263,8 +263,8 @@ class Calls:
 
         file: File in the folder of this session: a glTF model (.glb, .gltf), a MagicaVoxel shape (.vox), or
             a scene (.loom).
-        at_m: Where it stands, world frame, m; ahead of the ego vehicle if left out. The nearest free place
-            is taken.
+        at_m: Position, world frame, m; ahead of the ego vehicle if left out. The nearest free place is
+            taken.
         heading_deg: Heading, degrees counter-clockwise from x; as the lane there if left out.
         of: Number of the object's box, of a file that holds several.
         to: Box of the scene that gets the shape and the size, in place of a new one.
@@ -294,8 +294,8 @@ class Calls:
         ("remove the nearest car", "three pedestrians on the crossing", "at night"). The receipt tells what
         each phrase became, which words had no effect, and asks if more than one thing fits. One undo step.
 
-        text: What the scene should hold, or what should change in it; plain English.
-        make: What the words are for.
+        text: Content of the new scene, or changes of this one; plain English.
+        make: Purpose of the words.
         seed: Fixes every random draw.
         """
         args = _given({'text': text, 'make': make, 'seed': seed}, ['text'])
@@ -341,7 +341,7 @@ class Calls:
         answer, at most 640 pixels wide. Look at bev to see where things are. Files that are there are
         written over only with replace: call again with it, or name another folder.
 
-        what: What is rendered: `bev` is the map and the voxels from above, `view` the 3D view (needs a
+        what: Kinds of output: `bev` is the map and the voxels from above, `view` the 3D view (needs a
             graphics driver), `lidar` the points of a sweep; the others are what cameras see, `appearance`
             as a photograph.
         cameras: Names of cameras, as `state` lists them; all of them if left out.
@@ -351,7 +351,7 @@ class Calls:
         replace: Write over files that are there.
         size: Width and height of camera pictures, pixels; all pictures of a call together have at most 40
             million.
-        source: What classes and depths are rendered from.
+        source: Source that classes and depths are rendered from.
         time: Time of day of `appearance`; the scene's if left out.
         weather: Weather of `appearance`; the scene's if left out.
         """

@@ -38,7 +38,7 @@ def add_box(
     size_m: Length, width, height, m.
     yaw_deg: Heading, degrees counter-clockwise from x.
     id: Its number; none means the next one free.
-    label: What it is called and how it is painted.
+    label: Name and paint.
     velocity_mps: Velocity over ground in the world frame's axes, m/s; none means standing.
     """
     args = _given(
@@ -94,7 +94,7 @@ def arrange(
     """Groups, hides or locks boxes and things, or the opposite. No voxel changes, and nothing is
     generated.
 
-    how: What is done to them.
+    how: Change of their arrangement.
     boxes: The boxes.
     things: The things.
     """
@@ -116,7 +116,7 @@ def paint_bev(*, layer: types.BevLayer, shape: types.Shape, value: bool) -> type
     """Sets or clears a map layer. Clearing dividers or stop lines cuts the lines behind them there.
 
     layer: One of the eight map layers.
-    shape: Where.
+    shape: Cells to set or clear.
     value: True sets, false clears.
     """
     args = _given({'layer': layer, 'shape': shape, 'value': value}, ['layer', 'shape', 'value'])
@@ -126,16 +126,16 @@ def paint_bev(*, layer: types.BevLayer, shape: types.Shape, value: bool) -> type
 def add_things(*, forms: Sequence[types.Form]) -> types.EditAddThings:
     """Puts things beside the road, and their voxels. They stay when scenery is drawn anew.
 
-    forms: What and where, world frame.
+    forms: Kinds and places, world frame.
     """
     args = _given({'forms': forms}, ['forms'])
     return cast('types.EditAddThings', {"add_things": args})
 
 
 def draw_scenery(*, forms: Sequence[types.Form]) -> types.EditDrawScenery:
-    """The same with scenery that a seed drew: it goes when scenery is drawn anew.
+    """Puts scenery drawn by a seed beside the road, and its voxels. It goes when scenery is drawn anew.
 
-    forms: What and where, world frame.
+    forms: Kinds and places, world frame.
     """
     args = _given({'forms': forms}, ['forms'])
     return cast('types.EditDrawScenery', {"draw_scenery": args})
@@ -179,7 +179,7 @@ def raise_things(*, by_m: float, ids: Sequence[types.ThingId]) -> types.EditRais
 def change_thing(*, form: types.Form, id: types.ThingId) -> types.EditChangeThing:
     """Gives a thing another form.
 
-    form: What and where from now on, world frame.
+    form: Its new kind and place, world frame.
     id: The thing.
     """
     args = _given({'form': form, 'id': id}, ['form', 'id'])
@@ -190,7 +190,7 @@ def clear_scenery(*, shape: types.Shape | None = None) -> types.EditClearScenery
     """Takes man-made and plant voxels out that belong to no thing, and lays the ground where they stood.
     Painted voxels stay.
 
-    shape: Where; everywhere if left out.
+    shape: Area to clear; everywhere if left out.
     """
     args = _given({'shape': shape}, [])
     return cast('types.EditClearScenery', {"clear_scenery": args})
@@ -200,7 +200,7 @@ def add_polylines(*, lines: Sequence[types.Polyline]) -> types.EditAddPolylines:
     """Puts lines on the ground: lane centres, and dividers, stop lines and crossings with the cells of
     their layer.
 
-    lines: What they mean and where they run, world frame, m; at least two vertices each.
+    lines: Kinds and vertices of the lines, world frame, m; at least two vertices each.
     """
     args = _given({'lines': lines}, ['lines'])
     return cast('types.EditAddPolylines', {"add_polylines": args})
@@ -210,7 +210,7 @@ def change_roads(*, change: types.RoadChange) -> types.EditChangeRoads:
     """Changes the road network. What it draws differently from before is drawn anew: layers, lines,
     ground. In a scene that has no network yet, what is painted is recognised first.
 
-    change: What is changed.
+    change: Change to apply.
     """
     args = _given({'change': change}, ['change'])
     return cast('types.EditChangeRoads', {"change_roads": args})
@@ -264,7 +264,7 @@ def at(
     stands still is changed for all moments anyway. At most one of `frame`, `time_s` and `track` is
     given, and at least one of all keys.
 
-    edit: What is changed there.
+    edit: Edit to apply there.
     frame: Number of the frame.
     scope: For which moments a moving object changes its place; the whole track if left out.
     time_s: Time in the clip, s.
@@ -412,7 +412,7 @@ def waive(
 
     check: Name of the check.
     reason: Why it may stay; not empty.
-    where_m: Where it was found, world frame, m.
+    where_m: Place of the finding, world frame, m.
     box: The box it is about, if it is about one.
     """
     args = _given(
@@ -431,7 +431,7 @@ def unwaive(*, check: str, where_m: Sequence[float], box: types.BoxId | None = N
     """Takes a waiver back: the finding counts again. Nothing if there is none.
 
     check: Name of the check.
-    where_m: Where it was found, world frame, m.
+    where_m: Place of the finding, world frame, m.
     box: The box it is about, if it is about one.
     """
     args = _given({'check': check, 'where_m': where_m, 'box': box}, ['check', 'where_m'])

@@ -23,7 +23,7 @@ ArrangementGroup = TypedDict(
     },
 )
 
-# What is done to the arrangement of objects.
+# A change of the arrangement of objects.
 Arrangement: TypeAlias = "Literal['hide', 'show', 'lock', 'unlock', 'ungroup'] | ArrangementGroup"
 
 # A channel of the bird's-eye-view layout, in UniScene's order; the discriminant is the bit. Layers 0 to 7 are
@@ -37,7 +37,7 @@ BoxId: TypeAlias = 'int'
 BoxLabel = TypedDict(
     'BoxLabel',
     {
-        # What it is called; empty means by its class.
+        # Name of the box; empty means that its class names it.
         'name': 'NotRequired[str]',
         # Its colour; none means that pictures choose one.
         'paint': 'NotRequired[Paint | None]',
@@ -54,11 +54,11 @@ BoxState = TypedDict(
         'class': 'Class',
         # Its number, by which edits name it.
         'id': 'int',
-        # What it is called and how it is painted.
+        # Its name and its paint.
         'label': 'BoxLabel',
         # True if it has a track.
         'moves': 'bool',
-        # Where it is, as the ego vehicle sees it.
+        # Its place in words, as seen from the ego vehicle.
         'place': 'str',
         # Length, width, height, m.
         'size_m': 'Sequence[float]',
@@ -113,7 +113,7 @@ Camera = TypedDict(
         'height': 'int',
         # How the lens bends rays.
         'lens': 'NotRequired[Lens]',
-        # As in the data set: `CAM_FRONT`.
+        # Name, as in the data set: `CAM_FRONT`.
         'name': 'str',
         # Optical frame to ego: quaternion w, x, y, z.
         'rotation_wxyz': 'Sequence[float]',
@@ -126,7 +126,7 @@ Camera = TypedDict(
     },
 )
 
-# What a call changed. Of more than 100 boxes the first are named.
+# Changes by a call. Of more than 100 boxes the first are named.
 Change = TypedDict(
     'Change',
     {
@@ -167,9 +167,9 @@ Checked = TypedDict(
     {
         # Open findings that are errors.
         'errors': 'int',
-        # What was found, errors first; at most 200.
+        # Findings, errors first; at most 200.
         'findings': 'Sequence[Found]',
-        # What the repairs changed, if they were asked for.
+        # Changes by the repairs, if they were asked for.
         'fixed': 'Done | None',
         # Open findings that are worth knowing and no mistakes: boxes that no sensor sees.
         'infos': 'int',
@@ -202,7 +202,7 @@ ClipState = TypedDict(
     },
 )
 
-# All that decides how a scene looks besides what is in it.
+# Light and air of a scene: its look, apart from the objects in it.
 Conditions = TypedDict(
     'Conditions',
     {
@@ -238,7 +238,7 @@ Counts = TypedDict(
 Difference = TypedDict(
     'Difference',
     {
-        # What it was compared with.
+        # Name of the version or file it was compared with.
         'against': 'str',
         # From there to the scene as it is now.
         'changed': 'Change',
@@ -247,11 +247,11 @@ Difference = TypedDict(
     },
 )
 
-# What a call that may change the scene did.
+# Result of a call that may change the scene.
 Done = TypedDict(
     'Done',
     {
-        # What changed, in numbers.
+        # Changes, in numbers.
         'changed': 'Change',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
@@ -259,7 +259,7 @@ Done = TypedDict(
         'revision': 'int',
         # Name of the undo step; empty if nothing changed.
         'step': 'str',
-        # What should be looked at, such as findings of the checks that were not there before.
+        # Warnings to look at, such as findings of the checks that were not there before.
         'warnings': 'Sequence[str]',
     },
 )
@@ -289,7 +289,7 @@ EditAddBoxArgs = TypedDict(
         'class': 'Class',
         # Its number; none means the next one free.
         'id': 'NotRequired[BoxId | None]',
-        # What it is called and how it is painted.
+        # Name and paint.
         'label': 'NotRequired[BoxLabel]',
         # Length, width, height, m.
         'size_m': 'Sequence[float]',
@@ -353,7 +353,7 @@ EditArrangeArgs = TypedDict(
     {
         # The boxes.
         'boxes': 'NotRequired[Sequence[BoxId]]',
-        # What is done to them.
+        # Change of their arrangement.
         'how': 'Arrangement',
         # The things.
         'things': 'NotRequired[Sequence[ThingId]]',
@@ -391,7 +391,7 @@ EditPaintBevArgs = TypedDict(
     {
         # One of the eight map layers.
         'layer': 'BevLayer',
-        # Where.
+        # Cells to set or clear.
         'shape': 'Shape',
         # True sets, false clears.
         'value': 'bool',
@@ -409,7 +409,7 @@ EditPaintBev = TypedDict(
 EditAddThingsArgs = TypedDict(
     'EditAddThingsArgs',
     {
-        # What and where, world frame.
+        # Kinds and places, world frame.
         'forms': 'Sequence[Form]',
     },
 )
@@ -425,12 +425,12 @@ EditAddThings = TypedDict(
 EditDrawSceneryArgs = TypedDict(
     'EditDrawSceneryArgs',
     {
-        # What and where, world frame.
+        # Kinds and places, world frame.
         'forms': 'Sequence[Form]',
     },
 )
 
-# The same with scenery that a seed drew: it goes when scenery is drawn anew.
+# Puts scenery drawn by a seed beside the road, and its voxels. It goes when scenery is drawn anew.
 EditDrawScenery = TypedDict(
     'EditDrawScenery',
     {
@@ -495,7 +495,7 @@ EditRaiseThings = TypedDict(
 EditChangeThingArgs = TypedDict(
     'EditChangeThingArgs',
     {
-        # What and where from now on, world frame.
+        # Its new kind and place, world frame.
         'form': 'Form',
         # The thing.
         'id': 'ThingId',
@@ -513,7 +513,7 @@ EditChangeThing = TypedDict(
 EditClearSceneryArgs = TypedDict(
     'EditClearSceneryArgs',
     {
-        # Where; everywhere if left out.
+        # Area to clear; everywhere if left out.
         'shape': 'NotRequired[Shape | None]',
     },
 )
@@ -530,7 +530,7 @@ EditClearScenery = TypedDict(
 EditAddPolylinesArgs = TypedDict(
     'EditAddPolylinesArgs',
     {
-        # What they mean and where they run, world frame, m; at least two vertices each.
+        # Kinds and vertices of the lines, world frame, m; at least two vertices each.
         'lines': 'Sequence[Polyline]',
     },
 )
@@ -546,7 +546,7 @@ EditAddPolylines = TypedDict(
 EditChangeRoadsArgs = TypedDict(
     'EditChangeRoadsArgs',
     {
-        # What is changed.
+        # Change to apply.
         'change': 'RoadChange',
     },
 )
@@ -622,7 +622,7 @@ EditCorrect = TypedDict(
 EditAtArgs = TypedDict(
     'EditAtArgs',
     {
-        # What is changed there.
+        # Edit to apply there.
         'edit': 'Edit',
         # Number of the frame.
         'frame': 'NotRequired[int | None]',
@@ -798,7 +798,7 @@ EditWaiveArgs = TypedDict(
         'check': 'str',
         # Why it may stay; not empty.
         'reason': 'str',
-        # Where it was found, world frame, m.
+        # Place of the finding, world frame, m.
         'where_m': 'Sequence[float]',
     },
 )
@@ -818,7 +818,7 @@ EditUnwaiveArgs = TypedDict(
         'box': 'NotRequired[BoxId | None]',
         # Name of the check.
         'check': 'str',
-        # Where it was found, world frame, m.
+        # Place of the finding, world frame, m.
         'where_m': 'Sequence[float]',
     },
 )
@@ -905,16 +905,16 @@ Exported = TypedDict(
     {
         # The files.
         'files': 'Sequence[FileEntry]',
-        # What they hold.
+        # Content of the files.
         'holds': 'str',
-        # What of that does not come back when they are read again; empty if all of it does.
+        # Content that is lost when they are read again; empty if none is.
         'lost': 'str',
         # Number of the state that was written.
         'revision': 'int',
     },
 )
 
-# What a facade looks like.
+# Look of a facade.
 Facade: TypeAlias = "Literal['plain', 'balconies', 'bays', 'arcade', 'glass']"
 
 # A file of the folder.
@@ -939,13 +939,13 @@ FileList = TypedDict(
     },
 )
 
-# Something that fits where one was meant.
+# An object that fits where one was meant.
 Fits = TypedDict(
     'Fits',
     {
         # How to name it: `#12`.
         'name': 'str',
-        # Where it is.
+        # Its place, in words.
         'place': 'str',
     },
 )
@@ -998,10 +998,10 @@ FormBridge = TypedDict(
     },
 )
 
-# What a thing is and where. As JSON: `{"tree": {"position_m": [8, -6], "height_m": 7, …}}`.
+# Kind and place of a thing. As JSON: `{"tree": {"position_m": [8, -6], "height_m": 7, …}}`.
 Form: TypeAlias = 'FormBuilding | FormTree | FormShrubs | FormLine | FormPost | FormBridge'
 
-# Something that a check found.
+# A finding of a check.
 Found = TypedDict(
     'Found',
     {
@@ -1011,15 +1011,15 @@ Found = TypedDict(
         'check': 'str',
         # Names of repairs, the best first.
         'fixes': 'Sequence[str]',
-        # `error` or `warning`.
+        # `error`, `warning` or `info`.
         'severity': 'str',
-        # What is wrong, in a line.
+        # The problem, in a line.
         'text': 'str',
-        # When, s; none if it is about the moment that is shown.
+        # Time, s; none if it is about the moment that is shown.
         'time_s': 'float | None',
         # Why it may stand, if it was waived.
         'waived': 'str | None',
-        # Where, world frame, m.
+        # Position, world frame, m.
         'where_m': 'Sequence[float]',
     },
 )
@@ -1039,13 +1039,13 @@ Gained = TypedDict(
 Generated = TypedDict(
     'Generated',
     {
-        # What changed, in numbers.
+        # Changes, in numbers.
         'changed': 'Change',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
         # Calls of the denoising network.
         'network_calls': 'int',
-        # What is worth knowing.
+        # Remarks on the generation.
         'notes': 'Sequence[str]',
         # Columns that were generated.
         'region_columns': 'int',
@@ -1057,7 +1057,7 @@ Generated = TypedDict(
         'untouched_voxels_changed': 'int',
         # Time by stage, s.
         'wall_s': 'dict[str, float]',
-        # What should be looked at, such as findings of the checks that were not there before.
+        # Warnings to look at, such as findings of the checks that were not there before.
         'warnings': 'Sequence[str]',
     },
 )
@@ -1075,7 +1075,7 @@ Key = TypedDict(
     },
 )
 
-# What a lane is for.
+# Purpose of a lane.
 LaneKind: TypeAlias = "Literal['drive', 'bus', 'bicycle', 'shoulder', 'parking', 'walk', 'verge']"
 
 LensDistortedArgs = TypedDict(
@@ -1102,7 +1102,7 @@ LensFisheyeArgs = TypedDict(
     {
         # k1, k2, k3, k4.
         'k': 'Sequence[float]',
-        # Nothing is seen beyond this angle from the optical axis, degrees; at most 180.
+        # Largest angle from the optical axis that is seen, degrees; at most 180.
         'max_angle_deg': 'float',
     },
 )
@@ -1121,7 +1121,7 @@ LensFThetaArgs = TypedDict(
     {
         # c1 to c6; c1 is 1 where the focal length is that of the middle.
         'c': 'Sequence[float]',
-        # Nothing is seen beyond this angle from the optical axis, degrees; at most 180.
+        # Largest angle from the optical axis that is seen, degrees; at most 180.
         'max_angle_deg': 'float',
     },
 )
@@ -1155,7 +1155,7 @@ LidarPattern = TypedDict(
         'max_range_m': 'float',
         # Nearest return, m.
         'min_range_m': 'float',
-        # As in the data set: `LIDAR_TOP`.
+        # Name, as in the data set: `LIDAR_TOP`.
         'name': 'str',
         # The own vehicle's roof is in the way of a sensor above it and sends pulses back, as in real sweeps;
         # else it is looked through.
@@ -1178,7 +1178,7 @@ Line = TypedDict(
     {
         # Height above the ground, m.
         'height_m': 'float',
-        # What it is.
+        # Kind.
         'kind': 'LineKind',
         # Vertices on the ground, world frame, m; at least two.
         'points_m': 'Sequence[Sequence[float]]',
@@ -1187,7 +1187,7 @@ Line = TypedDict(
     },
 )
 
-# What runs along a line.
+# Kind of a thing that runs along a line.
 LineKind: TypeAlias = "Literal['hedge', 'wall', 'fence', 'guard_rail', 'retaining_wall']"
 
 # Receipt of `new`.
@@ -1196,7 +1196,7 @@ Made = TypedDict(
     {
         # Boxes in it: vehicles, people, barriers, cones.
         'boxes': 'int',
-        # What changed, in numbers.
+        # Changes, in numbers.
         'changed': 'Change',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
@@ -1210,12 +1210,12 @@ Made = TypedDict(
         'step': 'str',
         # Things beside the road: buildings, trees, posts.
         'things': 'int',
-        # What should be looked at, such as findings of the checks that were not there before.
+        # Warnings to look at, such as findings of the checks that were not there before.
         'warnings': 'Sequence[str]',
     },
 )
 
-# What words are for.
+# Purpose of the words.
 Make: TypeAlias = "Literal['change', 'new']"
 
 # The area that a map covers, world frame.
@@ -1239,9 +1239,9 @@ ModelPlaced = TypedDict(
     {
         # Number of its box.
         'box': 'BoxId',
-        # Where its middle is, world frame, m.
+        # Its middle, world frame, m.
         'center_m': 'Sequence[float]',
-        # What changed, in numbers.
+        # Changes, in numbers.
         'changed': 'Change',
         # Its class.
         'class': 'Class',
@@ -1257,7 +1257,7 @@ ModelPlaced = TypedDict(
         'size_m': 'Sequence[float]',
         # Name of the undo step; empty if nothing changed.
         'step': 'str',
-        # What should be looked at, such as findings of the checks that were not there before.
+        # Warnings to look at, such as findings of the checks that were not there before.
         'warnings': 'Sequence[str]',
     },
 )
@@ -1284,7 +1284,7 @@ MotionAttachedArgs = TypedDict(
     {
         # Its centre in the other's frame (along its heading, to its left), m.
         'at_m': 'Sequence[float]',
-        # What it is fixed to.
+        # Track that it is fixed to.
         'to': 'BoxId',
         # Its heading against the other's, degrees.
         'yaw_deg': 'NotRequired[float]',
@@ -1306,7 +1306,7 @@ Motion: TypeAlias = 'MotionKeys | MotionPath | MotionAttached'
 Moved = TypedDict(
     'Moved',
     {
-        # What changed, in numbers.
+        # Changes, in numbers.
         'changed': 'Change',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
@@ -1316,7 +1316,7 @@ Moved = TypedDict(
         'step': 'str',
         # Names of the steps that were undone or redone, in that order.
         'steps': 'Sequence[str]',
-        # What should be looked at, such as findings of the checks that were not there before.
+        # Warnings to look at, such as findings of the checks that were not there before.
         'warnings': 'Sequence[str]',
     },
 )
@@ -1358,7 +1358,7 @@ NodeKindRoundabout = TypedDict(
     },
 )
 
-# What is where roads meet.
+# Kind of a place where roads meet.
 NodeKind: TypeAlias = 'NodeKindPlain | NodeKindRoundabout'
 
 # Words that had no effect.
@@ -1379,7 +1379,7 @@ Opened = TypedDict(
     {
         # Boxes in it.
         'boxes': 'int',
-        # What changed, in numbers.
+        # Changes, in numbers.
         'changed': 'Change',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
@@ -1389,7 +1389,7 @@ Opened = TypedDict(
         'length_s': 'float',
         # Name of the scene.
         'name': 'str',
-        # What was done with the file that nobody asked for.
+        # Notes on adjustments of the content that were not asked for.
         'notes': 'NotRequired[Sequence[str]]',
         # Number of the state that the scene is in now. A state that comes back by undo has its old number.
         'revision': 'int',
@@ -1397,7 +1397,7 @@ Opened = TypedDict(
         'step': 'str',
         # Things beside the road.
         'things': 'int',
-        # What should be looked at, such as findings of the checks that were not there before.
+        # Warnings to look at, such as findings of the checks that were not there before.
         'warnings': 'Sequence[str]',
     },
 )
@@ -1410,7 +1410,7 @@ Paint: TypeAlias = "Literal['white', 'silver', 'grey', 'black', 'red', 'orange',
 Path = TypedDict(
     'Path',
     {
-        # Where it leads, world frame, m; at least two points that differ.
+        # Line of the path, world frame, m; at least two points that differ.
         'points_m': 'Sequence[Sequence[float]]',
         # True if it is driven backwards, with the rear first.
         'rear_first': 'NotRequired[bool]',
@@ -1427,13 +1427,13 @@ Phrase = TypedDict(
     {
         # Ids of boxes that it put in.
         'added': 'Sequence[int]',
-        # What it does, in words.
+        # Its effect, in words.
         'became': 'str',
         # Ids of boxes that it changed.
         'changed': 'Sequence[int]',
         # How sure the reader is, 0 to 1.
         'confidence': 'float',
-        # What could not be done as it was said.
+        # Parts that could not be done as they were said.
         'remarks': 'Sequence[str]',
         # Ids of boxes that it took away.
         'removed': 'Sequence[int]',
@@ -1446,7 +1446,7 @@ Phrase = TypedDict(
 Polyline = TypedDict(
     'Polyline',
     {
-        # What it means.
+        # Kind of the line.
         'kind': 'PolylineKind',
         # Vertices, m; a closed outline does not repeat its first vertex.
         'points_m': 'Sequence[Sequence[float]]',
@@ -1469,7 +1469,7 @@ PolylineKindSpeedLimit = TypedDict(
     },
 )
 
-# What a polyline means.
+# Kind of a polyline.
 PolylineKind: TypeAlias = "Literal['lane_center', 'road_divider', 'lane_divider', 'stop_line', 'ped_crossing'] | PolylineKindSpeedLimit"
 
 # A small upright thing.
@@ -1478,7 +1478,7 @@ Post = TypedDict(
     {
         # Height above the ground, m.
         'height_m': 'float',
-        # What it is.
+        # Kind.
         'kind': 'PostKind',
         # Its place on the ground, world frame, m.
         'position_m': 'Sequence[float]',
@@ -1487,18 +1487,18 @@ Post = TypedDict(
     },
 )
 
-# What stands there.
+# Kind of a small upright thing.
 PostKind: TypeAlias = "Literal['pole', 'street_light', 'sign', 'traffic_light', 'bus_stop', 'bench', 'bin', 'bollard', 'stairs']"
 
 # Receipt of `prompt`.
 Prompted = TypedDict(
     'Prompted',
     {
-        # What came of it, in a sentence.
+        # The answer, in a sentence.
         'answer': 'str',
-        # What was said of things beside the road, as it was read.
+        # Phrases about things beside the road, as they were read.
         'beside_the_road': 'Sequence[str]',
-        # What changed, in numbers.
+        # Changes, in numbers.
         'changed': 'Change',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
@@ -1506,29 +1506,29 @@ Prompted = TypedDict(
         'not_understood': 'Sequence[NotUnderstood]',
         # The whole reading in a line of notation.
         'notation': 'str',
-        # What else is worth knowing.
+        # Further remarks.
         'notes': 'Sequence[str]',
-        # What each phrase became.
+        # Phrases, each with its effect.
         'phrases': 'Sequence[Phrase]',
-        # What must be answered first: while there is a question nothing changes. Say it again and name the box
-        # (`#12`).
+        # Questions that must be answered first: while there is one nothing changes. Say it again and name the
+        # box (`#12`).
         'questions': 'Sequence[Question]',
         # Number of the state that the scene is in now. A state that comes back by undo has its old number.
         'revision': 'int',
-        # What was asked for and not met, in words.
+        # Wishes that were not met, in words.
         'shortfalls': 'Sequence[str]',
         # Name of the undo step; empty if nothing changed.
         'step': 'str',
-        # What should be looked at, such as findings of the checks that were not there before.
+        # Warnings to look at, such as findings of the checks that were not there before.
         'warnings': 'Sequence[str]',
     },
 )
 
-# Something that must be answered first.
+# A question that must be answered first.
 Question = TypedDict(
     'Question',
     {
-        # What fits.
+        # Objects that fit.
         'candidates': 'Sequence[Fits]',
         # The question.
         'text': 'str',
@@ -1561,7 +1561,7 @@ Road = TypedDict(
     {
         # Crossings.
         'crossings': 'NotRequired[Sequence[RoadCrossing]]',
-        # Where its reference line begins and ends.
+        # Nodes at which its reference line begins and ends.
         'ends': 'Sequence[NodeId]',
         # Its number.
         'id': 'RoadId',
@@ -1729,16 +1729,16 @@ RoadChangeRemove = TypedDict(
 RoadChangeWishArgs = TypedDict(
     'RoadChangeWishArgs',
     {
-        # Where, m: the nearest road is meant.
+        # Place, m: the nearest road is meant.
         'at_m': 'Sequence[float]',
         # Which way one looks there, degrees counter-clockwise from x: right and ahead are meant so.
         'heading_deg': 'NotRequired[float]',
-        # What.
+        # The change.
         'wish': 'RoadWish',
     },
 )
 
-# What a person asks of the street at a place, whatever the numbers of its roads are.
+# A change of the street at a place, independent of the numbers of its roads.
 RoadChangeWish = TypedDict(
     'RoadChangeWish',
     {
@@ -1770,7 +1770,7 @@ RoadChange: TypeAlias = 'RoadChangeRecognise | RoadChangeAdd | RoadChangePut | R
 RoadCrossing = TypedDict(
     'RoadCrossing',
     {
-        # Where its middle is, m along the reference line from its beginning.
+        # Place of its middle, m along the reference line from its beginning.
         'at_m': 'float',
         # How wide it is along the road, m.
         'width_m': 'float',
@@ -1784,7 +1784,7 @@ RoadId: TypeAlias = 'int'
 RoadLane = TypedDict(
     'RoadLane',
     {
-        # What it is for.
+        # Purpose.
         'kind': 'LaneKind',
         # How wide it is, m.
         'width_m': 'float',
@@ -1795,11 +1795,11 @@ RoadLane = TypedDict(
 RoadNode = TypedDict(
     'RoadNode',
     {
-        # Where it is, m.
+        # Its place, m.
         'at_m': 'Sequence[float]',
         # Its number.
         'id': 'NodeId',
-        # What it is.
+        # Its kind.
         'kind': 'NotRequired[NodeKind]',
     },
 )
@@ -1808,7 +1808,7 @@ RoadNode = TypedDict(
 RoadStop = TypedDict(
     'RoadStop',
     {
-        # Where, m along the reference line from its beginning.
+        # Place, m along the reference line from its beginning.
         'at_m': 'float',
         # True: the lanes on the right, which are driven along the line.
         'right': 'bool',
@@ -1913,7 +1913,7 @@ RoadWishJunction = TypedDict(
     },
 )
 
-# What can be asked of a street as a whole: of all roads that go on in each other.
+# A change of a street as a whole, that is of all roads that continue each other.
 RoadWish: TypeAlias = 'RoadWishLanes | RoadWishOneWay | RoadWishWidths | RoadWishBeside | RoadWishWithout | RoadWishStraight | RoadWishRoundabout | RoadWishJunction'
 
 # Lines of the map, world frame, m; long ones are thinned out.
@@ -1947,7 +1947,7 @@ Saved = TypedDict(
     },
 )
 
-# What a change of a moving object's place at one moment means for the others.
+# Effect that moving an object at one moment has on its other moments.
 Scope: TypeAlias = "Literal['whole_track', 'from_here_on', 'moment']"
 
 # All sensors of a vehicle.
@@ -2188,7 +2188,7 @@ TimeOfDay: TypeAlias = "Literal['dawn', 'day', 'dusk', 'night']"
 TrackAdded = TypedDict(
     'TrackAdded',
     {
-        # What changed, in numbers.
+        # Changes, in numbers.
         'changed': 'Change',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
@@ -2200,7 +2200,7 @@ TrackAdded = TypedDict(
         'step': 'str',
         # The track.
         'track': 'TrackState',
-        # What should be looked at, such as findings of the checks that were not there before.
+        # Warnings to look at, such as findings of the checks that were not there before.
         'warnings': 'Sequence[str]',
     },
 )
@@ -2218,7 +2218,7 @@ TrackList = TypedDict(
     },
 )
 
-# Something that moves.
+# A moving object, or the moving ego vehicle.
 TrackState = TypedDict(
     'TrackState',
     {
@@ -2230,8 +2230,8 @@ TrackState = TypedDict(
         'draft': 'bool',
         # `keys` (through keyframes), `path` (along a path) or `attached` (to another box).
         'motion': 'str',
-        # Where it is at the beginning, the middle and the end of the scene, world frame: time in s, x and y in
-        # m, speed in m/s.
+        # Its place at the beginning, the middle and the end of the scene, world frame: time in s, x and y in m,
+        # speed in m/s.
         'passes': 'Sequence[Sequence[float]]',
         # When it is there, s: from the first up to the second; none: from the beginning, to the end.
         'there_s': 'Sequence[float | None]',
