@@ -4,6 +4,7 @@
 mod painting;
 #[cfg(test)]
 mod tests;
+mod views;
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -11,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::camera_views::LidarModel;
-use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Wanted, camera_input};
+use super::camera_views::{CameraView, Pictures, Wanted};
 use super::graphics::Graphics;
 use super::painting::PaintWish;
 use job::guard::Panicked;
@@ -19,8 +20,7 @@ use job::product::{Ctx, Product, Wake, Worker};
 use language::tf;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene, SceneRev, SensorRig};
-use sensors::appearance::Quality;
-use sensors::cameras::{CameraSource, Card, Detail, Ready, RenderContext, RenderOptions, SourceId, learned};
+use sensors::cameras::{SourceId, learned};
 use sensors::caster::Caster;
 use sensors::learned::Drops;
 use sensors::learned_caster::{LearnedCaster, Sampled};
@@ -31,6 +31,7 @@ use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
 pub use painting::PaintStage;
 use painting::Painting;
+use views::Views;
 
 /// Most rays whose samples are shown; more would cover the map.
 const SHOWN_RAYS: usize = 400;
@@ -534,71 +535,5 @@ fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         {
             ctx.tell(News::Other(scene.rev, id, views));
         }
-    }
-}
-
-/// Views of one scene from one source, which is made ready when the first of them is asked for.
-struct Views<'a> {
-    source: &'static dyn CameraSource,
-    scene: &'a Scene,
-    graphics: &'a mut Option<Option<Graphics>>,
-    ready: Option<(Ready<'a>, bool)>,
-}
-
-impl<'a> Views<'a> {
-    fn new(
-        source: &'static dyn CameraSource,
-        scene: &'a Scene,
-        graphics: &'a mut Option<Option<Graphics>>,
-    ) -> Self {
-        Self {
-            source,
-            scene,
-            graphics,
-            ready: None,
-        }
-    }
-
-    /// The view of one camera; `None` without such a camera, or where the picture is too large for the bounds.
-    fn view(&mut self, camera: usize, size: [u32; 2], quick: bool) -> Option<CameraView> {
-        let (scene, source) = (self.scene, self.source);
-        let graphics = &mut *self.graphics;
-        let (ready, on_card) = self.ready.get_or_insert_with(|| {
-            let ready = Ready::new(source, &camera_input(scene, Detail::Live));
-            let on_card = ready.upload_to(|| {
-                let card = graphics.get_or_insert_with(Graphics::find).as_mut();
-                card.map(|card| card as &mut dyn Card)
-            });
-            (ready, on_card)
-        });
-        let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| *on_card);
-        let options = RenderOptions {
-            size,
-            quality: if quick { Quality::Preview } else { Quality::Full },
-        };
-        let context = RenderContext {
-            card: card.map(|card| card as &mut dyn Card),
-            ..RenderContext::processor()
-        };
-        let picture = ready
-            .render(scene.rig.cameras.get(camera)?, &options, context)
-            .ok()?;
-        Some(CameraView::new(camera, picture).colored(source))
-    }
-
-    /// `views` with that of `camera` rendered large; `None` if it is not among them, or if the work should stop.
-    fn with_large(
-        &mut self,
-        views: &[CameraView],
-        camera: usize,
-        ctx: &Ctx<'_, News>,
-    ) -> Option<Vec<CameraView>> {
-        let place = views.iter().position(|v| v.camera == camera)?;
-        let large = self
-            .view(camera, LARGE_SIZE, false)
-            .filter(|_| !ctx.should_stop())?;
-        let mut views = views.to_vec();
-        *views.get_mut(place)? = large;
-        Some(views)
     }
 }

@@ -145,12 +145,14 @@ fn what_cannot_be_had_is_told_before_anything_is_written() {
 /// beyond that of one with small ones.
 #[test]
 fn a_run_takes_the_memory_that_its_source_states() {
-    const SIZE: [u32; 2] = [800, 450];
+    const SIZE: [u32; 2] = [1280, 720];
     let dir = Folder::new();
     let (scene, out) = (dir.scene(), dir.path("out"));
     let one = rig(&dir, "one.json", |r| r.cameras.truncate(1));
     let six = rig(&dir, "six.json", |r| assert_eq!(r.cameras.len(), 6));
     let pixels = f64::from(SIZE[0] * SIZE[1]);
+    let per_pixel = |mb: f64| mb * f64::from(1 << 20) / pixels;
+    let mut rig_is_measured = false;
     for view in cameras::views() {
         for source in cameras::sources_of(view.id) {
             let peak_mb = |size: &str, rig: &str| {
@@ -162,18 +164,13 @@ fn a_run_takes_the_memory_that_its_source_states() {
                 json(&sceneloom(&args))["peak_rss_mb"].as_f64()
             };
             let large = format!("{}x{}", SIZE[0], SIZE[1]);
-            let (Some(small), Some(single), Some(all)) = (
-                peak_mb("64x36", &one),
-                peak_mb(&large, &one),
-                peak_mb(&large, &six),
-            ) else {
+            let (Some(small), Some(single)) = (peak_mb("64x36", &one), peak_mb(&large, &one)) else {
                 return println!("this system does not tell a process's peak memory");
             };
-            let per_pixel = |mb: f64| mb * f64::from(1 << 20) / pixels;
-            let (taken, more) = (per_pixel(single - small), per_pixel(all - single));
+            let taken = per_pixel(single - small);
             let stated = source.about().bytes_per_pixel as f64;
             println!(
-                "{} from {}: {taken:.0} bytes a pixel of {stated}, {more:.0} more for five other cameras",
+                "{} from {}: {taken:.0} bytes a pixel of {stated}",
                 view.title,
                 source.about().title
             );
@@ -183,9 +180,14 @@ fn a_run_takes_the_memory_that_its_source_states() {
                 "{}: {taken} of {stated}",
                 source.about().title
             );
-            // What is kept of a camera is its place in the sheet, 4 bytes, and what the allocator does not give back; all
-            // maps of five cameras would be 85.
-            assert!(more <= 60.0, "{}: {more} for five cameras", source.about().title);
+            // The command goes through the cameras in one way for all sources.
+            if !std::mem::replace(&mut rig_is_measured, true) {
+                let more = peak_mb(&large, &six).map_or(f64::INFINITY, |all| per_pixel(all - single));
+                println!("{more:.0} bytes a pixel more for five other cameras");
+                // A camera keeps its place in the sheet, 4 bytes a pixel, and what the allocator does not give back; all
+                // maps of five cameras would be 85.
+                assert!(more <= 60.0, "{more} for five cameras");
+            }
         }
     }
 }

@@ -345,7 +345,7 @@ pub fn ago(since: Duration) -> String {
         s @ 0..=89 => tf!("{n} seconds ago", n = s),
         s @ 90..=5399 => tf!("{n} minutes ago", n = (s + 30) / 60),
         s @ 5400..=129_599 => tf!("{n} hours ago", n = (s + 1800) / 3600),
-        s => tf!("{n} days ago", n = (s + 43_200) / 86_400),
+        s => tf!("{n} days ago", n = s.saturating_add(43_200) / 86_400),
     }
 }
 
