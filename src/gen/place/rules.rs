@@ -1,6 +1,5 @@
-//! Constructive placement: every object takes the best free place that its relations allow, the most constrained ones
-//! first; several orders are tried and the best is kept. Deterministic per seed. Objects that do not fit are left out
-//! and reported.
+//! Constructive placement: every object takes the best free place that its relations allow, the most constrained ones first;
+//! several orders are tried and the best is kept. Deterministic per seed. Objects that do not fit are left out and reported.
 
 use std::collections::BTreeMap;
 
