@@ -151,7 +151,9 @@ impl Pane for Camera {
         let own = cx.state.cameras.own.entry(self.index).or_default();
         own.drawn = FRAMES;
         let room = ui.available_size();
-        own.large = is_large(ui, room.x.min(room.y * 16.0 / 9.0));
+        let shape = cx.scene.rig.cameras.get(camera);
+        let aspect = shape.map_or(16.0 / 9.0, |c| c.width as f32 / c.height.max(1) as f32);
+        own.large = is_large(ui, room.x.min(room.y * aspect));
         self.strip.set_legend(own.legend.then_some(camera));
         // A camera index beyond the rig is reported as missing.
         let camera = if usize::from(self.index) < count {

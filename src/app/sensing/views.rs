@@ -66,9 +66,10 @@ impl<'a> Views<'a> {
         ctx: &Ctx<'_, News>,
     ) -> Option<Vec<CameraView>> {
         let place = views.iter().position(|v| v.camera == camera)?;
-        let large = self
-            .view(camera, LARGE_SIZE, false)
-            .filter(|_| !ctx.should_stop())?;
+        if ctx.should_stop() {
+            return None;
+        }
+        let large = self.view(camera, LARGE_SIZE, false)?;
         let mut views = views.to_vec();
         *views.get_mut(place)? = large;
         Some(views)
