@@ -18,6 +18,7 @@ mod house;
 mod inferred;
 mod languages;
 mod map;
+mod names;
 mod opendrive;
 mod parity;
 mod peak_memory;
