@@ -2,7 +2,7 @@
 //! Run: `cargo bench --bench lidar`.
 
 use nets::lidar::LidarNet;
-use nets::lidar::field::Sampling;
+use nets::lidar::field::RaySampling;
 use scene::{Class, SensorRig};
 use sensors::learned;
 use sensors::learned_caster::LearnedCaster;
@@ -27,7 +27,7 @@ fn main() {
         timing::time("field", 15, || net.field(&grid).map_or(0, |f| f.keys.len()));
         let rays = learned::rays(&rig.lidars[0], glam::DVec3::ZERO);
         timing::time("rays", 15, || {
-            let answers = net.shoot(&field, &rays, Sampling::Prior);
+            let answers = net.shoot(&field, &rays, RaySampling::Prior);
             let answers = answers.expect("the processor never fails");
             answers.iter().filter(|a| a.is_hit()).count()
         });

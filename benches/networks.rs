@@ -3,10 +3,10 @@
 use std::time::Instant;
 
 use dataset::occupancy_frame;
-use nets::{ColumnHeights, DitCondition, GROUPS, KeysValues, Middle, OccDit, OccModels, OccVae};
+use nets::{BlockReuse, ColumnHeights, DitCondition, GROUPS, KeysValues, OccDit, OccModels, OccVae};
 use nn::Precision;
-use nn::layers::{View, matmul};
-use nn::packed_matrix::{PackedMatrix, Start};
+use nn::layers::{MatrixView, matmul};
+use nn::packed_matrix::{InitialSum, PackedMatrix};
 use nn::weights::WeightFile;
 use nn_candle::Candle;
 use numeric::quantile::median;
@@ -27,21 +27,21 @@ fn products() {
     let a: Vec<f32> = (0..m * k).map(number).collect();
     let b: Vec<f32> = (0..k * n).map(number).collect();
     let mut out = vec![0.0; m * n];
-    let packed = PackedMatrix::new(View::rows(&b, n), k, n);
+    let packed = PackedMatrix::new(MatrixView::rows(&b, n), k, n);
     let (int8, bias) = (packed.to_int8(), vec![0.0; n]);
     let [mut ours, mut theirs, mut bytes] = [const { Vec::new() }; 3];
     for _ in 0..20 * RUNS {
         timed(&mut bytes, || int8.multiply(&a, &bias, &mut out));
         timed(&mut ours, || {
-            packed.multiply(&a, k, [m, 0, k], Start::Zero, &mut out, n)
+            packed.multiply(&a, k, [m, 0, k], InitialSum::Zero, &mut out, n)
         });
         timed(&mut theirs, || {
             matmul(
                 &mut out,
                 n,
                 false,
-                View::rows(&a, k),
-                View::rows(&b, n),
+                MatrixView::rows(&a, k),
+                MatrixView::rows(&b, n),
                 [m, n, k],
             );
         });
@@ -102,14 +102,14 @@ fn main() {
         timed(&mut ours, || models.dit.forward(&latent, 500.0, &prepared)).expect("finite");
         let mut added = Vec::new();
         let in_int8 = timed(&mut int8, || {
-            let (mut kept, middle) = (KeysValues::default(), Middle::Kept(&mut added));
+            let (mut kept, middle) = (KeysValues::default(), BlockReuse::Kept(&mut added));
             models
                 .dit
                 .forward_in(&latent, 500.0, &prepared, &mut kept, Precision::Int8, middle)
         })
         .expect("finite");
         timed(&mut reused, || {
-            let (mut kept, middle) = (KeysValues::default(), Middle::Reused(&added));
+            let (mut kept, middle) = (KeysValues::default(), BlockReuse::Reused(&added));
             models
                 .dit
                 .forward_in(&latent, 500.0, &prepared, &mut kept, Precision::F32, middle)

@@ -11,7 +11,7 @@ use app::settings::Settings;
 use app::{open, text as app_text};
 use diffusion::solver::SolverKind;
 use editor::{Document, Edit, Shape};
-use formats::import::{Content, Source, pcd};
+use formats::import::{Content, ImportFile, pcd};
 use formats::{box_list, loom, occ3d, opendrive};
 use glam::{DVec2, DVec3};
 use graph_layout::memory::{Bank, RoadRef};
@@ -33,7 +33,7 @@ use scene::{
     BevLayer, BevLayout, BoxId, Class, Extent, Frame, Relief, Scene, SensorRig, TimeOfDay, Weather, infer,
 };
 use sensors::lidar::Rays;
-use sensors::project::View;
+use sensors::project::SplatCamera;
 use trade::Presets;
 use words::describe::describe;
 use words::hear::hear;
@@ -136,7 +136,7 @@ pub fn occ3d_file(bytes: &[u8]) {
 
 /// A point cloud; what was read is a sound scene.
 pub fn point_cloud(bytes: &[u8]) {
-    match (pcd::IMPORTER.read)(&Source {
+    match (pcd::IMPORTER.read)(&ImportFile {
         bytes,
         name: "cloud",
         path: None,
@@ -192,7 +192,7 @@ pub fn rig_file(bytes: &[u8]) {
         }
     }
     for camera in &rig.cameras {
-        let view = View::new(camera, 16, 9, 1.3);
+        let view = SplatCamera::new(camera, 16, 9, 1.3);
         for p in [DVec3::X, -DVec3::X, DVec3::new(20.0, 3.0, -1.0), DVec3::ZERO] {
             if let Some(f) = view.project(p, 0.2, 0.2, 200.0) {
                 assert!(f.depth_m >= 0.2);

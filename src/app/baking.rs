@@ -8,13 +8,13 @@ use glam::{DMat3, DQuat};
 use job::guard::Panicked;
 use job::product::{Ctx, Product, Wake, Worker};
 use scene::{Camera, Lens, Scene, SceneRev};
-use sensors::bake::draw::Ready;
+use sensors::bake::draw::PreparedGaussians;
 use sensors::bake::{BakeOptions, bake_scene};
 use viewport::ViewCamera;
 
 /// A picture to draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct SplatViewpoint {
     /// Viewpoint, in the world.
     pub camera: ViewCamera,
     /// Width and height, px.
@@ -28,13 +28,13 @@ pub struct Baked {
     pub of: SceneRev,
     /// Number of Gaussians.
     pub count: usize,
-    ready: Arc<Ready>,
+    ready: Arc<PreparedGaussians>,
 }
 
-enum News {
+enum BakingEvent {
     At(f32),
     Baked(Baked),
-    Drawn(Seen, ColorImage),
+    Drawn(SplatViewpoint, ColorImage),
     GivenUp,
     Failed(Panicked),
 }
@@ -43,71 +43,71 @@ struct Baker;
 
 impl Product for Baker {
     type Request = Arc<Scene>;
-    type Update = News;
+    type Update = BakingEvent;
 
-    fn make(&mut self, scene: &Arc<Scene>, ctx: &Ctx<'_, News>) -> News {
+    fn make(&mut self, scene: &Arc<Scene>, ctx: &Ctx<'_, BakingEvent>) -> BakingEvent {
         let go_on = |share: f32| {
-            ctx.tell(News::At(share));
+            ctx.tell(BakingEvent::At(share));
             !ctx.should_stop()
         };
         let in_world = scene.with_rig_in_world();
         let Some(mut lifted) = bake_scene(&in_world, &BakeOptions::default(), &go_on) else {
-            return News::GivenUp;
+            return BakingEvent::GivenUp;
         };
         lifted.place(&scene.frame().world_from_ego);
-        News::Baked(Baked {
+        BakingEvent::Baked(Baked {
             of: scene.rev,
             count: lifted.gaussians.len(),
-            ready: Arc::new(Ready::new(&lifted.gaussians)),
+            ready: Arc::new(PreparedGaussians::new(&lifted.gaussians)),
         })
     }
 
     fn reset(&mut self) {}
 
-    fn given_up() -> News {
-        News::GivenUp
+    fn given_up() -> BakingEvent {
+        BakingEvent::GivenUp
     }
 
-    fn panicked(panic: Panicked) -> News {
-        News::Failed(panic)
+    fn panicked(panic: Panicked) -> BakingEvent {
+        BakingEvent::Failed(panic)
     }
 
-    fn is_terminal(news: &News) -> bool {
-        !matches!(news, News::At(_))
+    fn is_terminal(news: &BakingEvent) -> bool {
+        !matches!(news, BakingEvent::At(_))
     }
 }
 
-struct Drawer;
+struct GaussianRenderer;
 
-impl Product for Drawer {
-    type Request = (Baked, Seen);
-    type Update = News;
+impl Product for GaussianRenderer {
+    type Request = (Baked, SplatViewpoint);
+    type Update = BakingEvent;
 
-    fn make(&mut self, (baked, seen): &(Baked, Seen), _: &Ctx<'_, News>) -> News {
+    fn make(&mut self, (baked, seen): &(Baked, SplatViewpoint), _: &Ctx<'_, BakingEvent>) -> BakingEvent {
         let pixels = baked.ready.render(&camera_of(seen), seen.size);
         let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() as u8;
         let rgb: Vec<u8> = pixels.iter().flat_map(|p| p.map(byte)).collect();
         let size = seen.size.map(|n| n as usize);
-        News::Drawn(*seen, ColorImage::from_rgb(size, &rgb))
+        BakingEvent::Drawn(*seen, ColorImage::from_rgb(size, &rgb))
     }
 
     fn reset(&mut self) {}
 
-    fn given_up() -> News {
-        News::GivenUp
+    fn given_up() -> BakingEvent {
+        BakingEvent::GivenUp
     }
 
-    fn panicked(panic: Panicked) -> News {
-        News::Failed(panic)
+    fn panicked(panic: Panicked) -> BakingEvent {
+        BakingEvent::Failed(panic)
     }
 
-    fn is_terminal(_: &News) -> bool {
+    fn is_terminal(_: &BakingEvent) -> bool {
         true
     }
 }
 
 /// The view as a camera.
-fn camera_of(seen: &Seen) -> Camera {
+fn camera_of(seen: &SplatViewpoint) -> Camera {
     let view = seen.camera.sane();
     let [right, up, ahead] = view.axes();
     let turn = DQuat::from_mat3(&DMat3::from_cols(right, -up, ahead));
@@ -129,8 +129,8 @@ fn camera_of(seen: &Seen) -> Camera {
 
 /// The two threads, and the newest results of both.
 pub struct Baking {
-    baker: Worker<Arc<Scene>, News>,
-    drawer: Worker<(Baked, Seen), News>,
+    baker: Worker<Arc<Scene>, BakingEvent>,
+    drawer: Worker<(Baked, SplatViewpoint), BakingEvent>,
     /// State that is being baked.
     pub busy: Option<SceneRev>,
     /// Share of it that is done, 0 to 1.
@@ -139,9 +139,9 @@ pub struct Baking {
     pub baked: Option<Baked>,
     /// The last failure.
     pub problem: Option<String>,
-    drawing: Option<Seen>,
-    wanted: Option<Seen>,
-    drawn: Option<(Seen, ColorImage)>,
+    drawing: Option<SplatViewpoint>,
+    wanted: Option<SplatViewpoint>,
+    drawn: Option<(SplatViewpoint, ColorImage)>,
 }
 
 impl Baking {
@@ -149,7 +149,7 @@ impl Baking {
     pub fn spawn(wake: Wake) -> std::io::Result<Self> {
         Ok(Self {
             baker: Worker::start("baking", || Baker, wake.clone())?,
-            drawer: Worker::start("splats", || Drawer, wake)?,
+            drawer: Worker::start("splats", || GaussianRenderer, wake)?,
             busy: None,
             share: 0.0,
             baked: None,
@@ -174,31 +174,31 @@ impl Baking {
     }
 
     /// Asks for a picture of the newest Gaussians. A newer request replaces one that is not begun yet.
-    pub fn look(&mut self, seen: Seen) {
+    pub fn look(&mut self, seen: SplatViewpoint) {
         self.wanted = Some(seen);
         self.update();
     }
 
     /// Takes news from the threads. Returns a picture if there is a new one.
-    pub fn update(&mut self) -> Option<(Seen, ColorImage)> {
-        let news: Vec<News> = self.baker.updates().try_iter().map(|e| e.update).collect();
+    pub fn update(&mut self) -> Option<(SplatViewpoint, ColorImage)> {
+        let news: Vec<BakingEvent> = self.baker.updates().try_iter().map(|e| e.update).collect();
         for news in news {
             match news {
-                News::At(share) => self.share = share,
-                News::Baked(baked) if self.busy == Some(baked.of) => {
+                BakingEvent::At(share) => self.share = share,
+                BakingEvent::Baked(baked) if self.busy == Some(baked.of) => {
                     (self.baked, self.busy) = (Some(baked), None);
                     (self.drawing, self.drawn) = (None, None);
                 }
-                News::Failed(panic) => (self.busy, self.problem) = (None, Some(panic.to_string())),
+                BakingEvent::Failed(panic) => (self.busy, self.problem) = (None, Some(panic.to_string())),
                 _ => {}
             }
         }
-        let drawn: Vec<News> = self.drawer.updates().try_iter().map(|e| e.update).collect();
+        let drawn: Vec<BakingEvent> = self.drawer.updates().try_iter().map(|e| e.update).collect();
         for news in drawn {
             self.drawing = None;
             match news {
-                News::Drawn(seen, image) => self.drawn = Some((seen, image)),
-                News::Failed(panic) => self.problem = Some(panic.to_string()),
+                BakingEvent::Drawn(seen, image) => self.drawn = Some((seen, image)),
+                BakingEvent::Failed(panic) => self.problem = Some(panic.to_string()),
                 _ => {}
             }
         }
@@ -226,7 +226,7 @@ mod tests {
             pitch_rad: -0.3,
             ..ViewCamera::default()
         };
-        let seen = Seen {
+        let seen = SplatViewpoint {
             camera: view,
             size: [320, 180],
         };

@@ -204,7 +204,7 @@ impl Others {
 
 /// Key of the strip's pictures: the source, and a bit per camera that is not rendered. One rendering holds all views of
 /// a source.
-pub type Pictures = (SourceId, u32);
+pub type PicturesKey = (SourceId, u32);
 
 impl Wanted {
     /// The request for the settings of the window, in a rig of `count` cameras.
@@ -227,13 +227,13 @@ impl Wanted {
     }
 
     /// The key of the strip's pictures.
-    pub fn pictures(self) -> Pictures {
+    pub fn pictures(self) -> PicturesKey {
         (self.source, self.hidden)
     }
 
     /// The source in the table.
     pub fn camera_source(self) -> &'static dyn CameraSource {
-        cameras::source(self.source).unwrap_or(&cameras::shapes::Shapes)
+        cameras::source(self.source).unwrap_or(&cameras::shapes::ShapeMaps)
     }
 }
 

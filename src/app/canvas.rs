@@ -22,11 +22,11 @@ use super::canvas_draw::{
     BoxStyle, around, draw_box, draw_boxes, draw_ego, draw_fields_of_view, draw_grid, draw_lines,
     draw_points, draw_scale_bar,
 };
-use super::canvas_tools::{Driver, Seen};
+use super::canvas_tools::{Driver, ViewContext};
 use super::command::Command;
 use super::marks::{self, Board};
 use super::place_marks;
-use super::pointer::{self, Held, Step};
+use super::pointer::{self, PointerEvent, ViewDrag};
 pub use super::screen_map::ScreenMap;
 use super::state::{UiState, called, position_text};
 use super::thing_outlines;
@@ -41,25 +41,25 @@ use crate::windows::row;
 use widgets::theme;
 
 /// The bird's-eye view's own state.
-pub struct Canvas {
+pub struct BevCanvas {
     /// Extent of the map drawn last.
     extent: scene::Extent,
     center_m: DVec2,
     scale: f64,                 // points per metre; 0 before the first fit
     fitted: Option<egui::Vec2>, // the pane that all of the grid was fitted into, until the user moves the map
-    held: Held,
+    held: ViewDrag,
     driver: Driver,
     /// The last map from ego to screen; tests click with it.
     pub map: Option<ScreenMap>,
-    layers: Option<Shown<LayersKey>>,
-    occupancy: Option<Shown<SceneRev>>,
-    unobserved: Option<Shown<SceneRev>>,
+    layers: Option<CanvasTexture<LayersKey>>,
+    occupancy: Option<CanvasTexture<SceneRev>>,
+    unobserved: Option<CanvasTexture<SceneRev>>,
 }
 
 type LayersKey = (SceneRev, LayerStyle, Color32);
 
 /// A picture on the device: what it was made from, and what it holds.
-struct Shown<K> {
+struct CanvasTexture<K> {
     key: K,
     image: Arc<ColorImage>,
     handle: TextureHandle,
@@ -85,21 +85,21 @@ const GROUND: Color32 = Color32::from_rgb(29, 32, 37);
 /// Margin around the map when all of it is shown, m.
 const MARGIN_M: f64 = 2.0;
 
-impl Canvas {
+impl BevCanvas {
     /// True while the pointer draws, moves or marks something.
     pub fn is_dragging(&self) -> bool {
         self.driver.is_dragging()
     }
 }
 
-impl Default for Canvas {
+impl Default for BevCanvas {
     fn default() -> Self {
         Self {
             extent: scene::Extent::WINDOW,
             center_m: DVec2::ZERO,
             scale: 0.0,
             fitted: None,
-            held: Held::default(),
+            held: ViewDrag::default(),
             driver: Driver::default(),
             map: None,
             layers: None,
@@ -109,7 +109,7 @@ impl Default for Canvas {
     }
 }
 
-impl Canvas {
+impl BevCanvas {
     /// Draws the view into all the available space, and answers the pointer.
     pub fn show(
         &mut self,
@@ -226,7 +226,13 @@ impl Canvas {
         }
     }
 
-    fn navigate(&mut self, ui: &Ui, response: &Response, steps: &[Step], hand: &mut Hand) -> ScreenMap {
+    fn navigate(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        steps: &[PointerEvent],
+        hand: &mut Hand,
+    ) -> ScreenMap {
         let mut map = ScreenMap {
             rect: response.rect,
             center_m: self.center_m,
@@ -417,8 +423,8 @@ impl Canvas {
     }
 }
 
-fn seen<'a>(input: &CanvasInput<'a>, map: &'a ScreenMap) -> Seen<'a> {
-    Seen {
+fn seen<'a>(input: &CanvasInput<'a>, map: &'a ScreenMap) -> ViewContext<'a> {
+    ViewContext {
         scene: input.scene,
         settled: input.settled,
         view: map,
@@ -427,7 +433,7 @@ fn seen<'a>(input: &CanvasInput<'a>, map: &'a ScreenMap) -> Seen<'a> {
 
 fn texture<K: PartialEq>(
     ui: &Ui,
-    slot: &mut Option<Shown<K>>,
+    slot: &mut Option<CanvasTexture<K>>,
     key: K,
     name: &str,
     make: impl FnOnce() -> ColorImage,
@@ -455,7 +461,7 @@ fn texture<K: PartialEq>(
         None => {
             let image = Arc::new(make());
             let handle = ui.ctx().load_texture(name, image.clone(), options);
-            *slot = Some(Shown { key, image, handle });
+            *slot = Some(CanvasTexture { key, image, handle });
         }
     }
     slot.as_ref()

@@ -4,12 +4,13 @@
 use egui::{CursorIcon, Key as Pressed, PointerButton, Pos2, Response, Ui};
 
 use editor::tools::{
-    Context, Cursor, Event, Key, Mark, Modifiers, Pointer, Response as Answer, Sight, View, ViewKind, Wants,
+    Context, Cursor, Event, Key, Modifiers, Pointer, ReadonlyContext, Response as Answer, ScreenProjection,
+    ToolMark, ViewKind, Wants,
 };
 use scene::Scene;
 
 use super::command::Command;
-use super::pointer::{self, Step};
+use super::pointer::{self, PointerEvent};
 use super::screen_map::point;
 use super::tools::ToolState;
 
@@ -33,13 +34,13 @@ pub(super) struct Driver {
 
 /// Context of a view for the tools.
 #[derive(Clone, Copy)]
-pub(super) struct Seen<'a> {
+pub(super) struct ViewContext<'a> {
     /// The scene shown, a drag in progress included.
     pub scene: &'a Scene,
     /// The scene without the drag in progress.
     pub settled: &'a Scene,
     /// The view.
-    pub view: &'a dyn View,
+    pub view: &'a dyn ScreenProjection,
 }
 
 fn modifiers(m: egui::Modifiers) -> Modifiers {
@@ -51,7 +52,7 @@ fn modifiers(m: egui::Modifiers) -> Modifiers {
 }
 
 /// Sends an event to the tool in hand.
-fn tell(seen: &Seen<'_>, tools: &mut ToolState, event: Event, commands: &mut Vec<Command>) -> Answer {
+fn tell(seen: &ViewContext<'_>, tools: &mut ToolState, event: Event, commands: &mut Vec<Command>) -> Answer {
     let ToolState { toolbox, hand, .. } = tools;
     let tool = toolbox.tool_mut(hand.tool);
     let mut cx = Context {
@@ -81,8 +82,8 @@ impl Driver {
         &mut self,
         ui: &Ui,
         response: &Response,
-        steps: &[Step],
-        seen: &Seen<'_>,
+        steps: &[PointerEvent],
+        seen: &ViewContext<'_>,
         tools: &mut ToolState,
         commands: &mut Vec<Command>,
     ) {
@@ -107,19 +108,19 @@ impl Driver {
         };
         for step in steps {
             match *step {
-                Step::Press(PointerButton::Primary, p, m) if in_space && (m.alt || space) => {
+                PointerEvent::Press(PointerButton::Primary, p, m) if in_space && (m.alt || space) => {
                     if m.alt {
                         tell(seen, tools, Event::Pick(at(p, m)), commands);
                     }
                     self.hold = Hold::Waits;
                 }
-                Step::Press(PointerButton::Primary, p, m) if !space => {
+                PointerEvent::Press(PointerButton::Primary, p, m) if !space => {
                     let answer = tell(seen, tools, Event::Press(at(p, m)), commands);
                     self.hold = if answer.holds { Hold::Tool } else { Hold::Waits };
                     self.drag(seen, tools, at(p, m), commands);
                 }
-                Step::Move(p) => self.drag(seen, tools, at(p, held), commands),
-                Step::Release(PointerButton::Primary, p) if self.hold != Hold::Nobody => {
+                PointerEvent::Move(p) => self.drag(seen, tools, at(p, held), commands),
+                PointerEvent::Release(PointerButton::Primary, p) if self.hold != Hold::Nobody => {
                     self.drag(seen, tools, at(p, held), commands);
                     if self.hold == Hold::Tool {
                         tell(seen, tools, Event::Release(at(p, held)), commands);
@@ -133,7 +134,13 @@ impl Driver {
         self.keys(ui, response, seen, tools, commands);
     }
 
-    fn drag(&self, seen: &Seen<'_>, tools: &mut ToolState, pointer: Pointer, commands: &mut Vec<Command>) {
+    fn drag(
+        &self,
+        seen: &ViewContext<'_>,
+        tools: &mut ToolState,
+        pointer: Pointer,
+        commands: &mut Vec<Command>,
+    ) {
         if self.hold == Hold::Tool {
             tell(seen, tools, Event::Drag(pointer), commands);
         }
@@ -144,7 +151,7 @@ impl Driver {
         &mut self,
         ui: &Ui,
         response: &Response,
-        seen: &Seen<'_>,
+        seen: &ViewContext<'_>,
         tools: &mut ToolState,
         commands: &mut Vec<Command>,
     ) {
@@ -191,7 +198,7 @@ impl Driver {
     }
 
     /// Handles keys that steer a drag.
-    fn steer(&mut self, ui: &Ui, seen: &Seen<'_>, tools: &mut ToolState, commands: &mut Vec<Command>) {
+    fn steer(&mut self, ui: &Ui, seen: &ViewContext<'_>, tools: &mut ToolState, commands: &mut Vec<Command>) {
         let events = ui.input(|i| i.events.clone());
         let mut left = Vec::with_capacity(events.len());
         for event in events {
@@ -225,12 +232,12 @@ impl Driver {
         &self,
         ui: &Ui,
         hover: Option<Pos2>,
-        seen: &Seen<'_>,
+        seen: &ViewContext<'_>,
         tools: &ToolState,
-    ) -> (Vec<Mark>, CursorIcon) {
+    ) -> (Vec<ToolMark>, CursorIcon) {
         let held = ui.input(|i| modifiers(i.modifiers));
         let pointer = hover.map(|p| Pointer { at: point(p), held });
-        let sight = Sight {
+        let sight = ReadonlyContext {
             scene: seen.scene,
             settled: seen.settled,
             view: seen.view,

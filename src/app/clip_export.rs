@@ -8,15 +8,16 @@ use formats::video::{VideoKind, VideoWriter};
 use scene::Scene;
 use sensors::appearance::Quality;
 use sensors::cameras::{
-    self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds, learned,
+    self, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions, SourceId, ViewId, bounds,
+    learned,
 };
-use sensors::painter::{Paint, PaintWith};
+use sensors::painter::{CameraPainter, PaintWith};
 use viewport::ViewCamera;
 
 use crate::camera_views::{camera_input, paint_input};
 use crate::capture::{CaptureOptions, Subject, capture};
 use crate::painting::PaintWish;
-use crate::picture::{self, Picture, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
+use crate::picture::{self, RgbaPicture, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
 
 /// Subject of a clip.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +100,7 @@ pub fn clip(
             VideoWriter::MAX_FRAMES
         );
     }
-    let mut drawer = Drawer::new(scene, options)?;
+    let mut drawer = ClipRenderer::new(scene, options)?;
     let mut writer = None;
     for (i, time_s) in times_s.iter().enumerate() {
         if !go_on(i, times_s.len()) {
@@ -119,7 +120,7 @@ pub fn clip(
 }
 
 /// The picture with even sides, which MP4 needs: a row or column is added where a side is odd.
-fn even(picture: Picture) -> Picture {
+fn even(picture: RgbaPicture) -> RgbaPicture {
     let (width, height) = (
         picture.width.next_multiple_of(2),
         picture.height.next_multiple_of(2),
@@ -127,13 +128,13 @@ fn even(picture: Picture) -> Picture {
     if (width, height) == (picture.width, picture.height) {
         return picture;
     }
-    let mut out = Picture::filled(width, height, picture::SHEET_COLOR);
+    let mut out = RgbaPicture::filled(width, height, picture::SHEET_COLOR);
     out.put(&picture, 0, 0);
     out
 }
 
 /// Draws one frame after the other.
-enum Drawer {
+enum ClipRenderer {
     View3d {
         view: Box<View3d>,
         camera: ViewCamera,
@@ -144,13 +145,13 @@ enum Drawer {
     },
     Bev,
     Map([u32; 2]),
-    Cameras(ClipOptions, Option<Box<dyn Paint>>),
+    Cameras(ClipOptions, Option<Box<dyn CameraPainter>>),
 }
 
 /// Approximate height of the bird's-eye picture, px; it decides the pixels per cell.
 const BEV_PIXELS: usize = 720;
 
-impl Drawer {
+impl ClipRenderer {
     fn new(scene: &Scene, options: &ClipOptions) -> anyhow::Result<Self> {
         Ok(match &options.view {
             ClipView::View3d {
@@ -191,7 +192,7 @@ impl Drawer {
         })
     }
 
-    fn draw(&mut self, scene: &Scene) -> anyhow::Result<Picture> {
+    fn draw(&mut self, scene: &Scene) -> anyhow::Result<RgbaPicture> {
         match self {
             Self::View3d {
                 view,
@@ -243,8 +244,8 @@ impl Drawer {
 fn pictures(
     scene: &Scene,
     options: &ClipOptions,
-    painter: Option<&mut (dyn Paint + 'static)>,
-) -> anyhow::Result<Picture> {
+    painter: Option<&mut (dyn CameraPainter + 'static)>,
+) -> anyhow::Result<RgbaPicture> {
     let ClipView::Cameras { view, source, camera } = &options.view else {
         bail!("no view of cameras");
     };
@@ -257,7 +258,7 @@ fn pictures(
             .filter(|(i, _)| camera.is_none_or(|c| c == *i));
         let row = shown.map(|(_, image)| {
             let image = learned::sized(image, options.size);
-            Picture {
+            RgbaPicture {
                 width: image.width,
                 height: image.height,
                 rgba: image.rgba,
@@ -266,7 +267,7 @@ fn pictures(
         return sheet(row.collect());
     }
     let source = cameras::source_of(*view, *source);
-    let ready = Ready::new(source, &camera_input(&scene, Detail::Full));
+    let ready = PreparedSource::new(source, &camera_input(&scene, Detail::Full));
     let render = RenderOptions {
         size: options.size,
         quality: Quality::Full,
@@ -279,18 +280,19 @@ fn pictures(
     for camera in shown {
         let picture: CameraPicture = ready.render(camera, &render, RenderContext::processor())?;
         let ([width, height], rgba) = picture.rgba(*view, 0.0);
-        row.push(Picture { width, height, rgba });
+        row.push(RgbaPicture { width, height, rgba });
     }
     sheet(row)
 }
 
 /// One picture, or all of them in two rows.
-fn sheet(mut row: Vec<Picture>) -> anyhow::Result<Picture> {
+fn sheet(mut row: Vec<RgbaPicture>) -> anyhow::Result<RgbaPicture> {
     match row.len() {
         1 => row.pop().context("a picture"),
         n => {
-            let rows: Vec<Vec<Picture>> = row.chunks(n.div_ceil(2)).map(<[Picture]>::to_vec).collect();
-            Ok(Picture::sheet(&rows, 4))
+            let rows: Vec<Vec<RgbaPicture>> =
+                row.chunks(n.div_ceil(2)).map(<[RgbaPicture]>::to_vec).collect();
+            Ok(RgbaPicture::sheet(&rows, 4))
         }
     }
 }

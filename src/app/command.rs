@@ -289,7 +289,7 @@ pub enum Command {
 
 /// Part of a staged result to accept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Taken {
+pub enum StagedPart {
     /// The marked region.
     Region,
     /// The places of chosen boxes and things.
@@ -308,7 +308,7 @@ pub enum Verdict {
     /// The result is replaced: the state before it is generated again with the next seed.
     NextSeed,
     /// Only this part of the result is kept.
-    Take(Taken),
+    Take(StagedPart),
 }
 
 /// The name of the undo step for an edit by words: the words in quotation marks, cut to 60 characters.

@@ -90,12 +90,21 @@ impl DetectionMarks {
     }
 
     /// Each marked box with its mark.
-    fn boxes<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = (&'a SceneBox, Mark)> {
+    fn boxes<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = (&'a SceneBox, DetectionOutcome)> {
         let detections = self.detections.iter();
-        let detections = detections.map(|(b, ghost)| (b, if *ghost { Mark::Ghost } else { Mark::Seen }));
+        let detections = detections.map(|(b, ghost)| {
+            (
+                b,
+                if *ghost {
+                    DetectionOutcome::Ghost
+                } else {
+                    DetectionOutcome::Seen
+                },
+            )
+        });
         let missed = self.missed.iter().filter_map(|id| frame.boxes.get(id));
         detections
-            .chain(missed.map(|b| (b, Mark::Missed)))
+            .chain(missed.map(|b| (b, DetectionOutcome::Missed)))
             .filter(|(b, _)| b.problem().is_none())
     }
 
@@ -118,7 +127,7 @@ impl DetectionMarks {
             let corners = b.footprint().map(|p| map.to_screen(p));
             let [first, second, third, fourth] = corners;
             mark.stroke(painter, &[first, second, third, fourth, first]);
-            if mark == Mark::Missed {
+            if mark == DetectionOutcome::Missed {
                 mark.stroke(painter, &[first, third]);
                 mark.stroke(painter, &[second, fourth]);
             }
@@ -135,7 +144,7 @@ impl DetectionMarks {
                 [(low[i], low[next]), (high[i], high[next]), (low[i], high[i])]
             });
             let cross = [(high[0], high[2]), (high[1], high[3])];
-            let cross = cross.into_iter().filter(|_| mark == Mark::Missed);
+            let cross = cross.into_iter().filter(|_| mark == DetectionOutcome::Missed);
             for edge in sides.chain(cross) {
                 if let (Some(a), Some(b)) = edge {
                     mark.stroke(painter, &[a, b]);
@@ -159,13 +168,13 @@ pub(super) fn in_3d(
 
 /// How a box was predicted. Marks differ in more than colour, because classes have colours too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Mark {
+enum DetectionOutcome {
     Seen,
     Missed,
     Ghost,
 }
 
-impl Mark {
+impl DetectionOutcome {
     fn color(self) -> Color32 {
         match self {
             Self::Seen => SEEN,
@@ -223,7 +232,14 @@ mod tests {
             map_from_vehicle: Pose::IDENTITY,
             window: Extent::WINDOW,
         };
-        let found: Vec<Mark> = marks.boxes(&frame).map(|(_, mark)| mark).collect();
-        assert_eq!(found, [Mark::Seen, Mark::Ghost, Mark::Missed]);
+        let found: Vec<DetectionOutcome> = marks.boxes(&frame).map(|(_, mark)| mark).collect();
+        assert_eq!(
+            found,
+            [
+                DetectionOutcome::Seen,
+                DetectionOutcome::Ghost,
+                DetectionOutcome::Missed
+            ]
+        );
     }
 }

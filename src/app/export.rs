@@ -16,14 +16,15 @@ use super::picture::{ShotOptions, View3d};
 use crate::findings;
 use crate::truth;
 use formats::FormatError;
-use formats::export::{Exporter, Observed, Picture, Products, Seen, Span};
+use formats::export::{BoxVisibility, ExportPicture, ExportSpan, Exporter, ObservationMasks, Products};
 use formats::recipe::Recipe;
 use nets::lidar::LidarNet;
 use scene::{CameraMaps, CameraTruth, GaussianScene, LidarSweep, Pose, Scene};
 use sensors::appearance::Quality;
 use sensors::bake::{self, BakeOptions};
 use sensors::cameras::{
-    self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds, pictures,
+    self, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions, SourceId, ViewId, bounds,
+    pictures,
 };
 use sensors::learned::Drops;
 use sensors::observed;
@@ -110,8 +111,8 @@ pub fn export_all(
     // Files of a moment are in the ego frame; sensors are computed in the world frame.
     for format in formats {
         let of_file = match format.span {
-            Span::Moment => scene.in_ego(),
-            Span::Clip => Cow::Borrowed(scene),
+            ExportSpan::Moment => scene.in_ego(),
+            ExportSpan::Clip => Cow::Borrowed(scene),
         };
         let mut making = Making {
             whole: scene,
@@ -156,7 +157,7 @@ enum Began {
 
 impl Began {
     fn new(format: Format) -> Self {
-        match format.span == Span::Clip && takes_pictures(format) {
+        match format.span == ExportSpan::Clip && takes_pictures(format) {
             true => Self::At(None),
             false => Self::Counted,
         }
@@ -200,7 +201,7 @@ impl Making<'_> {
         }
         let source = cameras::source_of(view, options.source);
         bounds::check(options.camera_size, source.about().bytes_per_pixel, 0)?;
-        let ready = Ready::new(source, &camera_input(&self.scene, Detail::Full));
+        let ready = PreparedSource::new(source, &camera_input(&self.scene, Detail::Full));
         let options = RenderOptions {
             size: options.camera_size,
             quality: Quality::Full,
@@ -241,23 +242,23 @@ impl Products for Making<'_> {
         Ok(())
     }
 
-    fn seen(&mut self) -> Result<Seen, FormatError> {
+    fn seen(&mut self) -> Result<BoxVisibility, FormatError> {
         let seen = findings::seen(&self.scene);
-        Ok(Seen {
+        Ok(BoxVisibility {
             lidar_returns: seen.lidar_returns,
             camera_pixels: seen.camera_pixels,
         })
     }
 
-    fn observed(&mut self) -> Result<Observed, FormatError> {
+    fn observed(&mut self) -> Result<ObservationMasks, FormatError> {
         let moment = self.whole.at(self.scene.time_s());
         let ego = moment.in_ego();
         if let Some(problem) = ego.rig.problem() {
             return Err(FormatError::new(problem));
         }
-        let grid = ego.frame().occupancy.crop(Observed::EXTENT);
+        let grid = ego.frame().occupancy.crop(ObservationMasks::EXTENT);
         let seen = observed::observed(&grid, &ego.rig);
-        Ok(Observed {
+        Ok(ObservationMasks {
             lidar: seen.lidar,
             camera: seen.camera,
         })
@@ -283,11 +284,11 @@ impl Products for Making<'_> {
 
     fn pictures(
         &mut self,
-        take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
+        take: &mut dyn FnMut(ExportPicture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
         self.count_moments();
         let each = self.each_camera(pictures::VIEW.id, |picture| match picture {
-            CameraPicture::Picture(image) => Ok(take(Picture {
+            CameraPicture::Picture(image) => Ok(take(ExportPicture {
                 camera: image.camera,
                 width: image.width,
                 height: image.height,
@@ -300,7 +301,7 @@ impl Products for Making<'_> {
 
     fn truth(
         &mut self,
-        take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
+        take: &mut dyn FnMut(ExportPicture, CameraTruth) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
         self.count_moments();
         let (progress, ego_from_world) = (self.progress, self.world_from_ego().inverse());
@@ -312,7 +313,7 @@ impl Products for Making<'_> {
             |image, mut truth| {
                 progress.go_on()?;
                 truth::place(&mut truth, &ego_from_world);
-                let picture = Picture {
+                let picture = ExportPicture {
                     camera: image.camera,
                     width: image.width,
                     height: image.height,
@@ -353,10 +354,10 @@ impl Products for Making<'_> {
         self.scene.frame().world_from_ego
     }
 
-    fn view(&mut self) -> Result<Picture, FormatError> {
+    fn view(&mut self) -> Result<ExportPicture, FormatError> {
         let shot = View3d::new().and_then(|mut view| view.shot(&self.scene, &self.options.shot));
         let shot = shot.map_err(FormatError::new)?;
-        Ok(Picture {
+        Ok(ExportPicture {
             camera: String::new(),
             width: shot.width,
             height: shot.height,

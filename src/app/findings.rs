@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::camera_views::march;
-use editor::checks::{self, Finding, Seen};
+use editor::checks::{self, Finding, VisibilityCounts};
 use formats::physical;
 use scene::{BoxId, LidarPoint, Pose, Returns, Scene};
 use sensors::rolling;
@@ -15,14 +15,14 @@ use sensors::splat::PREVIEW_SIZE;
 /// and shapes, at the size of the camera strip's previews. Returns are those of the exact sweep on the physical ground,
 /// as files have it, that lie in the box. The result does not depend on the frame in which the scene's sensors are
 /// given.
-pub fn seen(scene: &Scene) -> Seen {
+pub fn seen(scene: &Scene) -> VisibilityCounts {
     let scene = &*scene.with_rig_in_world();
     let frame = scene.frame();
     // Another check reports numbers that are not finite; rays would fail on them.
     let mut sound = frame.boxes.clone();
     sound.retain(|_, b| b.problem().is_none());
     if scene.rig.problem().is_some() {
-        return Seen::default();
+        return VisibilityCounts::default();
     }
     let camera_pixels = (!scene.rig.cameras.is_empty()).then(|| {
         let mut tidy = scene.clone();
@@ -49,7 +49,7 @@ pub fn seen(scene: &Scene) -> Seen {
         };
         Returns::new(sweep.points.iter().map(in_world)).by_box(sound.values())
     });
-    Seen {
+    VisibilityCounts {
         camera_pixels,
         lidar_returns,
     }
@@ -123,9 +123,9 @@ mod tests {
         let mut blind = scene.clone();
         let rig = Arc::make_mut(&mut blind.rig);
         (rig.cameras, rig.lidars) = (Vec::new(), Vec::new());
-        assert_eq!(super::seen(&blind), Seen::default());
+        assert_eq!(super::seen(&blind), VisibilityCounts::default());
         Arc::make_mut(&mut scene.rig).cameras[0].focal_px[0] = f64::NAN;
-        assert_eq!(super::seen(&scene), Seen::default());
+        assert_eq!(super::seen(&scene), VisibilityCounts::default());
     }
 
     /// A drive of 8 m in 2 s.

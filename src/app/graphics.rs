@@ -128,7 +128,7 @@ mod tests {
     use super::*;
     use crate::camera_views::camera_input;
     use scene::{Frame, Scene, draft};
-    use sensors::cameras::{self, CameraPicture, Detail, Ready, RenderContext, RenderOptions};
+    use sensors::cameras::{self, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions};
     use world::World;
 
     /// Views by a card (software here) equal those of the processor: labels of splats to 0.1 %, pictures to 2/255 on
@@ -147,7 +147,7 @@ mod tests {
         };
         let mut drawn_by_card = Vec::new();
         for source in cameras::all() {
-            let ready = Ready::new(*source, &camera_input(&scene, Detail::Live));
+            let ready = PreparedSource::new(*source, &camera_input(&scene, Detail::Live));
             if !ready.upload_to(|| Some(&mut card)) {
                 continue;
             }

@@ -4,7 +4,7 @@
 use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, vec2};
 use glam::DVec2;
 
-use editor::tools::{At, Mark, Role, View};
+use editor::tools::{At, Role, ScreenProjection, ToolMark};
 use scene::{BevLayer, Extent};
 
 use super::canvas_draw::{BoxStyle, draw_box};
@@ -26,7 +26,7 @@ pub(super) struct Board<'a> {
     /// Painter of the view.
     pub painter: &'a Painter,
     /// Projection of points to the screen.
-    pub view: &'a dyn View,
+    pub view: &'a dyn ScreenProjection,
     /// The map, if the view is from above.
     pub map: Option<&'a ScreenMap>,
     /// Extent of the scene shown.
@@ -58,33 +58,33 @@ impl Board<'_> {
     }
 
     /// Paints all marks, in order. Voxels, and boxes in 3D, are part of the picture itself.
-    pub fn paint(&self, ui: &Ui, marks: &[Mark]) {
+    pub fn paint(&self, ui: &Ui, marks: &[ToolMark]) {
         for mark in marks {
             self.mark(ui, mark);
         }
     }
 
-    fn mark(&self, ui: &Ui, mark: &Mark) {
+    fn mark(&self, ui: &Ui, mark: &ToolMark) {
         let painter = self.painter;
         match mark {
-            Mark::Line(points, role) => self.line(points, *role),
-            Mark::Dashed(points, role) => {
+            ToolMark::Line(points, role) => self.line(points, *role),
+            ToolMark::Dashed(points, role) => {
                 let points: Vec<Pos2> = points.iter().filter_map(|p| self.at(p)).collect();
                 let stroke = Stroke::new(1.5, self.color(*role));
                 painter.extend(Shape::dashed_line(&points, stroke, 5.0, 4.0));
             }
-            Mark::Ribbon(points_m, width_m, role) => {
+            ToolMark::Ribbon(points_m, width_m, role) => {
                 let points = points_m.iter().filter_map(|p| self.at(&(*p).into())).collect();
                 let width = (width_m * self.view.scale()) as f32;
                 let color = self.color(*role).gamma_multiply(0.35);
                 painter.add(Shape::line(points, Stroke::new(width, color)));
             }
-            Mark::Rect(a, b, _) => {
+            ToolMark::Rect(a, b, _) => {
                 if let (Some(a), Some(b)) = (self.at(a), self.at(b)) {
                     marquee(painter, Rect::from_two_pos(a, b));
                 }
             }
-            Mark::Columns(cells, role) => {
+            ToolMark::Columns(cells, role) => {
                 if let Some(map) = self.map {
                     let color = self.color(*role).gamma_multiply(0.4);
                     for [low_m, high_m] in runs(self.extent, cells) {
@@ -92,8 +92,8 @@ impl Board<'_> {
                     }
                 }
             }
-            Mark::Disc(middle_m, radius_m, role) => self.disc(*middle_m, *radius_m, *role),
-            Mark::Dot(at, role) => {
+            ToolMark::Disc(middle_m, radius_m, role) => self.disc(*middle_m, *radius_m, *role),
+            ToolMark::Dot(at, role) => {
                 if let Some(p) = self.at(at) {
                     let edge = match role {
                         Role::Measure => theme::CANVAS,
@@ -102,29 +102,29 @@ impl Board<'_> {
                     painter.circle(p, 3.5, self.color(*role), Stroke::new(1.2, edge));
                 }
             }
-            Mark::Handle(at) => {
+            ToolMark::Handle(at) => {
                 if let Some(p) = self.at(at) {
                     let square = Rect::from_center_size(p, egui::Vec2::splat(6.0));
                     let edge = Stroke::new(1.0, theme::CANVAS);
                     painter.rect(square, 1.0, Color32::WHITE, edge, StrokeKind::Outside);
                 }
             }
-            Mark::Tag(at, text) => {
+            ToolMark::Tag(at, text) => {
                 if let Some(p) = self.at(at) {
                     tag(painter, p, text);
                 }
             }
-            Mark::Label(at, text) => {
+            ToolMark::Label(at, text) => {
                 if let Some(p) = self.at(at) {
                     label(painter, p, text);
                 }
             }
-            Mark::Ghost(b) => {
+            ToolMark::Ghost(b) => {
                 if let Some(map) = self.map {
                     draw_box(ui, map, b, b.class.color(), BoxStyle::Ghost);
                 }
             }
-            Mark::Coming(form) => match self.map {
+            ToolMark::Coming(form) => match self.map {
                 Some(map) => thing_outlines::coming(painter, map, form),
                 None => {
                     let (points, closed) = thing_outlines::trace(form, &|p_m| self.on_ground(p_m));
@@ -135,7 +135,7 @@ impl Board<'_> {
                     });
                 }
             },
-            Mark::Arrow {
+            ToolMark::Arrow {
                 ends: [from, to],
                 role,
                 hot,
@@ -145,12 +145,12 @@ impl Board<'_> {
                     arrow(painter, [from, to], self.color(*role), *hot, *square);
                 }
             }
-            Mark::Ring(points, hot) => {
+            ToolMark::Ring(points, hot) => {
                 let points = points.iter().filter_map(|p| self.at(p)).collect();
                 let width = if *hot { 3.5 } else { 2.0 };
                 painter.line(points, Stroke::new(width, AXES[2]));
             }
-            Mark::Knob(p_m, hot) => {
+            ToolMark::Knob(p_m, hot) => {
                 if let Some(p) = self.view.project(*p_m).map(pos) {
                     let color = if *hot { Color32::WHITE } else { theme::accent() };
                     painter.circle(p, 6.0, color, Stroke::new(1.5, Color32::WHITE));
@@ -158,7 +158,7 @@ impl Board<'_> {
                     painter.arrow(p + up * 0.5, up, Stroke::new(1.8, color));
                 }
             }
-            Mark::Voxels(..) => {}
+            ToolMark::Voxels(..) => {}
         }
     }
 

@@ -4,7 +4,7 @@ use egui::epaint::{ImageData, Mesh, Primitive};
 use egui::{Color32, Context, Pos2, RawInput, Rect, TextureId, Ui, pos2};
 use std::collections::HashMap;
 
-use super::picture::Picture;
+use super::picture::RgbaPicture;
 
 /// Texels, row by row.
 struct Texture {
@@ -18,7 +18,7 @@ pub fn picture(
     points: [f32; 2],
     pixels_per_point: f32,
     mut show: impl FnMut(&mut Ui),
-) -> Picture {
+) -> RgbaPicture {
     let input = || RawInput {
         screen_rect: Some(Rect::from_min_size(Pos2::ZERO, points.into())),
         ..RawInput::default()
@@ -72,7 +72,7 @@ pub fn picture(
         .into_iter()
         .flat_map(|p| p.map(|v| v.round().clamp(0.0, 255.0) as u8))
         .collect();
-    Picture { width, height, rgba }
+    RgbaPicture { width, height, rgba }
 }
 
 /// Draws triangles with colours and texture coordinates at their corners, blended over `out` (both premultiplied).

@@ -16,7 +16,7 @@ pub const SHEET_COLOR: [u8; 3] = [24, 26, 31];
 
 /// A picture: RGBA8, row-major, top row first.
 #[derive(Clone, Debug)]
-pub struct Picture {
+pub struct RgbaPicture {
     /// Pixels per row.
     pub width: usize,
     /// Rows.
@@ -25,7 +25,7 @@ pub struct Picture {
     pub rgba: Vec<u8>,
 }
 
-impl Picture {
+impl RgbaPicture {
     /// A picture of one colour.
     pub fn filled(width: usize, height: usize, color: [u8; 3]) -> Self {
         let pixel = [color[0], color[1], color[2], 255];
@@ -52,7 +52,7 @@ impl Picture {
     }
 
     /// Copies another picture in at (x, y). Parts that do not fit are cut off.
-    pub fn put(&mut self, other: &Picture, x: usize, y: usize) {
+    pub fn put(&mut self, other: &RgbaPicture, x: usize, y: usize) {
         for row in 0..other.height.min(self.height.saturating_sub(y)) {
             let n = other.width.min(self.width.saturating_sub(x)) * 4;
             let from = row * other.width * 4;
@@ -62,11 +62,11 @@ impl Picture {
     }
 
     /// Arranges pictures side by side in rows, with a margin around each.
-    pub fn sheet(rows: &[Vec<Picture>], margin: usize) -> Self {
-        let width = |row: &Vec<Picture>| row.iter().map(|p| p.width + margin).sum::<usize>() + margin;
-        let height = |row: &Vec<Picture>| row.iter().map(|p| p.height).max().unwrap_or(0) + margin;
+    pub fn sheet(rows: &[Vec<RgbaPicture>], margin: usize) -> Self {
+        let width = |row: &Vec<RgbaPicture>| row.iter().map(|p| p.width + margin).sum::<usize>() + margin;
+        let height = |row: &Vec<RgbaPicture>| row.iter().map(|p| p.height).max().unwrap_or(0) + margin;
         let w = rows.iter().map(width).max().unwrap_or(margin);
-        let mut out = Picture::filled(w, rows.iter().map(height).sum::<usize>() + margin, SHEET_COLOR);
+        let mut out = RgbaPicture::filled(w, rows.iter().map(height).sum::<usize>() + margin, SHEET_COLOR);
         let mut y = margin;
         for row in rows {
             let mut x = margin;
@@ -81,8 +81,8 @@ impl Picture {
 }
 
 /// Draws grid cells seen from above: ego x is up, ego y is left.
-fn top_view(extent: Extent, scale: usize, cell: impl Fn(usize, usize) -> [u8; 3]) -> Picture {
-    let mut out = Picture::filled(extent.ny() * scale, extent.nx() * scale, [0; 3]);
+fn top_view(extent: Extent, scale: usize, cell: impl Fn(usize, usize) -> [u8; 3]) -> RgbaPicture {
+    let mut out = RgbaPicture::filled(extent.ny() * scale, extent.nx() * scale, [0; 3]);
     for [x, y] in extent.all_columns() {
         out.fill_column(extent, [x, y], scale, cell(x, y));
     }
@@ -94,7 +94,7 @@ fn scaled(color: [u8; 3], by: f32) -> [u8; 3] {
 }
 
 /// The layout from above, `scale` pixels per cell, boxes in their colours.
-pub fn layout_top(frame: &Frame, scale: usize) -> Picture {
+pub fn layout_top(frame: &Frame, scale: usize) -> RgbaPicture {
     use BevLayer::{
         CarparkArea, DrivableArea, LaneDivider, PedCrossing, RoadBlock, RoadDivider, StopLine, Walkway,
     };
@@ -123,7 +123,7 @@ pub fn layout_top(frame: &Frame, scale: usize) -> Picture {
 }
 
 /// Occupancy from above: the class of the highest voxel, brighter with height.
-pub fn occupancy_top(grid: &VoxelGrid, scale: usize) -> Picture {
+pub fn occupancy_top(grid: &VoxelGrid, scale: usize) -> RgbaPicture {
     top_view(grid.extent(), scale, |x, y| {
         let column = grid.column(x, y);
         let top = (0..Extent::NZ).rev().find(|z| column[*z] != Class::FREE);
@@ -135,7 +135,7 @@ pub fn occupancy_top(grid: &VoxelGrid, scale: usize) -> Picture {
 }
 
 /// Sheet of nine planes of a multi-plane image, near to far, each at a third of its size.
-pub fn plane_sheet(image: &MultiPlaneImage) -> Picture {
+pub fn plane_sheet(image: &MultiPlaneImage) -> RgbaPicture {
     const SIDE: usize = 3;
     let (w, h) = (image.width / SIDE, image.height / SIDE);
     let (width, height) = (w * SIDE, h * SIDE);
@@ -153,12 +153,12 @@ pub fn plane_sheet(image: &MultiPlaneImage) -> Picture {
             rgba[to..to + 4].copy_from_slice(&slice[from..from + 4]);
         }
     }
-    Picture { width, height, rgba }
+    RgbaPicture { width, height, rgba }
 }
 
 /// LiDAR returns above a map, coloured by range.
-pub fn lidar_top(extent: Extent, sweep: &LidarSweep, scale: usize) -> Picture {
-    let mut out = Picture::filled(extent.ny() * scale, extent.nx() * scale, [16, 18, 22]);
+pub fn lidar_top(extent: Extent, sweep: &LidarSweep, scale: usize) -> RgbaPicture {
+    let mut out = RgbaPicture::filled(extent.ny() * scale, extent.nx() * scale, [16, 18, 22]);
     for p in &sweep.points {
         let [x, y, _] = p.position_in_ego.map(f64::from);
         let u = extent.to_voxel_units(glam::DVec3::new(x, y, 0.0)) * scale as f64;
@@ -231,7 +231,7 @@ impl View3d {
     }
 
     /// Draws a picture of the scene. Errors if it is larger than [`bounds`] allow.
-    pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<Picture> {
+    pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<RgbaPicture> {
         bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
         let scene = &*scene.with_rig_in_world();
         let frame = scene.frame();
@@ -276,7 +276,7 @@ impl View3d {
         if !options.transparent && rgba.chunks_exact(4).all(|p| p == &rgba[..4]) {
             bail!("the 3D view came out in one colour");
         }
-        Ok(Picture {
+        Ok(RgbaPicture {
             width: width as usize,
             height: height as usize,
             rgba,

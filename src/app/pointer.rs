@@ -11,7 +11,7 @@ use super::tools::ToolCommand;
 
 /// One pointer event.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
+pub enum PointerEvent {
     /// A button went down on the canvas.
     Press(PointerButton, Pos2, Modifiers),
     /// The pointer moved to a place, on the canvas or off it.
@@ -22,13 +22,13 @@ pub enum Step {
 
 /// The events of this frame. Presses count only if the canvas itself is under the pointer, and no widget on it such as
 /// the wipe line.
-pub fn steps(ui: &Ui, response: &Response) -> Vec<Step> {
+pub fn steps(ui: &Ui, response: &Response) -> Vec<PointerEvent> {
     let ours = response.hovered()
         || response.is_pointer_button_down_on()
         || response.dragged()
         || response.drag_stopped();
     let step = |event: &Event| match event {
-        Event::PointerMoved(at) => Some(Step::Move(*at)),
+        Event::PointerMoved(at) => Some(PointerEvent::Move(*at)),
         Event::PointerButton {
             pos,
             button,
@@ -36,14 +36,14 @@ pub fn steps(ui: &Ui, response: &Response) -> Vec<Step> {
             modifiers,
         } => {
             let here = ours && response.rect.contains(*pos);
-            here.then_some(Step::Press(*button, *pos, *modifiers))
+            here.then_some(PointerEvent::Press(*button, *pos, *modifiers))
         }
         Event::PointerButton {
             pos,
             button,
             pressed: false,
             ..
-        } => Some(Step::Release(*button, *pos)),
+        } => Some(PointerEvent::Release(*button, *pos)),
         _ => None,
     };
     ui.input(|i| i.events.iter().filter_map(step).collect())
@@ -51,30 +51,32 @@ pub fn steps(ui: &Ui, response: &Response) -> Vec<Step> {
 
 /// The button that is held to move the view.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Held {
+pub struct ViewDrag {
     button: Option<PointerButton>,
     last: Pos2,
 }
 
-impl Held {
+impl ViewDrag {
     /// The pointer's movement while a button is held to move the view, with that button; `wants` says which buttons do.
     pub fn travel(
         &mut self,
-        steps: &[Step],
+        steps: &[PointerEvent],
         wants: impl Fn(PointerButton, Modifiers) -> bool,
     ) -> Option<(PointerButton, Vec2)> {
         let mut of = self.button;
         let mut travel = Vec2::ZERO;
         for step in steps {
             match *step {
-                Step::Press(button, at, modifiers) if self.button.is_none() && wants(button, modifiers) => {
+                PointerEvent::Press(button, at, modifiers)
+                    if self.button.is_none() && wants(button, modifiers) =>
+                {
                     (self.button, self.last, of) = (Some(button), at, Some(button));
                 }
-                Step::Move(at) if self.button.is_some() => {
+                PointerEvent::Move(at) if self.button.is_some() => {
                     travel += at - self.last;
                     self.last = at;
                 }
-                Step::Release(button, _) if self.button == Some(button) => self.button = None,
+                PointerEvent::Release(button, _) if self.button == Some(button) => self.button = None,
                 _ => {}
             }
         }
@@ -118,25 +120,25 @@ mod tests {
     fn a_whole_drag_in_one_frame_moves_the_view() {
         let none = Modifiers::NONE;
         let all = [
-            Step::Move(pos2(5.0, 5.0)),
-            Step::Press(PointerButton::Middle, pos2(10.0, 10.0), none),
-            Step::Move(pos2(14.0, 11.0)),
-            Step::Move(pos2(20.0, 12.0)),
-            Step::Release(PointerButton::Middle, pos2(20.0, 12.0)),
-            Step::Move(pos2(90.0, 90.0)),
+            PointerEvent::Move(pos2(5.0, 5.0)),
+            PointerEvent::Press(PointerButton::Middle, pos2(10.0, 10.0), none),
+            PointerEvent::Move(pos2(14.0, 11.0)),
+            PointerEvent::Move(pos2(20.0, 12.0)),
+            PointerEvent::Release(PointerButton::Middle, pos2(20.0, 12.0)),
+            PointerEvent::Move(pos2(90.0, 90.0)),
         ];
         let middle = |button, _| button == PointerButton::Middle;
         let expected = Some((PointerButton::Middle, egui::vec2(10.0, 2.0)));
-        assert_eq!(Held::default().travel(&all, middle), expected);
+        assert_eq!(ViewDrag::default().travel(&all, middle), expected);
         // The same events, one per frame.
-        let mut held = Held::default();
+        let mut held = ViewDrag::default();
         let parts = all.map(|step| held.travel(&[step], middle).map_or(Vec2::ZERO, |(_, d)| d));
         assert_eq!(
             parts.into_iter().fold(Vec2::ZERO, |a, b| a + b),
             egui::vec2(10.0, 2.0)
         );
         assert_eq!(
-            Held::default().travel(&all, |button, _| button == PointerButton::Primary),
+            ViewDrag::default().travel(&all, |button, _| button == PointerButton::Primary),
             None
         );
     }

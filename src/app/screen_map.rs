@@ -3,8 +3,8 @@
 use egui::{Pos2, Rect, vec2};
 use glam::{DVec2, DVec3};
 
-use editor::pick::Ray;
-use editor::tools::{View, ViewKind};
+use editor::pick::PickRay;
+use editor::tools::{ScreenProjection, ViewKind};
 
 /// Transform from the ego frame to the screen and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +49,7 @@ pub(super) fn pos(p: DVec2) -> Pos2 {
 /// Height at which rays from above begin, m.
 const ABOVE_M: f64 = 1000.0;
 
-impl View for ScreenMap {
+impl ScreenProjection for ScreenMap {
     fn kind(&self) -> ViewKind {
         ViewKind::Bev
     }
@@ -58,8 +58,8 @@ impl View for ScreenMap {
         Some(point(self.to_screen(p_m.truncate())))
     }
 
-    fn ray(&self, at: DVec2) -> Option<Ray> {
-        Ray::new(self.to_ego(pos(at)).extend(ABOVE_M), -DVec3::Z)
+    fn ray(&self, at: DVec2) -> Option<PickRay> {
+        PickRay::new(self.to_ego(pos(at)).extend(ABOVE_M), -DVec3::Z)
     }
 
     fn right(&self) -> DVec3 {

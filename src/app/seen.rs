@@ -7,11 +7,11 @@ use scene::Scene;
 
 /// A scene and its copy without hidden objects.
 #[derive(Debug, Default)]
-struct Kept {
+struct VisibleSceneCache {
     of: Option<(Arc<Scene>, Arc<Scene>)>,
 }
 
-impl Kept {
+impl VisibleSceneCache {
     fn seen(&mut self, scene: &Arc<Scene>) -> Arc<Scene> {
         match &self.of {
             Some((of, seen)) if Arc::ptr_eq(of, scene) => seen.clone(),
@@ -27,8 +27,8 @@ impl Kept {
 /// Copies without hidden objects, of the scene on screen and of the scene without the drag in progress.
 #[derive(Debug, Default)]
 pub struct SeenScenes {
-    shown: Kept,
-    settled: Kept,
+    shown: VisibleSceneCache,
+    settled: VisibleSceneCache,
 }
 
 impl SeenScenes {

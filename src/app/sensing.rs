@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::camera_views::LidarModel;
-use super::camera_views::{CameraView, Pictures, Wanted};
+use super::camera_views::{CameraView, PicturesKey, Wanted};
 use super::graphics::Graphics;
 use super::painting::PaintWish;
 use job::guard::Panicked;
@@ -37,14 +37,14 @@ use views::Views;
 const SHOWN_RAYS: usize = 400;
 
 /// A request to sense a scene.
-struct Request {
+struct SensingRequest {
     scene: Arc<Scene>,
     wanted: Wanted,
     preview: bool,
 }
 
 /// News from the thread.
-enum News {
+enum SensingEvent {
     Lidar(SceneRev, LidarSweep, Option<Sampled>),
     Cameras(SceneRev, Wanted, Vec<CameraView>),
     /// Pictures of another source than the strip's.
@@ -56,7 +56,7 @@ enum News {
 
 /// The newest results of the sensors, and the threads that make them.
 pub struct Sensing {
-    worker: Worker<Request, News>,
+    worker: Worker<SensingRequest, SensingEvent>,
     asked: Option<(SceneRev, Wanted, bool)>,
     lidar: Option<(SceneRev, Arc<LidarSweep>)>,
     sampled: Option<Sampled>,
@@ -66,7 +66,7 @@ pub struct Sensing {
     /// Last jobs for a forgotten scene, of sensing and of painting: news of them and of earlier jobs is dropped.
     forgotten: [u64; 2],
     problem: Option<String>,
-    painting: Worker<painting::Request, painting::News>,
+    painting: Worker<painting::PaintingRequest, painting::PaintingEvent>,
     paint: Arc<PaintWish>,
     /// The learned pictures of all cameras, with their state.
     painted: Option<(SceneRev, Arc<Vec<CameraView>>)>,
@@ -89,7 +89,7 @@ impl Sensing {
         let senses = move || Senses {
             grace,
             rested: false,
-            kept: Kept::default(),
+            kept: SensorCache::default(),
         };
         let stop = Arc::new(AtomicBool::new(false));
         let (stops, wake): (_, Wake) = (stop.clone(), Arc::new(wake));
@@ -184,7 +184,7 @@ impl Sensing {
         if wanted.source == learned::ID || sources.any(|source| source == learned::ID) {
             self.paint(scene.clone(), wanted, preview);
         }
-        self.worker.submit(Request {
+        self.worker.submit(SensingRequest {
             scene,
             wanted,
             preview,
@@ -202,24 +202,25 @@ impl Sensing {
             .map(|e| e.update)
         {
             match news {
-                News::Lidar(rev, sweep, sampled) => {
+                SensingEvent::Lidar(rev, sweep, sampled) => {
                     self.lidar = Some((rev, Arc::new(sweep)));
                     self.sampled = sampled;
                     self.version += 1;
                 }
                 // Another source was requested since.
-                News::Cameras(_, of, _) if self.asked.is_some_and(|(_, now, _)| now.source != of.source) => {}
-                News::Cameras(rev, wanted, views) => {
+                SensingEvent::Cameras(_, of, _)
+                    if self.asked.is_some_and(|(_, now, _)| now.source != of.source) => {}
+                SensingEvent::Cameras(rev, wanted, views) => {
                     self.cameras = Some((rev, wanted, Arc::new(views)));
                     self.version += 1;
                 }
-                News::Other(rev, source, views) => {
+                SensingEvent::Other(rev, source, views) => {
                     self.others.retain(|(_, of, _)| *of != source);
                     self.others.push((rev, source, Arc::new(views)));
                     self.version += 1;
                 }
-                News::Ended => {}
-                News::Failed(panic) => {
+                SensingEvent::Ended => {}
+                SensingEvent::Failed(panic) => {
                     let problem = tf!("The sensors show an older scene: {problem}", problem = panic);
                     self.problem = Some(problem);
                 }
@@ -294,42 +295,42 @@ struct Senses {
     grace: Duration,
     /// True if a newer scene came during the last grace; that scene is then sensed without another grace.
     rested: bool,
-    kept: Kept,
+    kept: SensorCache,
 }
 
 impl Product for Senses {
-    type Request = Request;
-    type Update = News;
+    type Request = SensingRequest;
+    type Update = SensingEvent;
 
-    fn make(&mut self, request: &Request, ctx: &Ctx<'_, News>) -> News {
+    fn make(&mut self, request: &SensingRequest, ctx: &Ctx<'_, SensingEvent>) -> SensingEvent {
         if !std::mem::replace(&mut self.rested, false) {
             std::thread::sleep(self.grace);
             if ctx.should_stop() {
                 self.rested = true;
-                return News::Ended;
+                return SensingEvent::Ended;
             }
         }
         sense(request, &mut self.kept, ctx);
-        News::Ended
+        SensingEvent::Ended
     }
 
     fn reset(&mut self) {
-        self.kept = Kept::default();
+        self.kept = SensorCache::default();
     }
 
-    fn given_up() -> News {
-        News::Ended
+    fn given_up() -> SensingEvent {
+        SensingEvent::Ended
     }
 
-    fn panicked(panic: Panicked) -> News {
-        News::Failed(panic)
+    fn panicked(panic: Panicked) -> SensingEvent {
+        SensingEvent::Failed(panic)
     }
 
-    fn is_terminal(news: &News) -> bool {
-        matches!(news, News::Ended | News::Failed(_))
+    fn is_terminal(news: &SensingEvent) -> bool {
+        matches!(news, SensingEvent::Ended | SensingEvent::Failed(_))
     }
 
-    fn must_arrive(_: &News) -> bool {
+    fn must_arrive(_: &SensingEvent) -> bool {
         true
     }
 }
@@ -337,11 +338,11 @@ impl Product for Senses {
 /// Values kept between requests: the exact and the learned sweep with their rigs, the LiDAR network once it is used,
 /// and the last full pictures.
 #[derive(Default)]
-struct Kept {
+struct SensorCache {
     lidar: Option<(Arc<SensorRig>, Caster)>,
     net: Option<Arc<LidarNet>>,
     learned: Option<(Arc<SensorRig>, LearnedCaster)>,
-    views: Option<((SceneRev, Pictures), Vec<CameraView>)>,
+    views: Option<((SceneRev, PicturesKey), Vec<CameraView>)>,
     /// Pictures of other sources: state, source, bit per camera, pictures.
     others: Vec<(SceneRev, SourceId, u32, Vec<CameraView>)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
@@ -349,7 +350,7 @@ struct Kept {
     graphics: Option<Option<Graphics>>,
 }
 
-impl Kept {
+impl SensorCache {
     fn sweep(&mut self, scene: &Scene, wanted: &Wanted) -> LidarSweep {
         if rolling::is_rolling(scene) {
             return self.rolling(scene, wanted);
@@ -416,8 +417,8 @@ fn drops(shown: bool) -> Drops {
     if shown { Drops::Keep } else { Drops::Likely }
 }
 
-fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
-    let Request { scene, wanted, .. } = request;
+fn sense(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, SensingEvent>) {
+    let SensingRequest { scene, wanted, .. } = request;
     let swept = (scene.rev, wanted.lidar, wanted.lost_echoes);
     if kept.swept != Some(swept) {
         let sweep = kept.sweep(scene, wanted);
@@ -426,7 +427,7 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
             .as_ref()
             .filter(|_| wanted.lidar == LidarModel::Learned);
         let sampled = learned.map(|(_, caster)| caster.sampled(SHOWN_RAYS));
-        ctx.tell(News::Lidar(scene.rev, sweep, sampled));
+        ctx.tell(SensingEvent::Lidar(scene.rev, sweep, sampled));
         kept.swept = Some(swept);
     }
     // Learned pictures are painted on a thread of their own.
@@ -437,8 +438,8 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
 }
 
 /// Renders the pictures of the strip; false if the work should stop.
-fn strip(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) -> bool {
-    let Request {
+fn strip(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, SensingEvent>) -> bool {
+    let SensingRequest {
         scene,
         wanted,
         preview,
@@ -470,7 +471,7 @@ fn strip(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) -> bool {
             if (*preview || source.about().previews)
                 && let Some(views) = render(true)
             {
-                ctx.tell(News::Cameras(scene.rev, *wanted, views));
+                ctx.tell(SensingEvent::Cameras(scene.rev, *wanted, views));
             }
             if *preview {
                 return true;
@@ -480,24 +481,24 @@ fn strip(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) -> bool {
             views
         }
     };
-    ctx.tell(News::Cameras(scene.rev, *wanted, views.clone()));
+    ctx.tell(SensingEvent::Cameras(scene.rev, *wanted, views.clone()));
     if let Some(camera) = wanted.large_of(source.id()).filter(shown)
         && let Some(views) = of_scene.with_large(&views, camera, ctx)
     {
-        ctx.tell(News::Cameras(scene.rev, *wanted, views));
+        ctx.tell(SensingEvent::Cameras(scene.rev, *wanted, views));
     }
     true
 }
 
 /// Renders the other sources that panes of single cameras show.
-fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
-    let Request {
+fn other_sources(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, SensingEvent>) {
+    let SensingRequest {
         scene,
         wanted,
         preview,
     } = request;
     for (id, mask) in wanted.others.iter().filter(|(id, _)| *id != learned::ID) {
-        let source = sensors::cameras::source(id).unwrap_or(&sensors::cameras::shapes::Shapes);
+        let source = sensors::cameras::source(id).unwrap_or(&sensors::cameras::shapes::ShapeMaps);
         let mut of_scene = Views::new(source, scene, &mut kept.graphics);
         let is_known = |o: &&(SceneRev, SourceId, u32, _)| (o.0, o.1, o.2) == (scene.rev, id, mask);
         let known = kept.others.iter().find(is_known).map(|(.., views)| views.clone());
@@ -518,7 +519,7 @@ fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
                 if (*preview || source.about().previews)
                     && let Some(views) = render(true)
                 {
-                    ctx.tell(News::Other(scene.rev, id, views));
+                    ctx.tell(SensingEvent::Other(scene.rev, id, views));
                 }
                 if *preview {
                     continue;
@@ -529,11 +530,11 @@ fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
                 views
             }
         };
-        ctx.tell(News::Other(scene.rev, id, views.clone()));
+        ctx.tell(SensingEvent::Other(scene.rev, id, views.clone()));
         if let Some(camera) = wanted.large_of(id)
             && let Some(views) = of_scene.with_large(&views, camera, ctx)
         {
-            ctx.tell(News::Other(scene.rev, id, views));
+            ctx.tell(SensingEvent::Other(scene.rev, id, views));
         }
     }
 }

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use editor::Edit;
 use editor::tools::saved::SavedBrush;
-use job::Named;
+use job::ChosenDensities;
 use language::{t, tf};
 use scene::SceneBox;
 
@@ -33,7 +33,7 @@ pub struct UiState {
     /// True if edits of boxes and map layers correct values inferred on import, without changing voxels.
     pub correcting: bool,
     /// Densities that the user set for generation.
-    pub named: Named,
+    pub named: ChosenDensities,
     /// The seed that the user set for generation.
     pub seed: SeedWish,
     /// Settings of the camera pictures.

@@ -16,7 +16,7 @@ const STEP_S: f64 = 0.1;
 const MANY: usize = 60;
 
 /// Marks of one track.
-struct Mark {
+struct TrackMark {
     points_m: Vec<DVec2>,
     keys_m: Vec<DVec2>,
     ghosts: Vec<SceneBox>,
@@ -24,7 +24,7 @@ struct Mark {
     chosen: bool,
 }
 
-fn marks(scene: &Scene, state: &UiState) -> Vec<Mark> {
+fn marks(scene: &Scene, state: &UiState) -> Vec<TrackMark> {
     let (clip, playback) = (scene.clip(), &state.playback);
     if clip.is_still() || !playback.paths {
         return Vec::new();
@@ -35,7 +35,7 @@ fn marks(scene: &Scene, state: &UiState) -> Vec<Mark> {
     shown.filter_map(|id| mark(scene, state, id)).collect()
 }
 
-fn mark(scene: &Scene, state: &UiState, id: Option<BoxId>) -> Option<Mark> {
+fn mark(scene: &Scene, state: &UiState, id: Option<BoxId>) -> Option<TrackMark> {
     let clip = scene.clip();
     let motion = clip.motion(id)?;
     let at = |time_s: f64| match id {
@@ -62,7 +62,7 @@ fn mark(scene: &Scene, state: &UiState, id: Option<BoxId>) -> Option<Mark> {
         Some(id) => theme::class_color(clip.tracks.get(&id)?.made.class),
         None => theme::accent(),
     };
-    Some(Mark {
+    Some(TrackMark {
         points_m,
         keys_m,
         ghosts,
@@ -95,7 +95,7 @@ pub(crate) fn in_3d(
     }
 }
 
-fn draw(painter: &Painter, mark: &Mark, on_screen: impl Fn(DVec2) -> Option<Pos2>) {
+fn draw(painter: &Painter, mark: &TrackMark, on_screen: impl Fn(DVec2) -> Option<Pos2>) {
     let (width, alpha) = if mark.chosen { (2.0, 0.95) } else { (1.2, 0.5) };
     let stroke = Stroke::new(width, mark.color.gamma_multiply(alpha));
     // Points behind the camera divide the line.

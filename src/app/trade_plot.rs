@@ -3,9 +3,9 @@
 use egui::{Align2, RichText, Ui, Vec2, vec2};
 use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, PlotUi, Points, Text, VLine};
 
-use crate::picture::Picture;
+use crate::picture::RgbaPicture;
 use judge::presets::figures::{percent, seconds};
-use judge::presets::plan::Mark;
+use judge::presets::plan::TradeoffPoint;
 use language::t;
 use widgets::theme;
 
@@ -43,7 +43,7 @@ const LABEL_DECADES: f64 = 0.14;
 /// Draws the plot. `current` is the preset in use; `last` is the time of the last edit and, if measured, its error.
 pub fn front_plot(
     ui: &mut Ui,
-    marks: &[Mark],
+    marks: &[TradeoffPoint],
     current: Option<&str>,
     last: Option<(f64, Option<f64>)>,
     size: Vec2,
@@ -128,7 +128,7 @@ pub fn front_plot(
 }
 
 /// Draws one setting: its median and its intervals, with a ring if it is the preset in use.
-fn draw_point(plot: &mut PlotUi<'_>, mark: &Mark, current: Option<&str>) {
+fn draw_point(plot: &mut PlotUi<'_>, mark: &TradeoffPoint, current: Option<&str>) {
     let color = if mark.on_front {
         theme::accent()
     } else {
@@ -167,7 +167,7 @@ fn draw_point(plot: &mut PlotUi<'_>, mark: &Mark, current: Option<&str>) {
 /// Draws the name of a preset beside its point, with its numbers if they fit; the list of presets shows them too.
 fn draw_name(
     plot: &mut PlotUi<'_>,
-    mark: &Mark,
+    mark: &TradeoffPoint,
     preset: &str,
     here: bool,
     with_numbers: bool,
@@ -200,7 +200,7 @@ fn draw_name(
 }
 
 /// The plot as a picture of `points` size, with two pixels per point.
-pub fn picture(marks: &[Mark], points: [f32; 2]) -> Picture {
+pub fn picture(marks: &[TradeoffPoint], points: [f32; 2]) -> RgbaPicture {
     let ctx = egui::Context::default();
     theme::apply(&ctx, theme::Theme::Light);
     crate::paint::picture(&ctx, points, 2.0, |ui| {

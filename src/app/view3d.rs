@@ -7,9 +7,9 @@ use egui::accesskit::Role;
 use egui::{Color32, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, pos2};
 use glam::{DVec2, DVec3};
 
-use editor::pick::{self, Hit, Ray};
+use editor::pick::{self, PickHit, PickRay};
 use editor::pick_things;
-use editor::tools::{Mark, View, ViewKind, Wants, point_of, select};
+use editor::tools::{ScreenProjection, ToolMark, ViewKind, Wants, point_of, select};
 use language::{t, tf};
 use numeric::decimal::decimal;
 use scene::{BoxId, Class, Extent, LidarSweep, Scene, SceneBox};
@@ -18,10 +18,10 @@ use viewport::{
     lidar_colors,
 };
 
-use super::canvas_tools::{Driver, Seen};
+use super::canvas_tools::{Driver, ViewContext};
 use super::command::Command;
 use super::marks::Board;
-use super::pointer::{self, Held, Step};
+use super::pointer::{self, PointerEvent, ViewDrag};
 use super::screen_map::{point, pos};
 use super::state::{UiState, called, position_text};
 use super::tools::ToolState;
@@ -55,7 +55,7 @@ pub struct View3d {
     /// True if the view stays orthographic when it is turned.
     pub parallel: bool,
     gpu: Option<Gpu>,
-    held: Held,
+    held: ViewDrag,
     driver: Driver,
     /// Rectangle of the pane drawn last; tests click with it.
     pub rect: Rect,
@@ -89,9 +89,9 @@ const MARKED: usize = 40_000;
 
 /// The pointer over the view.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pointer {
+pub(super) struct ViewPointer {
     /// The ray under the pointer.
-    pub ray: Ray,
+    pub ray: PickRay,
 }
 
 impl View3d {
@@ -111,7 +111,7 @@ impl View3d {
             },
             parallel: false,
             gpu,
-            held: Held::default(),
+            held: ViewDrag::default(),
             driver: Driver::default(),
             rect: Rect::NOTHING,
             colors: None,
@@ -276,7 +276,7 @@ impl View3d {
     }
 
     /// The ray under a point of the screen.
-    pub(super) fn pointer(&self, at: Pos2) -> Option<Pointer> {
+    pub(super) fn pointer(&self, at: Pos2) -> Option<ViewPointer> {
         let size = self.size_px();
         let part = (at - self.rect.min) / self.rect.size();
         let pixel = DVec2::new(
@@ -284,7 +284,7 @@ impl View3d {
             f64::from(part.y) * f64::from(size[1]),
         );
         let (origin, direction) = self.camera.ray_in_world(pixel, size);
-        Ray::new(origin, direction).map(|ray| Pointer { ray })
+        PickRay::new(origin, direction).map(|ray| ViewPointer { ray })
     }
 
     /// Screen position of a point of the ego frame; `None` behind the camera.
@@ -303,7 +303,7 @@ impl View3d {
         &mut self,
         ui: &Ui,
         response: &Response,
-        steps: &[Step],
+        steps: &[PointerEvent],
         input: &View3dInput<'_>,
         tools: &mut ToolState,
     ) -> bool {
@@ -344,9 +344,9 @@ impl View3d {
             if (factor - 1.0).abs() > 1e-4 {
                 let toward = self.pointer(at).map(|p| {
                     let hit_m = pick::pick(input.scene.frame(), &p.ray).map(|hit| match hit {
-                        Hit::Box { distance_m, .. } => distance_m,
-                        Hit::Voxel(v) => v.distance_m,
-                        Hit::Ground { point_in_ego } => p.ray.origin_in_ego.distance(point_in_ego),
+                        PickHit::Box { distance_m, .. } => distance_m,
+                        PickHit::Voxel(v) => v.distance_m,
+                        PickHit::Ground { point_in_ego } => p.ray.origin_in_ego.distance(point_in_ego),
                     });
                     let (from_m, way) = (p.ray.origin_in_ego, p.ray.direction_in_ego);
                     self.camera.zoom_point_m(from_m, way, hit_m)
@@ -362,7 +362,7 @@ impl View3d {
         ui: &Ui,
         input: &View3dInput<'_>,
         state: &UiState,
-        (hit, marks): (Option<&Hit>, &[Mark]),
+        (hit, marks): (Option<&PickHit>, &[ToolMark]),
         now_s: f64,
     ) {
         self.frames += 1;
@@ -388,7 +388,7 @@ impl View3d {
         let frame = input.scene.frame();
         self.refresh_colors(input.lidar, state.lidar.colors);
         let brushed = marks.iter().find_map(|mark| match mark {
-            Mark::Voxels(cells, color) => Some((&cells[..], *color)),
+            ToolMark::Voxels(cells, color) => Some((&cells[..], *color)),
             _ => None,
         });
         let (cells, color) = brushed.unwrap_or((&[], [0; 3]));
@@ -402,14 +402,14 @@ impl View3d {
             part.cells = &part.cells[..part.cells.len().min(MARKED)];
         }
         let ghost = marks.iter().find_map(|mark| match mark {
-            Mark::Ghost(b) => Some(*b),
+            ToolMark::Ghost(b) => Some(*b),
             _ => None,
         });
         let shown = frame.boxes.values().chain(ghost.as_ref());
         let boxes: Vec<&SceneBox> = shown.chain(finding.map_or(&[][..], |m| &m.becomes)).collect();
         let selected: Vec<BoxId> = state.chosen().into_iter().chain(ghost.map(|b| b.id)).collect();
         let hovered = match hit {
-            Some(Hit::Box { id, .. }) if state.tool == select::ID => Some(*id),
+            Some(PickHit::Box { id, .. }) if state.tool == select::ID => Some(*id),
             _ => finding.and_then(|m| m.box_id),
         };
         let Some(gpu) = &mut self.gpu else { return };
@@ -510,7 +510,7 @@ impl View3d {
     }
 }
 
-impl View for View3d {
+impl ScreenProjection for View3d {
     fn kind(&self) -> ViewKind {
         ViewKind::Space
     }
@@ -519,7 +519,7 @@ impl View for View3d {
         View3d::project(self, p_m).map(point)
     }
 
-    fn ray(&self, at: DVec2) -> Option<Ray> {
+    fn ray(&self, at: DVec2) -> Option<PickRay> {
         self.pointer(pos(at)).map(|p| p.ray)
     }
 
@@ -534,8 +534,8 @@ impl View for View3d {
 
 impl View3d {
     /// Context of the view for the tools.
-    fn seen<'a>(&'a self, input: &View3dInput<'a>) -> Seen<'a> {
-        Seen {
+    fn seen<'a>(&'a self, input: &View3dInput<'a>) -> ViewContext<'a> {
+        ViewContext {
             scene: input.scene,
             settled: input.settled,
             view: self,
@@ -561,19 +561,19 @@ fn register(gpu: &mut Gpu, samples: u32) -> egui::TextureId {
     id
 }
 
-fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
+fn readout(scene: &Scene, hit: &PickHit, ray: &PickRay) -> String {
     let p = point_of(hit, ray);
     let mut parts = vec![
         format!("{}  z {}", position_text(p.truncate()), decimal(p.z, 1)),
         tf!("{distance} m away", distance = format!("{:.1}", p.length())),
     ];
     match hit {
-        Hit::Box { id, .. } => {
+        PickHit::Box { id, .. } => {
             if let Some(b) = scene.frame().boxes.get(id) {
                 parts.push(format!("{} #{}", called(b), id.0));
             }
         }
-        Hit::Voxel(v) => {
+        PickHit::Voxel(v) => {
             parts.push(Class::from_id(v.label).map_or_else(String::new, |c| t(&c.label()).to_owned()));
             let thing = pick_things::thing_of_voxel(scene.frame(), &scene.background, v.cell);
             if let Some(thing) = thing.and_then(|id| scene.background.get(id)) {
@@ -582,10 +582,10 @@ fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
             let [x, y, z] = v.cell;
             parts.push(tf!("voxel {x}, {y}, {z}", x = x, y = y, z = z));
         }
-        Hit::Ground { .. } if scene.frame().extent().voxel_at(p).is_none() => {
+        PickHit::Ground { .. } if scene.frame().extent().voxel_at(p).is_none() => {
             parts.push(t("outside the map").into());
         }
-        Hit::Ground { .. } => {}
+        PickHit::Ground { .. } => {}
     }
     parts.join("  ·  ")
 }

@@ -111,13 +111,13 @@ pub struct Clipboard {
     /// The boxes when they were copied.
     pub boxes: Vec<SceneBox>,
     /// Voxels of those that have their own, as [`Edit::SetShape`] takes them.
-    pub shapes: Shapes,
+    pub shapes: BoxVoxels,
     /// Their motions and groups.
     pub ties: Ties,
 }
 
 /// Voxels of boxes that have their own.
-pub type Shapes = BTreeMap<BoxId, Vec<[i32; 3]>>;
+pub type BoxVoxels = BTreeMap<BoxId, Vec<[i32; 3]>>;
 
 impl Clipboard {
     /// The boxes of those names that are there.
@@ -130,7 +130,7 @@ impl Clipboard {
     }
 }
 
-pub(super) fn shapes_of(frame: &Frame, ids: &[BoxId]) -> Shapes {
+pub(super) fn shapes_of(frame: &Frame, ids: &[BoxId]) -> BoxVoxels {
     let own = ids
         .iter()
         .filter_map(|id| Some((*id, frame.own_shapes.get(id)?.cells())));
@@ -374,7 +374,7 @@ pub fn adding(b: &SceneBox) -> Edit {
 
 /// Adds boxes under names that are free, with the voxels that those of their old names have; those for which no name is left
 /// are left out.
-pub fn add(frame: &Frame, boxes: Vec<SceneBox>, shapes: &Shapes) -> Added {
+pub fn add(frame: &Frame, boxes: Vec<SceneBox>, shapes: &BoxVoxels) -> Added {
     let highest = frame.boxes.keys().next_back().map_or(0, |id| id.0);
     let above = (highest..u32::MAX).map(|id| BoxId(id + 1));
     let gaps = (1..highest).map(BoxId).filter(|id| !frame.boxes.contains_key(id));

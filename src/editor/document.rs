@@ -11,15 +11,15 @@ use scene::{Edit, EditError};
 /// There is no mutable access to the scene, on purpose.
 #[derive(Debug)]
 pub struct Document {
-    steps: Vec<Step>, // never empty; the first is the state that was opened
-    at: usize,        // step being shown
+    steps: Vec<UndoStep>, // never empty; the first is the state that was opened
+    at: usize,            // step being shown
     drag: Option<Arc<Scene>>,
     saved: SceneRev,
     limit_bytes: usize,
 }
 
 #[derive(Debug)]
-struct Step {
+struct UndoStep {
     label: Label, // of the edit that led here
     scene: Arc<Scene>,
     bytes: usize, // not shared with the step before; 0 for the first
@@ -45,7 +45,7 @@ impl Document {
     /// A document that was just opened or made: nothing to undo, nothing unsaved.
     pub fn new(scene: Scene) -> Self {
         let saved = scene.content();
-        let first = Step {
+        let first = UndoStep {
             label: "Open".into(),
             scene: Arc::new(scene),
             bytes: 0,
@@ -306,7 +306,7 @@ impl Document {
         }
         self.steps.truncate(self.at + 1);
         let bytes = scene.bytes_beside(self.settled_scene());
-        self.steps.push(Step {
+        self.steps.push(UndoStep {
             label,
             scene: Arc::new(scene),
             bytes,

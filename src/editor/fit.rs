@@ -24,9 +24,9 @@ pub fn fit(frame: &Frame, id: BoxId) -> Option<Edit> {
     if points_m.len() < FEWEST {
         return None;
     }
-    let own = Rectangle::around(&points_m, b.yaw_rad);
+    let own = FittedRectangle::around(&points_m, b.yaw_rad);
     let steps = (90.0 / STEP_DEG) as usize;
-    let turned = (0..steps).map(|k| Rectangle::around(&points_m, (k as f64 * STEP_DEG).to_radians()));
+    let turned = (0..steps).map(|k| FittedRectangle::around(&points_m, (k as f64 * STEP_DEG).to_radians()));
     let best = turned.min_by(|a, b| a.area().total_cmp(&b.area()))?;
     let found = if best.area() < SMALLER * own.area() {
         best.like(own.yaw_rad)
@@ -88,13 +88,13 @@ fn own_columns(frame: &Frame, b: &SceneBox) -> Vec<DVec2> {
 
 /// A rectangle on the ground.
 #[derive(Clone, Copy, Debug)]
-struct Rectangle {
+struct FittedRectangle {
     middle_m: DVec2,
     size_m: DVec2,
     yaw_rad: f64,
 }
 
-impl Rectangle {
+impl FittedRectangle {
     /// The smallest rectangle of a heading around voxels with these centres, with half of a voxel's edge beyond them.
     fn around(points_m: &[DVec2], yaw_rad: f64) -> Self {
         let turn = DVec2::from_angle(-yaw_rad);

@@ -8,7 +8,7 @@ use scene::{Edit, Scene, SceneRev};
 
 use crate::apply_all;
 use crate::arranged;
-use crate::checks::{self, Counts, Finding, Kind, Severity, Tally, waive};
+use crate::checks::{self, Finding, FindingKind, FindingTally, Severity, SeverityCounts, waive};
 
 /// Rounds at most; each looks again at the findings that the repairs before it left.
 const MOST_ROUNDS: usize = 8;
@@ -43,7 +43,7 @@ pub enum Stays {
 
 /// Plan of repairs for the findings of a scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct RepairPlan {
     /// The state that it was made for.
     pub of: SceneRev,
     /// Repairs that are done, in order.
@@ -51,14 +51,14 @@ pub struct Plan {
     /// Findings that have a repair and stay as they are, each with the reason.
     pub stays: Vec<(Finding, Stays)>,
     /// Open findings of the checks that need no sensor, before: all of them, whether they are listed or not.
-    pub before: Counts,
+    pub before: SeverityCounts,
     /// Counts as in `before`, after the repairs.
-    pub after: Counts,
+    pub after: SeverityCounts,
     /// True if `watch` ended the planning before everything was tried.
     pub stopped: bool,
 }
 
-impl Plan {
+impl RepairPlan {
     /// All edits, to be applied as one undo step.
     pub fn edits(&self) -> Vec<Edit> {
         self.repairs
@@ -70,7 +70,7 @@ impl Plan {
 
 /// How far a plan is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
+pub struct RepairProgress {
     /// Repairs that were decided about, in this round.
     pub decided: usize,
     /// Repairs that there are to decide about, in this round.
@@ -80,23 +80,28 @@ pub struct Progress {
 }
 
 /// Asked before each scene that is tried out, which takes as long as a check; `Break` ends the planning.
-pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+pub type Watch<'a> = dyn FnMut(RepairProgress) -> ControlFlow<()> + 'a;
 /// How edits are applied in the end, for example as corrections.
 pub type Meaning = dyn Fn(Vec<Edit>) -> Vec<Edit>;
 
 /// Plans repairs of these findings, and of the findings that they leave, in rounds. Waived findings and locked objects
 /// are not touched. The result depends on nothing but the scene, the findings and when `watch` ends it.
-pub fn plan_all(scene: &Scene, findings: &[Finding], meaning: &Meaning, watch: &mut Watch<'_>) -> Plan {
+pub fn plan_all(scene: &Scene, findings: &[Finding], meaning: &Meaning, watch: &mut Watch<'_>) -> RepairPlan {
     plan(scene, findings, MOST_ROUNDS, meaning, watch)
 }
 
 /// Like [`plan_all`], for these findings alone: findings that are left or new are not repaired.
-pub fn plan_these(scene: &Scene, findings: &[Finding], meaning: &Meaning, watch: &mut Watch<'_>) -> Plan {
+pub fn plan_these(
+    scene: &Scene,
+    findings: &[Finding],
+    meaning: &Meaning,
+    watch: &mut Watch<'_>,
+) -> RepairPlan {
     plan(scene, findings, 0, meaning, watch)
 }
 
 /// All repairs, with edits as they are and without a way to stop.
-pub fn plan_at_once(scene: &Scene, findings: &[Finding]) -> Plan {
+pub fn plan_at_once(scene: &Scene, findings: &[Finding]) -> RepairPlan {
     plan_all(
         scene,
         findings,
@@ -111,14 +116,14 @@ fn plan(
     rounds: usize,
     meaning: &Meaning,
     watch: &mut Watch<'_>,
-) -> Plan {
+) -> RepairPlan {
     let (all, tally) = checks::run_counted(scene);
     let mut planning = Planning {
         scene: scene.clone(),
         tally,
         repairs: Vec::new(),
         refused: Vec::new(),
-        progress: Progress {
+        progress: RepairProgress {
             decided: 0,
             of: 0,
             kept: 0,
@@ -146,7 +151,7 @@ fn plan(
         }
     }
     let left = left.unwrap_or(all);
-    Plan {
+    RepairPlan {
         of: scene.rev,
         stays: planning.staying(asked, &left),
         before,
@@ -157,10 +162,10 @@ fn plan(
 }
 
 /// The number of findings without a waiver, by severity.
-fn open_counts(scene: &Scene, found: &[Finding], tally: &Tally) -> Counts {
+fn open_counts(scene: &Scene, found: &[Finding], tally: &FindingTally) -> SeverityCounts {
     let waived = found.iter().filter(|f| waive::of(scene.frame(), f).is_some());
-    let (all, waived) = (tally.counts(), Counts::of(waived));
-    Counts {
+    let (all, waived) = (tally.counts(), SeverityCounts::of(waived));
+    SeverityCounts {
         errors: all.errors.saturating_sub(waived.errors),
         warnings: all.warnings.saturating_sub(waived.warnings),
         infos: all.infos.saturating_sub(waived.infos),
@@ -172,11 +177,11 @@ struct Planning<'a, 'w> {
     /// The scene with the repairs so far.
     scene: Scene,
     /// Number of findings of each kind in that scene.
-    tally: Tally,
+    tally: FindingTally,
     repairs: Vec<Repair>,
     /// Edits that were tried and are not done.
     refused: Vec<(Vec<Edit>, Stays)>,
-    progress: Progress,
+    progress: RepairProgress,
     tries: usize,
     in_vain: usize,
     stopped: bool,
@@ -256,20 +261,20 @@ impl Planning<'_, '_> {
 
     /// The scene with these repairs of one severity, and its findings; `None` unless it is better: the repaired
     /// findings are gone, and no new finding is as bad or worse.
-    fn with(&self, batch: &[Repair]) -> Option<(Scene, Tally)> {
+    fn with(&self, batch: &[Repair]) -> Option<(Scene, FindingTally)> {
         let severity = batch.first()?.finding.severity;
         let edits: Vec<Edit> = batch.iter().flat_map(|r| r.edits.iter().cloned()).collect();
         let mut scene = self.scene.clone();
         apply_all(&edits, &mut scene).ok()?;
-        let mut repaired = BTreeMap::<Kind, usize>::new();
+        let mut repaired = BTreeMap::<FindingKind, usize>::new();
         for Repair { finding, .. } in batch {
             *repaired
                 .entry((finding.severity, finding.check, finding.box_id))
                 .or_default() += 1;
         }
         let tally = checks::tally(&scene);
-        let new = |(kind, n): (Kind, usize)| kind.0 >= severity && n > self.tally.of(kind);
-        let gone = |(kind, n): (&Kind, &usize)| tally.of(*kind) + n <= self.tally.of(*kind);
+        let new = |(kind, n): (FindingKind, usize)| kind.0 >= severity && n > self.tally.of(kind);
+        let gone = |(kind, n): (&FindingKind, &usize)| tally.of(*kind) + n <= self.tally.of(*kind);
         (!tally.iter().any(new) && repaired.iter().all(gone)).then_some((scene, tally))
     }
 

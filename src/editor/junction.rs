@@ -8,12 +8,12 @@ use scene::{BevLayer, BevLayout, Extent, Polyline, PolylineKind, raster};
 const STEP_M: f64 = 0.1;
 
 /// Cells as a set that is asked often.
-pub(super) struct Area {
+pub(super) struct CellSet {
     extent: Extent,
     covered: Vec<bool>,
 }
 
-impl Area {
+impl CellSet {
     pub(super) fn new(extent: Extent, cells: &[[usize; 2]]) -> Self {
         let mut covered = vec![false; extent.columns()];
         for &[x, y] in cells {
@@ -81,7 +81,7 @@ fn steps(pair: &[DVec2]) -> usize {
 /// Takes the lines of a layer away where they pass through the cells, and the outlines of crossings most of which lies there.
 pub(super) fn cut_lines(layout: &mut BevLayout, layer: BevLayer, cells: &[[usize; 2]]) {
     if layer == BevLayer::PedCrossing {
-        return drop_outlines(layout, &Area::new(layout.extent(), cells));
+        return drop_outlines(layout, &CellSet::new(layout.extent(), cells));
     }
     let kind = match layer {
         BevLayer::RoadDivider => PolylineKind::RoadDivider,
@@ -89,7 +89,7 @@ pub(super) fn cut_lines(layout: &mut BevLayout, layer: BevLayer, cells: &[[usize
         BevLayer::StopLine => PolylineKind::StopLine,
         _ => return,
     };
-    let area = Area::new(layout.extent(), cells);
+    let area = CellSet::new(layout.extent(), cells);
     let is_cut = |l: &Polyline| l.kind == kind && area.touches(&l.points_m);
     if !layout.polylines.iter().any(is_cut) {
         return;
@@ -106,7 +106,7 @@ pub(super) fn cut_lines(layout: &mut BevLayout, layer: BevLayer, cells: &[[usize
     layout.polylines = kept.into();
 }
 
-fn drop_outlines(layout: &mut BevLayout, area: &Area) {
+fn drop_outlines(layout: &mut BevLayout, area: &CellSet) {
     let is_gone = |l: &Polyline| {
         let (mut all, mut within) = (0, 0);
         if l.kind == PolylineKind::PedCrossing {

@@ -34,13 +34,13 @@ fn rank(layout: &BevLayout, x: usize, y: usize) -> u8 {
 }
 
 /// The side of a cell at which the ground changes: its middle, the way to lower rank, both ranks.
-struct Side {
+struct KerbEdge {
     middle_m: DVec2,
     away: DVec2,
     ranks: (u8, u8),
 }
 
-fn sides(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Vec<Side> {
+fn sides(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Vec<KerbEdge> {
     let (extent, min_m) = (layout.extent(), layout.extent().min_m());
     let cell = |v: f64, axis: usize, count: usize| {
         let at = (v - min_m[axis]) / Extent::VOXEL_M;
@@ -63,7 +63,7 @@ fn sides(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Vec<Side> {
                 }
                 let (a, b) = (rank(layout, x, y), rank(layout, nx, ny));
                 if a != b {
-                    out.push(Side {
+                    out.push(KerbEdge {
                         middle_m: extent.center(x, y, 0).truncate() + step * (Extent::VOXEL_M / 2.0),
                         away: if a > b { step } else { -step },
                         ranks: (a.max(b), a.min(b)),
@@ -84,8 +84,8 @@ pub fn nearest_kerb(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Option<Kerb
     let nearest = all
         .iter()
         .min_by(|a, b| a.middle_m.distance(p_m).total_cmp(&b.middle_m.distance(p_m)))?;
-    let near = |s: &&Side| s.ranks == nearest.ranks && s.middle_m.distance(nearest.middle_m) <= FIT_M;
-    let piece: Vec<&Side> = all.iter().filter(near).collect();
+    let near = |s: &&KerbEdge| s.ranks == nearest.ranks && s.middle_m.distance(nearest.middle_m) <= FIT_M;
+    let piece: Vec<&KerbEdge> = all.iter().filter(near).collect();
     let middle = piece.iter().map(|s| s.middle_m).sum::<DVec2>() / piece.len() as f64;
     let lower = piece.iter().map(|s| s.away).sum::<DVec2>();
     // The direction in which the middles spread most.
@@ -198,10 +198,10 @@ mod tests {
 
     #[test]
     fn the_shortest_way_to_the_kerb_sets_a_wall_beside_it() {
-        use scene::background::{Line, LineKind};
+        use scene::background::{LineKind, SceneryLine};
         let layout = road(4.0, 0.0);
         let points = vec![DVec2::new(0.0, 9.0), DVec2::new(5.0, 7.0)];
-        let wall = [Form::Line(Line::typical(LineKind::Wall, points))];
+        let wall = [Form::Line(SceneryLine::typical(LineKind::Wall, points))];
         let way = way_to_kerb(&layout, &wall, DVec2::ZERO, 3.0).expect("near");
         assert!(way.x.abs() < 0.05 && (way.y + 0.85).abs() < 0.25, "{way}");
         assert_eq!(way_to_kerb(&layout, &wall, DVec2::Y * 5.0, 3.0), None);

@@ -6,7 +6,7 @@ use scene::{BevLayout, Polyline, PolylineKind};
 
 /// A point on the middle of a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LanePoint {
+pub struct CentrelinePoint {
     /// Position, ego frame, m.
     pub at_m: DVec2,
     /// Driving direction there, rad.
@@ -17,7 +17,7 @@ pub struct LanePoint {
     segment: usize,
 }
 
-impl LanePoint {
+impl CentrelinePoint {
     /// A place on a piece of a lane's middle: which line of the layout, and which of its segments.
     pub(crate) fn on(line: usize, segment: usize, at_m: DVec2, yaw_rad: f64) -> Self {
         Self {
@@ -36,7 +36,7 @@ fn centers(layout: &BevLayout) -> impl Iterator<Item = (usize, &Polyline)> {
 }
 
 /// The nearest point of any lane's middle within `reach_m`; the first in the list of those equally near.
-pub fn nearest_lane(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Option<LanePoint> {
+pub fn nearest_lane(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Option<CentrelinePoint> {
     let pieces = centers(layout).flat_map(|(line, l)| {
         let windows = l.points_m.array_windows::<2>().enumerate();
         windows.map(move |(segment, [a, b])| (line, segment, *a, *b))
@@ -49,7 +49,7 @@ pub fn nearest_lane(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Option<Lane
         }
         let t = ((p_m - a).dot(along) / length_squared).clamp(0.0, 1.0);
         let at_m = a + along * t;
-        Some(LanePoint {
+        Some(CentrelinePoint {
             at_m,
             yaw_rad: along.to_angle(),
             distance_m: p_m.distance(at_m),
@@ -63,7 +63,7 @@ pub fn nearest_lane(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Option<Lane
 
 /// The point `distance_m` further along from a lane point (backward if negative), and the direction there.
 /// At the end of a line it goes on with the one that continues it straightest, else straight ahead.
-pub fn along(layout: &BevLayout, from: &LanePoint, distance_m: f64) -> (DVec2, f64) {
+pub fn along(layout: &BevLayout, from: &CentrelinePoint, distance_m: f64) -> (DVec2, f64) {
     let backward = distance_m < 0.0;
     let mut left_m = distance_m.abs();
     let (mut line, mut at_m, mut yaw_rad) = (from.line, from.at_m, from.yaw_rad);

@@ -13,7 +13,7 @@ use scene::{
 
 use crate::checks::run_checks;
 use crate::flood::{FillBounds, flood};
-use crate::pick::{self, Hit, Ray};
+use crate::pick::{self, PickHit, PickRay};
 use crate::roads::Street;
 use crate::tools::{Hand, farthest_m};
 use crate::{Apply, Document, Edit, Shape, Stale, kerb, outline, part, voxel_ops};
@@ -102,9 +102,9 @@ fn edits_beyond_the_window_change_nothing_within_it() {
     assert_eq!(before.painted, after.painted);
     assert_eq!(before.layout, after.layout);
     // It is seen from above.
-    let down = |x: f64, y: f64| Ray::new(DVec3::new(x, y, 50.0), -DVec3::Z).expect("a ray");
+    let down = |x: f64, y: f64| PickRay::new(DVec3::new(x, y, 50.0), -DVec3::Z).expect("a ray");
     let hit = pick::pick(&frame, &down(100.0, 1.0));
-    assert!(matches!(hit, Some(Hit::Box { id: BoxId(7), .. })), "{hit:?}");
+    assert!(matches!(hit, Some(PickHit::Box { id: BoxId(7), .. })), "{hit:?}");
     let hit = pick::ray_voxels(&down(110.0, 60.0), &frame.occupancy, |_, _| true).expect("painted");
     assert_eq!(hit.cell, [x, y, 11]);
     assert_eq!(hit.neighbour(extent), Some([x, y, 12]));
@@ -308,10 +308,13 @@ fn tools_reach_the_whole_map() {
     assert_eq!(part::changed_by_class(&before, after), [(Class::Vegetation, 3)]);
     let mut columns = vec![false; extent.columns()];
     columns[extent.index(x, y)] = true;
-    assert_eq!(part::Part::Columns(columns).taken(&before, after), *after);
+    assert_eq!(part::AcceptedPart::Columns(columns).taken(&before, after), *after);
     let other = VoxelGrid::new();
     assert_eq!(part::changed_by_class(&before, &other), []);
-    assert_eq!(part::Part::Class(Class::Terrain).taken(&before, &other), before);
+    assert_eq!(
+        part::AcceptedPart::Class(Class::Terrain).taken(&before, &other),
+        before
+    );
     // Things stand where they stand, wherever the vehicle is.
     scene.change_canvas(|f| f.world_from_ego = Pose::planar(7.0, 3.0, 0.0));
     let house = Building::rectangle(far, DVec2::new(4.0, 3.0), DVec2::X, 3.0);

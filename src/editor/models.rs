@@ -18,7 +18,7 @@ const AHEAD_M: f64 = 8.0;
 const EGO_M: [f64; 2] = [5.0, 2.2];
 
 /// A model on its way into a scene.
-pub struct Placed {
+pub struct ModelPlacement {
     /// Edits that put it there.
     pub edits: Vec<Edit>,
     /// The number of its box.
@@ -34,7 +34,12 @@ pub fn ahead_m(scene: &Scene, model: &Model) -> DVec2 {
 
 /// Puts a model where nothing stands, as near to `at_m` (world frame, m) as can be. Without a heading it stands as the lane
 /// there, on its middle, or with heading 0 beside lanes. Errors in one line if no number is left for a box, or no place.
-pub fn place(scene: &Scene, model: &Model, at_m: DVec2, yaw_deg: Option<f64>) -> Result<Placed, String> {
+pub fn place(
+    scene: &Scene,
+    model: &Model,
+    at_m: DVec2,
+    yaw_deg: Option<f64>,
+) -> Result<ModelPlacement, String> {
     let frame = scene.frame();
     let id = frame.next_box_id();
     if frame.is_taken(id) {
@@ -51,7 +56,7 @@ pub fn place(scene: &Scene, model: &Model, at_m: DVec2, yaw_deg: Option<f64>) ->
         .map(stand)
         .find(|(at_m, yaw_deg)| is_free(frame, model, *at_m, *yaw_deg))
         .ok_or("no free place is near")?;
-    Ok(Placed {
+    Ok(ModelPlacement {
         edits: model.placed(scene, id, at_m, yaw_deg),
         id,
     })

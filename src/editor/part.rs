@@ -4,14 +4,14 @@ use scene::{Class, Extent, VoxelGrid};
 
 /// Part of a result that is accepted.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Part {
+pub enum AcceptedPart {
     /// Every voxel of these columns, `[x][y]` of the map.
     Columns(Vec<bool>),
     /// Voxels that were or become of this class.
     Class(Class),
 }
 
-impl Part {
+impl AcceptedPart {
     /// `before`, with this part of `after`; `before` alone if the two are of different maps.
     pub fn taken(&self, before: &VoxelGrid, after: &VoxelGrid) -> VoxelGrid {
         let extent = before.extent();
@@ -53,12 +53,12 @@ pub fn changed_by_class(before: &VoxelGrid, after: &VoxelGrid) -> Vec<(Class, us
     found
 }
 
-type Column = [u8; Extent::NZ];
+type VoxelColumn = [u8; Extent::NZ];
 
 fn each_different(
     before: &VoxelGrid,
     after: &VoxelGrid,
-    mut visit: impl FnMut(usize, usize, &Column, &Column),
+    mut visit: impl FnMut(usize, usize, &VoxelColumn, &VoxelColumn),
 ) {
     if before.extent() != after.extent() {
         return;
@@ -95,15 +95,15 @@ mod tests {
             [(Class::Manmade, 2), (Class::Car, 1)]
         );
         // What goes and what comes of a class.
-        let manmade = Part::Class(Class::Manmade).taken(&before, &after);
+        let manmade = AcceptedPart::Class(Class::Manmade).taken(&before, &after);
         assert_eq!(manmade, grid(&[([1, 1, 3], Class::Manmade)]));
-        let cars = Part::Class(Class::Car).taken(&before, &after);
+        let cars = AcceptedPart::Class(Class::Car).taken(&before, &after);
         assert_eq!(before.count_different(&cars), 1);
         let mut columns = vec![false; Extent::WINDOW.columns()];
         columns[Extent::WINDOW.index(5, 5)] = true;
-        let place = Part::Columns(columns).taken(&before, &after);
+        let place = AcceptedPart::Columns(columns).taken(&before, &after);
         assert_eq!(place, grid(&[([1, 1, 3], Class::Vegetation)]));
         // Columns that nobody named are not taken.
-        assert_eq!(Part::Columns(Vec::new()).taken(&before, &after), before);
+        assert_eq!(AcceptedPart::Columns(Vec::new()).taken(&before, &after), before);
     }
 }

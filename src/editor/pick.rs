@@ -6,18 +6,18 @@ use scene::{BoxId, Class, Extent, Frame, SceneBox, VoxelGrid};
 
 /// A half line in the ego frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
+pub struct PickRay {
     /// Start of the ray, m.
     pub origin_in_ego: DVec3,
     /// Direction of the ray, unit length.
     pub direction_in_ego: DVec3,
 }
 
-impl Ray {
+impl PickRay {
     /// From a point and a direction of any length; `None` for numbers that are not finite or no direction.
-    pub fn new(origin_in_ego: DVec3, direction_in_ego: DVec3) -> Option<Ray> {
+    pub fn new(origin_in_ego: DVec3, direction_in_ego: DVec3) -> Option<PickRay> {
         let direction_in_ego = direction_in_ego.try_normalize()?;
-        origin_in_ego.is_finite().then_some(Ray {
+        origin_in_ego.is_finite().then_some(PickRay {
             origin_in_ego,
             direction_in_ego,
         })
@@ -51,7 +51,7 @@ pub fn slab(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3) -> Option<(
 }
 
 /// Distance in m at which the ray enters a box; 0 from inside.
-pub fn ray_box(ray: &Ray, b: &SceneBox) -> Option<f64> {
+pub fn ray_box(ray: &PickRay, b: &SceneBox) -> Option<f64> {
     let heading = b.heading();
     let d = ray.direction_in_ego;
     let local = DVec3::new(
@@ -97,7 +97,11 @@ impl VoxelHit {
 /// The first voxel along the ray for which `solid(cell, label)` holds; free voxels are never asked.
 /// Amanatides and Woo 1987, with crossings computed from the origin each time, so that nothing
 /// accumulates, and at most one step per plane of the grid.
-pub fn ray_voxels(ray: &Ray, grid: &VoxelGrid, solid: impl Fn([usize; 3], u8) -> bool) -> Option<VoxelHit> {
+pub fn ray_voxels(
+    ray: &PickRay,
+    grid: &VoxelGrid,
+    solid: impl Fn([usize; 3], u8) -> bool,
+) -> Option<VoxelHit> {
     let extent = grid.extent();
     let n = extent.shape().map(|n| n as i64);
     let origin = extent.to_voxel_units(ray.origin_in_ego);
@@ -164,7 +168,7 @@ pub fn ray_voxels(ray: &Ray, grid: &VoxelGrid, solid: impl Fn([usize; 3], u8) ->
 }
 
 /// The point where the ray meets the level plane at height `z_m`, if it does in front of its origin.
-pub fn ray_ground(ray: &Ray, z_m: f64) -> Option<DVec3> {
+pub fn ray_ground(ray: &PickRay, z_m: f64) -> Option<DVec3> {
     let (o, d) = (ray.origin_in_ego, ray.direction_in_ego);
     if d.z == 0.0 {
         return None;
@@ -179,7 +183,7 @@ pub fn ray_ground(ray: &Ray, z_m: f64) -> Option<DVec3> {
 
 /// The nearest thing under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Hit {
+pub enum PickHit {
     /// A box, or a voxel that shows it.
     Box {
         /// Its name.
@@ -198,7 +202,7 @@ pub enum Hit {
 
 /// The nearest box or voxel, else the ground. Voxels count for the box they show, because they
 /// surround it.
-pub fn pick(frame: &Frame, ray: &Ray) -> Option<Hit> {
+pub fn pick(frame: &Frame, ray: &PickRay) -> Option<PickHit> {
     let boxes = frame
         .boxes
         .values()
@@ -207,16 +211,16 @@ pub fn pick(frame: &Frame, ray: &Ray) -> Option<Hit> {
     let voxel = ray_voxels(ray, &frame.occupancy, |_, _| true);
     match (nearest, voxel) {
         (Some((distance_m, id)), v) if v.is_none_or(|v| distance_m <= v.distance_m) => {
-            Some(Hit::Box { id, distance_m })
+            Some(PickHit::Box { id, distance_m })
         }
         (_, Some(v)) => Some(match box_of_voxel(frame, v.cell) {
-            Some(id) => Hit::Box {
+            Some(id) => PickHit::Box {
                 id,
                 distance_m: v.distance_m,
             },
-            None => Hit::Voxel(v),
+            None => PickHit::Voxel(v),
         }),
-        _ => ray_ground(ray, 0.0).map(|point_in_ego| Hit::Ground { point_in_ego }),
+        _ => ray_ground(ray, 0.0).map(|point_in_ego| PickHit::Ground { point_in_ego }),
     }
 }
 

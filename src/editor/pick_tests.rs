@@ -7,8 +7,8 @@ use proptest::prelude::*;
 use super::*;
 use scene::BevLayout;
 
-fn ray(o: [f64; 3], d: [f64; 3]) -> Ray {
-    Ray::new(o.into(), d.into()).expect("a direction")
+fn ray(o: [f64; 3], d: [f64; 3]) -> PickRay {
+    PickRay::new(o.into(), d.into()).expect("a direction")
 }
 
 fn some_box(id: u32, center: [f64; 3], size: [f64; 3], yaw_rad: f64) -> SceneBox {
@@ -114,7 +114,7 @@ proptest! {
         if jitter {
             direction += DVec3::new(0.0123, -0.0456, 0.00789);
         }
-        let r = Ray::new(Extent::WINDOW.from_voxel_units(half), direction).expect("finite");
+        let r = PickRay::new(Extent::WINDOW.from_voxel_units(half), direction).expect("finite");
         let got = ray_voxels(&r, &grid, |_, _| true);
         let hits = |shrink: f64| {
             let origin = Extent::WINDOW.to_voxel_units(r.origin_in_ego);
@@ -152,7 +152,7 @@ fn row_45_far_and_degenerate_rays_end() {
     grid.set(199, 199, 15, 15);
     let corner = Extent::WINDOW.center(199, 199, 15);
     let direction = DVec3::new(-1.0, -2.0, -0.1);
-    let far = Ray::new(corner - direction.normalize() * 1e6, direction).expect("finite");
+    let far = PickRay::new(corner - direction.normalize() * 1e6, direction).expect("finite");
     let hit = ray_voxels(&far, &grid, |_, _| true).expect("aimed at its centre");
     assert_eq!(hit.cell, [199, 199, 15]);
     assert!((hit.distance_m - 1e6).abs() < 1.0);
@@ -164,10 +164,10 @@ fn row_45_far_and_degenerate_rays_end() {
     );
     assert_eq!(ray_voxels(&diagonal, &grid, |_, label| label != 15), None);
     for bad in [f64::NAN, f64::INFINITY] {
-        assert_eq!(Ray::new(DVec3::new(bad, 0.0, 0.0), DVec3::X), None);
-        assert_eq!(Ray::new(DVec3::ZERO, DVec3::new(bad, 0.0, 0.0)), None);
+        assert_eq!(PickRay::new(DVec3::new(bad, 0.0, 0.0), DVec3::X), None);
+        assert_eq!(PickRay::new(DVec3::ZERO, DVec3::new(bad, 0.0, 0.0)), None);
     }
-    assert_eq!(Ray::new(DVec3::ZERO, DVec3::ZERO), None);
+    assert_eq!(PickRay::new(DVec3::ZERO, DVec3::ZERO), None);
 }
 
 #[test]
@@ -200,8 +200,8 @@ fn pick_prefers_what_is_in_front_and_gives_voxels_to_their_box() {
         .expect("inside");
     grid.set(wx, wy, wz, Class::Manmade.id());
     let f = frame(&[car], grid);
-    let id_of = |hit: Option<Hit>| match hit {
-        Some(Hit::Box { id, .. }) => Some(id),
+    let id_of = |hit: Option<PickHit>| match hit {
+        Some(PickHit::Box { id, .. }) => Some(id),
         _ => None,
     };
     assert_eq!(
@@ -215,7 +215,7 @@ fn pick_prefers_what_is_in_front_and_gives_voxels_to_their_box() {
     );
     let wall = pick(&f, &ray([0.0, -2.1, 1.1], [1.0, 0.0, 0.0]));
     match wall {
-        Some(Hit::Voxel(v)) => {
+        Some(PickHit::Voxel(v)) => {
             assert_eq!((v.cell, v.normal), ([wx, wy, wz], [-1, 0, 0]));
             assert_eq!(v.neighbour(Extent::WINDOW), Some([wx - 1, wy, wz]));
         }
@@ -224,7 +224,7 @@ fn pick_prefers_what_is_in_front_and_gives_voxels_to_their_box() {
     let ground = pick(&f, &ray([0.0, 20.0, 10.0], [0.0, 0.0, -1.0]));
     assert_eq!(
         ground,
-        Some(Hit::Ground {
+        Some(PickHit::Ground {
             point_in_ego: DVec3::new(0.0, 20.0, 0.0)
         })
     );

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use scene::background::{Building, Line, LineKind, Post, PostKind, Tree, TreeKind};
+use scene::background::{Building, LineKind, Post, PostKind, SceneryLine, Tree, TreeKind};
 use scene::{BevLayout, Extent, VoxelGrid};
 
 fn v(x: f64, y: f64) -> DVec2 {
@@ -24,7 +24,7 @@ fn background() -> (Background, [ThingId; 4]) {
         crown_radius_m: 2.0,
         kind: TreeKind::Broadleaf,
     }));
-    let hedge = all.add(Form::Line(Line::typical(
+    let hedge = all.add(Form::Line(SceneryLine::typical(
         LineKind::Hedge,
         vec![v(0.0, 5.0), v(10.0, 5.0)],
     )));

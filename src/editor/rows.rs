@@ -27,7 +27,7 @@ pub enum RowAlong {
 
 /// A row of copies, or several beside each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct CopyRows {
     /// Copies of each box in the first row, the original not counted.
     pub copies: usize,
     /// From one to the next, centre to centre, m; negative goes backward.
@@ -40,7 +40,7 @@ pub struct Row {
     pub apart_m: f64,
 }
 
-impl Default for Row {
+impl Default for CopyRows {
     fn default() -> Self {
         Self {
             copies: 4,
@@ -52,7 +52,7 @@ impl Default for Row {
     }
 }
 
-impl Row {
+impl CopyRows {
     /// Copies of each box or thing that are asked for, before those beside the map are left out.
     pub fn asked(&self) -> usize {
         self.places().count()
@@ -75,15 +75,15 @@ impl Row {
 
 /// Rows of copies of each box; at most [`MAX_COPIES`] each. A copy along a lane keeps its distance to the
 /// lane's middle and turns with it.
-pub fn row(frame: &Frame, ids: &[BoxId], row: &Row) -> Added {
+pub fn row(frame: &Frame, ids: &[BoxId], row: &CopyRows) -> Added {
     add(frame, row_boxes(frame, ids, row), &shapes_of(frame, ids))
 }
 
 /// The copies of boxes, not yet named; those beside the map are left out.
-pub fn row_boxes(frame: &Frame, ids: &[BoxId], row: &Row) -> Vec<SceneBox> {
+pub fn row_boxes(frame: &Frame, ids: &[BoxId], row: &CopyRows) -> Vec<SceneBox> {
     let mut copies = Vec::new();
     for b in boxes_of(frame, ids) {
-        let way = Way::of(frame, row, b.center_m.truncate(), b.yaw_rad, LANE_REACH_M);
+        let way = RowPath::of(frame, row, b.center_m.truncate(), b.yaw_rad, LANE_REACH_M);
         copies.extend(row.places().map(|by_m| {
             let (at_m, turn_rad) = way.to(frame, b.center_m.truncate(), by_m);
             SceneBox {
@@ -99,13 +99,13 @@ pub fn row_boxes(frame: &Frame, ids: &[BoxId], row: &Row) -> Vec<SceneBox> {
 }
 
 /// The copies of things (world frame); those whose middle is beside the map are left out.
-pub fn row_forms(scene: &Scene, forms: &[&Form], row: &Row) -> Vec<Form> {
+pub fn row_forms(scene: &Scene, forms: &[&Form], row: &CopyRows) -> Vec<Form> {
     let frame = scene.frame();
     let world_from_ego = frame.world_from_ego;
     let mut copies = Vec::new();
     for form in forms.iter().map(|f| f.in_frame(&world_from_ego.inverse())) {
         let middle_m = form.middle_m();
-        let way = Way::of(frame, row, middle_m, 0.0, BESIDE_REACH_M);
+        let way = RowPath::of(frame, row, middle_m, 0.0, BESIDE_REACH_M);
         for by_m in row.places() {
             let (at_m, turn_rad) = way.to(frame, middle_m, by_m);
             let turn = DVec2::from_angle(turn_rad);
@@ -124,15 +124,15 @@ fn on_map(frame: &Frame, p_m: DVec2) -> bool {
 }
 
 /// The way that a row runs, from one box or thing on.
-enum Way {
+enum RowPath {
     /// Straight, in this direction.
     Straight(DVec2),
     /// Along a lane, from this point.
-    Lane(super::lanes::LanePoint),
+    Lane(super::lanes::CentrelinePoint),
 }
 
-impl Way {
-    fn of(frame: &Frame, row: &Row, at_m: DVec2, yaw_rad: f64, reach_m: f64) -> Self {
+impl RowPath {
+    fn of(frame: &Frame, row: &CopyRows, at_m: DVec2, yaw_rad: f64, reach_m: f64) -> Self {
         let heading = DVec2::from_angle(yaw_rad);
         let lane = || nearest_lane(&frame.layout, at_m, reach_m);
         match row.along {

@@ -15,11 +15,11 @@ fn rows_run_along_headings_and_lanes() {
         let row = super::row(
             &frame,
             &[BoxId(1)],
-            &Row {
+            &CopyRows {
                 copies: 3,
                 spacing_m: 6.0,
                 along,
-                ..Row::default()
+                ..CopyRows::default()
             },
         );
         let now = after(&frame, &row.edits);
@@ -37,14 +37,14 @@ fn rows_run_along_headings_and_lanes() {
     );
     assert!((bent.yaw_rad - FRAC_PI_2).abs() < 1e-9);
     assert!(bent.velocity_mps.distance(DVec2::new(-1.0, 5.0)) < 1e-9);
-    let many = Row {
+    let many = CopyRows {
         copies: usize::MAX,
         spacing_m: 1e300,
         along: RowAlong::Lane,
-        ..Row::default()
+        ..CopyRows::default()
     };
     assert!(super::row(&frame, &[BoxId(1)], &many).edits.is_empty());
-    let nan = Row {
+    let nan = CopyRows {
         spacing_m: f64::NAN,
         ..many
     };
@@ -54,7 +54,7 @@ fn rows_run_along_headings_and_lanes() {
 #[test]
 fn rows_beside_each_other_make_a_grid() {
     let frame = frame(&[car(1, -4.0, -8.0, FRAC_PI_2)]);
-    let grid = Row {
+    let grid = CopyRows {
         copies: 2,
         spacing_m: 6.0,
         rows: 3,
@@ -75,7 +75,7 @@ fn rows_beside_each_other_make_a_grid() {
     wanted.sort_by(|a, b| a.partial_cmp(b).expect("finite"));
     assert_eq!(found, wanted);
     assert_eq!(grid.asked(), 8);
-    let huge = Row {
+    let huge = CopyRows {
         copies: usize::MAX,
         rows: usize::MAX,
         ..grid
@@ -92,11 +92,11 @@ fn trees_stand_along_a_lane() {
         crown_radius_m: 2.0,
         kind: TreeKind::default(),
     });
-    let row = Row {
+    let row = CopyRows {
         copies: 3,
         spacing_m: 6.0,
         along: RowAlong::Lane,
-        ..Row::default()
+        ..CopyRows::default()
     };
     let copies = row_forms(&scene, &[&tree], &row);
     let at: Vec<DVec2> = copies.iter().map(Form::middle_m).collect();

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::immediate::refill_ground;
-use scene::background::{Columns, in_extent};
+use scene::background::{ColumnLabels, in_extent};
 use scene::draft::ground_bin;
 use scene::grid::NOT_PAINTED;
 use scene::raster::polygon_cells;
@@ -148,12 +148,12 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
             ..
         } = frame;
         let guessed = inferred.background;
-        let change = Change::on(layout, &gone, &come, &near);
+        let change = SceneryChange::on(layout, &gone, &come, &near);
         change.redraw(occupancy, layout, painted, guessed);
         let source = Arc::make_mut(source);
         // The places of things' voxels depend on the ground alone.
-        let other =
-            (source.layout.relief != layout.relief).then(|| Change::on(&source.layout, &gone, &come, &near));
+        let other = (source.layout.relief != layout.relief)
+            .then(|| SceneryChange::on(&source.layout, &gone, &come, &near));
         let change = other.as_ref().unwrap_or(&change);
         change.redraw(&mut source.occupancy, &source.layout, painted, guessed);
     });
@@ -245,19 +245,19 @@ fn only_in(a: &Background, b: &Background) -> Vec<Thing> {
 }
 
 /// Things with their voxels.
-type Drawn<'a> = Vec<(&'a Thing, Columns)>;
+type ThingVoxels<'a> = Vec<(&'a Thing, ColumnLabels)>;
 
 /// Change of the background, as the things whose voxels go, come or stay.
-struct Change<'a> {
+struct SceneryChange<'a> {
     /// Things whose voxels are taken away.
-    gone: Drawn<'a>,
+    gone: ThingVoxels<'a>,
     /// Things whose voxels are added.
-    come: Drawn<'a>,
+    come: ThingVoxels<'a>,
     /// Things that stay, near to those that go.
-    kept: Drawn<'a>,
+    kept: ThingVoxels<'a>,
 }
 
-impl<'a> Change<'a> {
+impl<'a> SceneryChange<'a> {
     fn on(layout: &BevLayout, gone: &'a [Thing], come: &'a [Thing], kept: &'a [Thing]) -> Self {
         let drawn = |things: &'a [Thing]| things.iter().map(|t| (t, t.columns(layout))).collect();
         Self {
@@ -271,7 +271,7 @@ impl<'a> Change<'a> {
     /// voxels that were cleared; with `guessed` (things inferred from voxels) only those that were of their own class:
     /// more of them was never seen there.
     fn redraw(&self, grid: &mut VoxelGrid, layout: &BevLayout, painted: &VoxelPaint, guessed: bool) {
-        let mut cleared = Columns::new();
+        let mut cleared = ColumnLabels::new();
         for (thing, own) in &self.gone {
             clear(grid, painted, (thing, own), layout, &mut cleared);
         }
@@ -300,9 +300,9 @@ fn near(a: &Thing, b: &Thing) -> bool {
 fn clear(
     grid: &mut VoxelGrid,
     painted: &VoxelPaint,
-    (thing, own): (&Thing, &Columns),
+    (thing, own): (&Thing, &ColumnLabels),
     layout: &BevLayout,
-    cleared: &mut Columns,
+    cleared: &mut ColumnLabels,
 ) {
     let extent = layout.extent();
     let mut around = with_margin(extent, own);
@@ -344,7 +344,7 @@ fn clear(
     }
 }
 
-fn with_margin(extent: Extent, own: &Columns) -> BTreeSet<[usize; 2]> {
+fn with_margin(extent: Extent, own: &ColumnLabels) -> BTreeSet<[usize; 2]> {
     let around = |[x, y]: [usize; 2]| {
         let ys = y.saturating_sub(MARGIN)..=(y + MARGIN).min(extent.ny() - 1);
         let xs = x.saturating_sub(MARGIN)..=(x + MARGIN).min(extent.nx() - 1);
@@ -370,7 +370,12 @@ fn grown_over(extent: Extent, thing: &Thing) -> Vec<[usize; 2]> {
     out
 }
 
-fn stamp(grid: &mut VoxelGrid, painted: &VoxelPaint, own: &Columns, wanted: impl Fn([usize; 3]) -> bool) {
+fn stamp(
+    grid: &mut VoxelGrid,
+    painted: &VoxelPaint,
+    own: &ColumnLabels,
+    wanted: impl Fn([usize; 3]) -> bool,
+) {
     for (&[x, y], voxels) in own {
         let locked = *painted.column(x, y);
         let mut column = *grid.column(x, y);

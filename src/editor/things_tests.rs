@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::*;
 use crate::Document;
-use scene::background::{Building, Facade, Line, LineKind, Roof, Tree, TreeKind};
+use scene::background::{Building, Facade, LineKind, Roof, SceneryLine, Tree, TreeKind};
 use scene::{BoxId, Relief, SceneBox, SensorRig};
 
 fn building(height_m: f64) -> Form {
@@ -107,7 +107,7 @@ fn edits_of_things_are_local_and_undoable() {
         let trees_only = columns_changed(&empty, &cut);
         assert!(trees_only.iter().all(|p| p.x > 8.0 && p.y > 8.0));
 
-        let hedge = Line::typical(
+        let hedge = SceneryLine::typical(
             LineKind::Hedge,
             vec![DVec2::new(-10.0, 6.0), DVec2::new(6.0, 6.0)],
         );
@@ -206,7 +206,7 @@ fn painted_voxels_and_cars_are_left_alone() {
     )
     .expect("inside");
     let cars = doc.scene().frame().occupancy.class_counts()[Class::Car as usize];
-    let over = Line::typical(LineKind::Wall, vec![DVec2::new(5.0, 0.0), DVec2::new(0.2, 12.2)]);
+    let over = SceneryLine::typical(LineKind::Wall, vec![DVec2::new(5.0, 0.0), DVec2::new(0.2, 12.2)]);
     doc.apply(
         "Wall",
         &Edit::AddThings {

@@ -10,13 +10,13 @@ use scene::{Class, Extent, Frame, VoxelGrid};
 use super::Edit;
 
 /// Index of a voxel `[x, y, z]`.
-pub type Cell = [usize; 3];
+pub type VoxelIndex = [usize; 3];
 
-fn holds(extent: Extent, [x, y, z]: Cell) -> bool {
+fn holds(extent: Extent, [x, y, z]: VoxelIndex) -> bool {
     extent.holds(x, y) && z < Extent::NZ
 }
 
-fn cell_at(extent: Extent, p: IVec3) -> Option<Cell> {
+fn cell_at(extent: Extent, p: IVec3) -> Option<VoxelIndex> {
     let cell = p.to_array().map(usize::try_from);
     match cell {
         [Ok(x), Ok(y), Ok(z)] => Some([x, y, z]).filter(|c| holds(extent, *c)),
@@ -24,12 +24,12 @@ fn cell_at(extent: Extent, p: IVec3) -> Option<Cell> {
     }
 }
 
-fn ivec(c: Cell) -> IVec3 {
+fn ivec(c: VoxelIndex) -> IVec3 {
     IVec3::from_array(c.map(|v| v as i32))
 }
 
 /// Every voxel between two corners, both included; corners outside are moved to the rim.
-pub fn between(extent: Extent, a: Cell, b: Cell) -> Vec<Cell> {
+pub fn between(extent: Extent, a: VoxelIndex, b: VoxelIndex) -> Vec<VoxelIndex> {
     let size = extent.shape();
     let low = [0, 1, 2].map(|i| a[i].min(b[i]).min(size[i] - 1));
     let high = [0, 1, 2].map(|i| a[i].max(b[i]).min(size[i] - 1));
@@ -44,7 +44,7 @@ pub fn between(extent: Extent, a: Cell, b: Cell) -> Vec<Cell> {
 
 /// The voxels from one to another along a straight line, each `size` wide, connected by faces, edges or
 /// corners; as many steps as the longest side.
-pub fn line(extent: Extent, a: Cell, b: Cell, size: usize) -> Vec<Cell> {
+pub fn line(extent: Extent, a: VoxelIndex, b: VoxelIndex, size: usize) -> Vec<VoxelIndex> {
     let (a, b) = (ivec(a).as_dvec3(), ivec(b).as_dvec3());
     let steps = (b - a).abs().max_element().min(1e4);
     let size = size.clamp(1, Extent::NZ) as i32;
@@ -64,14 +64,14 @@ pub fn line(extent: Extent, a: Cell, b: Cell, size: usize) -> Vec<Cell> {
     tidy(cells)
 }
 
-fn tidy(mut cells: Vec<Cell>) -> Vec<Cell> {
+fn tidy(mut cells: Vec<VoxelIndex>) -> Vec<VoxelIndex> {
     cells.sort_unstable();
     cells.dedup();
     cells
 }
 
 /// Voxels of one class that connect to `start` by faces; empty for a free one or one outside the grid.
-pub fn connected(grid: &VoxelGrid, start: Cell) -> Vec<Cell> {
+pub fn connected(grid: &VoxelGrid, start: VoxelIndex) -> Vec<VoxelIndex> {
     let extent = grid.extent();
     if !holds(extent, start) {
         return Vec::new();
@@ -126,7 +126,7 @@ fn runs(touched: u16, within: u16) -> u16 {
 
 /// The face that a voxel is part of: voxels of its class in one plane, connected by sides, each with nothing
 /// in front of it. `normal` is the outward direction, one entry of +1 or -1. Empty if the voxel shows no face.
-pub fn face(grid: &VoxelGrid, start: Cell, normal: [i32; 3]) -> Vec<Cell> {
+pub fn face(grid: &VoxelGrid, start: VoxelIndex, normal: [i32; 3]) -> Vec<VoxelIndex> {
     let normal = IVec3::from_array(normal);
     let Some(axis) = (0..3).find(|a| normal[*a].abs() == 1 && normal.abs().element_sum() == 1) else {
         return Vec::new();
@@ -135,10 +135,10 @@ pub fn face(grid: &VoxelGrid, start: Cell, normal: [i32; 3]) -> Vec<Cell> {
     if !holds(extent, start) {
         return Vec::new();
     }
-    let get = |c: Cell| grid.get(c[0], c[1], c[2]);
+    let get = |c: VoxelIndex| grid.get(c[0], c[1], c[2]);
     let class = get(start);
     // The rim of the grid is open too: the face shows there.
-    let shows = |c: Cell| {
+    let shows = |c: VoxelIndex| {
         get(c) == class && cell_at(extent, ivec(c) + normal).is_none_or(|front| get(front) == Class::FREE)
     };
     if class == Class::FREE || !shows(start) {
@@ -169,7 +169,7 @@ pub fn face(grid: &VoxelGrid, start: Cell, normal: [i32; 3]) -> Vec<Cell> {
 
 /// The voxels that change when a face is pulled out by `layers`: the free voxels in front of it, which are filled (a
 /// column ends at the first that is not free), or, for negative layers, the voxels that are taken away.
-pub fn extrude(grid: &VoxelGrid, face: &[Cell], normal: [i32; 3], layers: i32) -> Vec<Cell> {
+pub fn extrude(grid: &VoxelGrid, face: &[VoxelIndex], normal: [i32; 3], layers: i32) -> Vec<VoxelIndex> {
     let normal = IVec3::from_array(normal);
     let extent = grid.extent();
     let limit = extent.nx().max(extent.ny()) as i32;
@@ -188,10 +188,10 @@ pub fn extrude(grid: &VoxelGrid, face: &[Cell], normal: [i32; 3], layers: i32) -
 }
 
 /// The voxels and their mirror images about the ego x axis, as far as the map has them.
-pub fn mirrored(extent: Extent, cells: &[Cell]) -> Vec<Cell> {
+pub fn mirrored(extent: Extent, cells: &[VoxelIndex]) -> Vec<VoxelIndex> {
     // Columns count from the lower corner, which lies to the right of the axis or to the left.
     let sum = -1 - 2 * i64::from(extent.from()[1]);
-    let image = |[x, y, z]: &Cell| {
+    let image = |[x, y, z]: &VoxelIndex| {
         let y = usize::try_from(sum - *y as i64).ok()?;
         (y < extent.ny()).then_some([*x, y, *z])
     };
@@ -205,22 +205,23 @@ pub fn mirrored(extent: Extent, cells: &[Cell]) -> Vec<Cell> {
 }
 
 /// Only the free voxels, or only those that are not; those outside the grid go.
-pub fn only(grid: &VoxelGrid, cells: Vec<Cell>, free: bool) -> Vec<Cell> {
+pub fn only(grid: &VoxelGrid, cells: Vec<VoxelIndex>, free: bool) -> Vec<VoxelIndex> {
     let extent = grid.extent();
-    let fits = |c: &Cell| holds(extent, *c) && (grid.get(c[0], c[1], c[2]) == Class::FREE) == free;
+    let fits = |c: &VoxelIndex| holds(extent, *c) && (grid.get(c[0], c[1], c[2]) == Class::FREE) == free;
     cells.into_iter().filter(fits).collect()
 }
 
 /// Edits that lock voxels as they are: each is painted in the class that it has.
-pub fn lock(frame: &Frame, cells: &[Cell]) -> Vec<Edit> {
-    let mut by_class: BTreeMap<u8, Vec<Cell>> = BTreeMap::new();
+pub fn lock(frame: &Frame, cells: &[VoxelIndex]) -> Vec<Edit> {
+    let mut by_class: BTreeMap<u8, Vec<VoxelIndex>> = BTreeMap::new();
     let extent = frame.occupancy.extent();
     for &[x, y, z] in cells.iter().filter(|c| holds(extent, **c)) {
         let class = frame.occupancy.get(x, y, z);
         by_class.entry(class).or_default().push([x, y, z]);
     }
-    let edit =
-        |(id, cells): (u8, Vec<Cell>)| Class::from_id(id).map(|class| Edit::PaintVoxels { cells, class });
+    let edit = |(id, cells): (u8, Vec<VoxelIndex>)| {
+        Class::from_id(id).map(|class| Edit::PaintVoxels { cells, class })
+    };
     by_class.into_iter().filter_map(edit).collect()
 }
 

@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::target::Target;
+use super::target::WriteTarget;
 
 pub use super::target::stdout_holds_a_file;
 
@@ -14,10 +14,10 @@ pub use super::target::stdout_holds_a_file;
 /// and similar paths are written to directly; opening a pipe waits for its reader. Errors for folders, disks and
 /// sockets.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    match Target::of(path)? {
-        Target::File(file) => replace(&file, bytes),
-        Target::Stream(path) => Target::stream(None, &path, bytes),
-        Target::Open(number, path) => Target::stream(Some(number), &path, bytes),
+    match WriteTarget::of(path)? {
+        WriteTarget::File(file) => replace(&file, bytes),
+        WriteTarget::Stream(path) => WriteTarget::stream(None, &path, bytes),
+        WriteTarget::Open(number, path) => WriteTarget::stream(Some(number), &path, bytes),
     }
 }
 

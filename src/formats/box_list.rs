@@ -28,13 +28,13 @@ struct List {
     scene: String,
     time_s: f64,
     frame: String,
-    boxes: Vec<Entry>,
+    boxes: Vec<BoxRecord>,
     #[serde(default, skip_serializing_if = "Value::is_null")]
     recipe: Value,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Entry {
+struct BoxRecord {
     id: BoxId,
     class: Class,
     class_id: u8,
@@ -52,14 +52,14 @@ struct Entry {
 }
 
 /// How often sensors saw each box; a box that is missing counts as 0.
-pub type Counts<'a> = Option<&'a BTreeMap<BoxId, u32>>;
+pub type SightingCounts<'a> = Option<&'a BTreeMap<BoxId, u32>>;
 
 /// The boxes of a frame as the bytes of such a file. Errors if JSON cannot hold them: a number is not finite.
 pub fn to_bytes(
     scene: &str,
     frame: &Frame,
-    lidar: Counts<'_>,
-    camera: Counts<'_>,
+    lidar: SightingCounts<'_>,
+    camera: SightingCounts<'_>,
     recipe: Option<&Recipe>,
 ) -> Result<Vec<u8>, String> {
     if let Some(problem) = frame.boxes.values().find_map(SceneBox::problem) {
@@ -67,8 +67,8 @@ pub fn to_bytes(
     }
     let entry = |b: &SceneBox| {
         let (sin, cos) = (b.yaw_rad / 2.0).sin_cos();
-        let count = |of: Counts<'_>| of.map(|counts| counts.get(&b.id).copied().unwrap_or(0));
-        Entry {
+        let count = |of: SightingCounts<'_>| of.map(|counts| counts.get(&b.id).copied().unwrap_or(0));
+        BoxRecord {
             id: b.id,
             class: b.class,
             class_id: b.class.id(),

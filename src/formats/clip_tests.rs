@@ -12,7 +12,7 @@ use scene::{
 };
 
 use crate::FormatError;
-use crate::export::{Picture, Products, Seen};
+use crate::export::{BoxVisibility, ExportPicture, Products};
 use crate::recipe::Recipe;
 use crate::table_tests::random_scene;
 
@@ -138,7 +138,7 @@ impl Plain {
 }
 
 impl Products for Plain {
-    fn observed(&mut self) -> Result<crate::export::Observed, FormatError> {
+    fn observed(&mut self) -> Result<crate::export::ObservationMasks, FormatError> {
         Err(FormatError::new("nobody observes voxels here"))
     }
 
@@ -151,9 +151,9 @@ impl Products for Plain {
         Err(FormatError::new("no Gaussians"))
     }
 
-    fn seen(&mut self) -> Result<Seen, FormatError> {
+    fn seen(&mut self) -> Result<BoxVisibility, FormatError> {
         let ids = self.scene.frame().boxes.keys();
-        Ok(Seen {
+        Ok(BoxVisibility {
             lidar_returns: Some(ids.map(|id| (*id, id.0 * 3)).collect()),
             camera_pixels: None,
         })
@@ -198,11 +198,11 @@ impl Products for Plain {
 
     fn pictures(
         &mut self,
-        take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
+        take: &mut dyn FnMut(ExportPicture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
         let [width, height] = self.size;
         for (i, camera) in self.scene.rig.cameras.iter().enumerate() {
-            take(Picture {
+            take(ExportPicture {
                 camera: camera.name.clone(),
                 width,
                 height,
@@ -215,7 +215,7 @@ impl Products for Plain {
     /// The pictures; the first two cameras see a quarter of each box for each of the last digits of its id in base 5.
     fn truth(
         &mut self,
-        take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
+        take: &mut dyn FnMut(ExportPicture, CameraTruth) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
         let (cameras, boxes) = (self.scene.rig.cameras.clone(), self.boxes());
         let [width, height] = self.size;
@@ -259,7 +259,7 @@ impl Products for Plain {
         self.scene.frame().world_from_ego
     }
 
-    fn view(&mut self) -> Result<Picture, FormatError> {
+    fn view(&mut self) -> Result<ExportPicture, FormatError> {
         Err(FormatError::new("no view"))
     }
 }

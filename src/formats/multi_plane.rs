@@ -1,6 +1,6 @@
 //! Multi-plane images as numpy archives: runs of planes per pixel, or every plane.
 
-use super::npz::{Array, Values, to_bytes};
+use super::npz::{Array, NpzValues, to_bytes};
 use scene::MultiPlaneImage;
 
 /// Arrays `starts` (u4, one more than there are pixels), `first`, `end` (u2) and `id` (u1, one per run), `depth_m` (f4, one
@@ -9,20 +9,25 @@ use scene::MultiPlaneImage;
 pub fn sparse(image: &MultiPlaneImage) -> Vec<u8> {
     let (runs, starts) = ([image.runs.len()], [image.starts.len()]);
     let planes = [usize::from(image.planes.count)];
-    let of_u16 =
-        |value: fn(&scene::sensor_data::PlaneRun) -> u16| Values::U16(image.runs.iter().map(value).collect());
+    let of_u16 = |value: fn(&scene::sensor_data::PlaneRun) -> u16| {
+        NpzValues::U16(image.runs.iter().map(value).collect())
+    };
     let depths = (0..image.planes.count).map(|p| image.planes.depth_m(p) as f32);
     let array = |name, shape, values| Array { name, shape, values };
     let arrays = [
-        array("starts", &starts[..], Values::U32(image.starts.clone())),
+        array("starts", &starts[..], NpzValues::U32(image.starts.clone())),
         array("first", &runs, of_u16(|r| r.first)),
         array("end", &runs, of_u16(|r| r.end)),
-        array("id", &runs, Values::U8(image.runs.iter().map(|r| r.id).collect())),
-        array("depth_m", &planes, Values::F32(depths.collect())),
+        array(
+            "id",
+            &runs,
+            NpzValues::U8(image.runs.iter().map(|r| r.id).collect()),
+        ),
+        array("depth_m", &planes, NpzValues::F32(depths.collect())),
         array(
             "size",
             &[2],
-            Values::U32(vec![image.width as u32, image.height as u32]),
+            NpzValues::U32(vec![image.width as u32, image.height as u32]),
         ),
     ];
     to_bytes(&arrays).expect("as many values as each shape says, written to memory")
@@ -31,7 +36,7 @@ pub fn sparse(image: &MultiPlaneImage) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::sensor_data::{PlaneRun, Planes};
+    use scene::sensor_data::{PlaneDepths, PlaneRun};
 
     #[test]
     fn runs_come_back() {
@@ -40,7 +45,7 @@ mod tests {
             camera: "CAM".into(),
             width: 2,
             height: 1,
-            planes: Planes::default(),
+            planes: PlaneDepths::default(),
             starts: vec![0, 2, 3],
             runs: vec![run(3, 5, 4), run(9, 256, 15), run(0, 1, 17)],
         };

@@ -46,12 +46,12 @@ fn product(text: &[u8]) -> Option<u64> {
 }
 
 /// An array of two axes, of any type of whole or floating point numbers.
-pub(crate) struct Table<'a> {
+pub(crate) struct NpyMatrix<'a> {
     /// Length of the first axis.
     pub rows: usize,
     /// Length of the second axis.
     pub columns: usize,
-    kind: Kind,
+    kind: NpyType,
     /// True if the values of a column, not those of a row, lie one after another.
     by_column: bool,
     values: &'a [u8],
@@ -59,13 +59,13 @@ pub(crate) struct Table<'a> {
 
 /// Type of a number: letter and bytes, and whether its first byte is the highest.
 #[derive(Clone, Copy)]
-struct Kind {
+struct NpyType {
     letter: u8,
     size: usize,
     big_endian: bool,
 }
 
-impl<'a> Table<'a> {
+impl<'a> NpyMatrix<'a> {
     /// From the bytes of an `.npy` file. Errors say what was found and what was expected.
     pub fn read(bytes: &'a [u8]) -> Result<Self, String> {
         let start = values_at(bytes)?;
@@ -78,7 +78,7 @@ impl<'a> Table<'a> {
             return Err(format!("an array of shape {shape}, expected rows and columns"));
         };
         let descr = header.dtype().descr();
-        let kind = Kind::of(&descr).ok_or_else(|| {
+        let kind = NpyType::of(&descr).ok_or_else(|| {
             let found = quoted(&descr, 40);
             format!("values of type {found}, expected whole or floating point numbers")
         })?;
@@ -112,7 +112,7 @@ impl<'a> Table<'a> {
     }
 }
 
-impl Kind {
+impl NpyType {
     /// From numpy's description: `'<i8'`.
     fn of(descr: &str) -> Option<Self> {
         let kind = match descr.trim_matches('\'').as_bytes() {
@@ -189,11 +189,11 @@ pub(crate) mod tests {
         ];
         for (descr, values) in cases {
             let file = npy(descr, false, "(2, 3)", &values);
-            let table = Table::read(&file).expect(descr);
+            let table = NpyMatrix::read(&file).expect(descr);
             assert_eq!((table.rows, table.columns), (2, 3));
             assert_eq!([table.get(0, 1), table.get(1, 2)], [2.0, 100.0], "{descr}");
             let file = npy(descr, true, "(3, 2)", &values);
-            let table = Table::read(&file).expect(descr);
+            let table = NpyMatrix::read(&file).expect(descr);
             assert_eq!([table.get(1, 0), table.get(2, 1)], [2.0, 100.0], "{descr}");
         }
     }
@@ -225,7 +225,7 @@ pub(crate) mod tests {
             (npy("|S3", false, "(1, 1)", &[0; 8]), "values of type"),
             (b"\x93NUM".to_vec(), "4 bytes, expected an npy file"),
         ] {
-            let line = Table::read(&file).err().expect(expected);
+            let line = NpyMatrix::read(&file).err().expect(expected);
             assert!(line.starts_with(expected), "{line}");
         }
     }

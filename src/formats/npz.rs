@@ -12,11 +12,11 @@ pub struct Array<'a> {
     /// Length of each axis, row-major.
     pub shape: &'a [usize],
     /// The values, as many as the shape has places.
-    pub values: Values,
+    pub values: NpzValues,
 }
 
 /// Values of an array, of one of numpy's types (little-endian in the file).
-pub enum Values {
+pub enum NpzValues {
     /// `|u1`.
     U8(Vec<u8>),
     /// `<u2`.
@@ -33,10 +33,10 @@ pub fn to_bytes(arrays: &[Array<'_>]) -> io::Result<Vec<u8>> {
     let options = zip::write::SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
     for a in arrays {
         let (header, values): (_, &[u8]) = match &a.values {
-            Values::U8(values) => (header::<u8>(a.shape, values.len())?, values),
-            Values::U16(values) => (header::<u16>(a.shape, values.len())?, cast_slice(values)),
-            Values::U32(values) => (header::<u32>(a.shape, values.len())?, cast_slice(values)),
-            Values::F32(values) => (header::<f32>(a.shape, values.len())?, cast_slice(values)),
+            NpzValues::U8(values) => (header::<u8>(a.shape, values.len())?, values),
+            NpzValues::U16(values) => (header::<u16>(a.shape, values.len())?, cast_slice(values)),
+            NpzValues::U32(values) => (header::<u32>(a.shape, values.len())?, cast_slice(values)),
+            NpzValues::F32(values) => (header::<f32>(a.shape, values.len())?, cast_slice(values)),
         };
         zip.start_file(npyz::npz::file_name_from_array_name(a.name), options)?;
         zip.write_all(&header)?;
@@ -81,7 +81,7 @@ mod tests {
         let array = |name, shape| Array {
             name,
             shape,
-            values: Values::U32(values.clone()),
+            values: NpzValues::U32(values.clone()),
         };
         let bytes = to_bytes(&[array("flat", &[6]), array("square", &[2, 3])]).expect("memory");
         let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).expect("an archive");
@@ -97,10 +97,10 @@ mod tests {
     #[test]
     fn headers_are_those_of_numpy() {
         for (values, descr) in [
-            (Values::U8(vec![1]), "'|u1'"),
-            (Values::U16(vec![1]), "'<u2'"),
-            (Values::U32(vec![1]), "'<u4'"),
-            (Values::F32(vec![1.0]), "'<f4'"),
+            (NpzValues::U8(vec![1]), "'|u1'"),
+            (NpzValues::U16(vec![1]), "'<u2'"),
+            (NpzValues::U32(vec![1]), "'<u4'"),
+            (NpzValues::F32(vec![1.0]), "'<f4'"),
         ] {
             let one = Array {
                 name: "a",

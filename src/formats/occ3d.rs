@@ -17,7 +17,7 @@ pub use numbering::Numbering;
 
 use super::input::{self, InputError};
 use super::npy;
-use super::npz::{self, Values as Npy};
+use super::npz::{self, NpzValues as Npy};
 use super::recipe::{self, Recipe};
 use scene::message::{one_line, quoted, shortened};
 use scene::{Class, VoxelGrid, Window};
@@ -87,7 +87,7 @@ pub fn load(path: &Path) -> Result<Occ3dFrame, Occ3dError> {
 
 /// A frame as a file holds it.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct Occ3dFile {
     /// The frame, its classes numbered as [`Class`].
     pub frame: Occ3dFrame,
     /// How the file numbers them.
@@ -104,7 +104,7 @@ pub fn read(bytes: &[u8]) -> Result<Occ3dFrame, Occ3dError> {
 }
 
 /// Reads a frame as [`read`] does, and says what had to be assumed and what was left out.
-pub fn read_found(bytes: &[u8]) -> Result<Found, Occ3dError> {
+pub fn read_found(bytes: &[u8]) -> Result<Occ3dFile, Occ3dError> {
     let mut zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| Occ3dError::Archive(one_line(&e)))?;
     let found = arrays(&zip);
     let known = NAMES.into_iter().find(|name| found.iter().any(|f| f == name));
@@ -127,8 +127,8 @@ pub fn read_found(bytes: &[u8]) -> Result<Found, Occ3dError> {
             return Ok(None);
         }
         Ok(Some(match array(&mut zip, name)? {
-            Values::Bytes(values) => values.into_iter().map(|v| v != 0).collect(),
-            Values::Wide(values) => values.into_iter().map(|v| v != 0).collect(),
+            LabelValues::Bytes(values) => values.into_iter().map(|v| v != 0).collect(),
+            LabelValues::Wide(values) => values.into_iter().map(|v| v != 0).collect(),
         }))
     };
     let frame = Occ3dFrame {
@@ -139,7 +139,7 @@ pub fn read_found(bytes: &[u8]) -> Result<Found, Occ3dError> {
     let recipe = recipe(&mut zip);
     let is_recipe = |other: &String| recipe.is_some() && *other == recipe::NAME;
     let is_read = |other: &String| *other == name || masks.contains(&other.as_str()) || is_recipe(other);
-    Ok(Found {
+    Ok(Occ3dFile {
         frame,
         numbering,
         left_out: found.iter().filter(|other| !is_read(other)).cloned().collect(),
@@ -163,7 +163,7 @@ fn recipe(zip: &mut ZipArchive<Cursor<&[u8]>>) -> Option<serde_json::Value> {
 }
 
 /// The classes of an array of labels, and how it numbers them.
-fn classes(name: &str, values: Values) -> Result<(Vec<u8>, Numbering), Occ3dError> {
+fn classes(name: &str, values: LabelValues) -> Result<(Vec<u8>, Numbering), Occ3dError> {
     let wrong = |i: usize, found: i64, numbering: Numbering| Occ3dError::Array {
         name: quoted(name, 80),
         problem: format!(
@@ -175,8 +175,8 @@ fn classes(name: &str, values: Values) -> Result<(Vec<u8>, Numbering), Occ3dErro
         ),
     };
     let mut labels: Vec<u8> = match values {
-        Values::Bytes(labels) => labels,
-        Values::Wide(labels) => {
+        LabelValues::Bytes(labels) => labels,
+        LabelValues::Wide(labels) => {
             let byte = |(i, label): (usize, &i64)| {
                 u8::try_from(*label).map_err(|_| wrong(i, *label, Numbering::Occ3d))
             };
@@ -243,13 +243,13 @@ fn arrays_to_bytes(labels: &VoxelGrid, masks: [Option<&[bool]>; 2], recipe: Opti
 }
 
 /// Values of an array: as they lie in the file if they are bytes, which is the usual case and much faster.
-enum Values {
+enum LabelValues {
     Bytes(Vec<u8>),
     Wide(Vec<i64>),
 }
 
 /// One array of the grid's shape, whatever its integer type.
-fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Values, Occ3dError> {
+fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<LabelValues, Occ3dError> {
     // A parser's message may be a drawing of several lines, and may hold content of the file.
     let problem = |problem: String| Occ3dError::Array {
         name: quoted(name, 80),
@@ -288,7 +288,7 @@ fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Values, Occ3
         let wanted = Window::VOXELS;
         let found = bytes.len().saturating_sub(start);
         return values
-            .map(Values::Bytes)
+            .map(LabelValues::Bytes)
             .ok_or_else(|| problem(format!("{found} values, expected {wanted}")));
     }
     macro_rules! read_as {

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use scene::{CameraMaps, Class, LidarPoint, LidarSweep, Scene, VoxelGrid, Window};
 
-use crate::export::{self, Exporter, OutFile, Picture, Products, Seen};
-use crate::import::{self, Content, Loaded};
+use crate::export::{self, BoxVisibility, ExportPicture, Exporter, OutFile, Products};
+use crate::import::{self, Content, ImportedScene};
 use crate::table_tests::random_scene;
 use crate::{FormatError, semantic_kitti};
 
@@ -22,7 +22,7 @@ impl Products for OneSweep {
         Ok(())
     }
 
-    fn seen(&mut self) -> Result<Seen, FormatError> {
+    fn seen(&mut self) -> Result<BoxVisibility, FormatError> {
         absent()
     }
 
@@ -39,18 +39,18 @@ impl Products for OneSweep {
 
     fn pictures(
         &mut self,
-        _take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
+        _take: &mut dyn FnMut(ExportPicture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
         absent()
     }
 
-    fn observed(&mut self) -> Result<crate::export::Observed, FormatError> {
+    fn observed(&mut self) -> Result<crate::export::ObservationMasks, FormatError> {
         absent()
     }
 
     fn truth(
         &mut self,
-        _take: &mut dyn FnMut(Picture, scene::CameraTruth) -> Result<(), FormatError>,
+        _take: &mut dyn FnMut(ExportPicture, scene::CameraTruth) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
         absent()
     }
@@ -67,7 +67,7 @@ impl Products for OneSweep {
         scene::Pose::IDENTITY
     }
 
-    fn view(&mut self) -> Result<Picture, FormatError> {
+    fn view(&mut self) -> Result<ExportPicture, FormatError> {
         absent()
     }
 }
@@ -104,7 +104,7 @@ fn middles(scene: &Scene) -> LidarSweep {
 }
 
 /// Writes a sweep and reads the files.
-pub(crate) fn back(exporter: &Exporter, scene: &Scene, sweep: LidarSweep) -> Loaded {
+pub(crate) fn back(exporter: &Exporter, scene: &Scene, sweep: LidarSweep) -> ImportedScene {
     let files = (exporter.write)(scene, &mut OneSweep(sweep)).expect(exporter.id);
     let folder = in_folder(&files);
     let path = match files.as_slice() {

@@ -10,12 +10,12 @@
 
 use scene::{LidarPattern, Pose, Scene};
 
-use crate::voxels::{Cell, Lattice, cells_of, physical};
+use crate::voxels::{LabelledCell, Lattice, cells_of, physical};
 use crate::{FormatError, npz};
 
 /// A data set that keeps lists of voxels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Kind {
+pub(crate) struct SparseDataset {
     /// Assumption that is made when a file is read as this kind, for a person.
     pub assumed: &'static str,
     /// Lattice of its cells, in the LiDAR's frame.
@@ -25,7 +25,7 @@ pub(crate) struct Kind {
 }
 
 /// See the module.
-pub(crate) const OPEN_OCCUPANCY: Kind = Kind {
+pub(crate) const OPEN_OCCUPANCY: SparseDataset = SparseDataset {
     assumed: "rows taken as OpenOccupancy: z, y, x, class in cells of 0.2 m of the LiDAR's frame, the LiDAR as on the nuScenes vehicle",
     lattice: Lattice {
         size: [512, 512, 40],
@@ -36,7 +36,7 @@ pub(crate) const OPEN_OCCUPANCY: Kind = Kind {
 };
 
 /// See the module.
-pub(crate) const SURROUND_OCC: Kind = Kind {
+pub(crate) const SURROUND_OCC: SparseDataset = SparseDataset {
     assumed: "rows taken as SurroundOcc: x, y, z, class in cells of 0.5 m of the LiDAR's frame, the LiDAR as on the nuScenes vehicle",
     lattice: Lattice {
         size: [200, 200, 16],
@@ -46,7 +46,7 @@ pub(crate) const SURROUND_OCC: Kind = Kind {
     z_first: false,
 };
 
-const SURROUND_OCC_FINE: Kind = Kind {
+const SURROUND_OCC_FINE: SparseDataset = SparseDataset {
     assumed: "rows taken as SurroundOcc: x, y, z, class in cells of 0.2 m of the LiDAR's frame, the LiDAR as on the nuScenes vehicle",
     lattice: Lattice {
         size: [500, 500, 40],
@@ -56,7 +56,7 @@ const SURROUND_OCC_FINE: Kind = Kind {
     z_first: false,
 };
 
-const UNI_SCENE: Kind = Kind {
+const UNI_SCENE: SparseDataset = SparseDataset {
     assumed: "rows taken as UniScene: x, y, z, class in cells of 0.125 m of the LiDAR's frame, the LiDAR as on the nuScenes vehicle",
     lattice: Lattice {
         size: [800, 800, 64],
@@ -70,9 +70,9 @@ const UNI_SCENE: Kind = Kind {
 const LOW_M: [f64; 3] = [-50.0, -50.0, -5.0];
 
 /// Kinds that a file may be of. Among those with z last, the coarsest comes first.
-pub(crate) const KINDS: [Kind; 4] = [OPEN_OCCUPANCY, SURROUND_OCC, SURROUND_OCC_FINE, UNI_SCENE];
+pub(crate) const KINDS: [SparseDataset; 4] = [OPEN_OCCUPANCY, SURROUND_OCC, SURROUND_OCC_FINE, UNI_SCENE];
 
-impl Kind {
+impl SparseDataset {
     /// The cell that a row's first three values tell.
     pub fn cell(&self, [a, b, c]: [usize; 3]) -> [usize; 3] {
         match self.z_first {
@@ -83,8 +83,8 @@ impl Kind {
 
     /// The kind of a file with these largest values in its first three columns: the smallest grid that holds them. Where both
     /// the first and the last column may be z, it is the one with smaller values.
-    pub fn of_maxima(maxima: [usize; 3]) -> Option<Kind> {
-        let holds = |kind: &&Kind| {
+    pub fn of_maxima(maxima: [usize; 3]) -> Option<SparseDataset> {
+        let holds = |kind: &&SparseDataset| {
             let cell = kind.cell(maxima);
             (0..3).all(|axis| cell[axis] < kind.lattice.size[axis])
         };
@@ -96,7 +96,7 @@ impl Kind {
 }
 
 /// A scene's voxels as such a file, sorted by the columns, at their true height instead of that of Occ3D.
-pub(crate) fn to_bytes(scene: &Scene, kind: &Kind) -> Result<Vec<u8>, FormatError> {
+pub(crate) fn to_bytes(scene: &Scene, kind: &SparseDataset) -> Result<Vec<u8>, FormatError> {
     let lidar = scene.rig.lidars.first();
     let lidar =
         lidar.ok_or_else(|| FormatError::new("the rig has no LiDAR, in whose frame the voxels are"))?;
@@ -107,7 +107,7 @@ pub(crate) fn to_bytes(scene: &Scene, kind: &Kind) -> Result<Vec<u8>, FormatErro
             "no voxel around the vehicle, and readers of such files expect one",
         ));
     }
-    let row = |cell: &Cell| {
+    let row = |cell: &LabelledCell| {
         let [a, b, c] = kind.cell(cell.at.map(usize::from)).map(|v| v as i32);
         [a, b, c, i32::from(cell.class)]
     };
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn the_largest_values_tell_the_kind() {
-        let of = |a, b, c| Kind::of_maxima([a, b, c]);
+        let of = |a, b, c| SparseDataset::of_maxima([a, b, c]);
         assert_eq!(of(39, 511, 511), Some(OPEN_OCCUPANCY));
         assert_eq!(of(12, 20, 30), Some(OPEN_OCCUPANCY));
         assert_eq!(of(199, 199, 15), Some(SURROUND_OCC));

@@ -13,15 +13,15 @@ use parquet::schema::types::{Type, TypePtr};
 use crate::FormatError;
 
 /// A column, or columns that belong together.
-pub enum Field {
+pub enum ParquetField {
     /// A struct.
-    Group(&'static str, Vec<Field>),
+    Group(&'static str, Vec<ParquetField>),
     /// Values, one for each row.
-    Values(&'static str, Values),
+    Values(&'static str, ColumnValues),
 }
 
 /// One value for each row.
-pub enum Values {
+pub enum ColumnValues {
     /// Text.
     Text(Vec<String>),
     /// Signed integers of 64 bits.
@@ -43,22 +43,22 @@ pub enum Values {
 }
 
 /// A struct of `x`, `y` and `z`.
-pub fn vectors(name: &'static str, of: &[DVec3]) -> Field {
-    let axis = |i: usize| Values::Number(of.iter().map(|v| v[i]).collect());
+pub fn vectors(name: &'static str, of: &[DVec3]) -> ParquetField {
+    let axis = |i: usize| ColumnValues::Number(of.iter().map(|v| v[i]).collect());
     let axes = ["x", "y", "z"].into_iter().enumerate();
-    Field::Group(
+    ParquetField::Group(
         name,
-        axes.map(|(i, axis_name)| Field::Values(axis_name, axis(i)))
+        axes.map(|(i, axis_name)| ParquetField::Values(axis_name, axis(i)))
             .collect(),
     )
 }
 
 /// A file of `rows` rows with these columns.
-pub fn to_bytes(rows: usize, fields: &[Field]) -> std::result::Result<Vec<u8>, FormatError> {
+pub fn to_bytes(rows: usize, fields: &[ParquetField]) -> std::result::Result<Vec<u8>, FormatError> {
     written(rows, fields).map_err(FormatError::new)
 }
 
-fn written(rows: usize, fields: &[Field]) -> Result<Vec<u8>> {
+fn written(rows: usize, fields: &[ParquetField]) -> Result<Vec<u8>> {
     let types = fields.iter().map(schema_of).collect::<Result<Vec<TypePtr>>>()?;
     let schema = Type::group_type_builder("schema").with_fields(types).build()?;
     let properties = WriterProperties::builder()
@@ -76,22 +76,24 @@ fn written(rows: usize, fields: &[Field]) -> Result<Vec<u8>> {
     writer.into_inner()
 }
 
-fn schema_of(field: &Field) -> Result<TypePtr> {
+fn schema_of(field: &ParquetField) -> Result<TypePtr> {
     let built = match field {
-        Field::Group(name, fields) => group(name, fields.iter().map(schema_of).collect::<Result<_>>()?)?,
-        Field::Values(name, values) => match values {
-            Values::Text(_) => text(name, Repetition::REQUIRED)?,
-            Values::UnknownText(_) => text(name, Repetition::OPTIONAL)?,
-            Values::Integer(_) => plain(name, Physical::INT64, Repetition::REQUIRED)?,
-            Values::Number(_) => plain(name, Physical::DOUBLE, Repetition::REQUIRED)?,
-            Values::UnknownNumber(_) => plain(name, Physical::DOUBLE, Repetition::OPTIONAL)?,
-            Values::Flag(_) => plain(name, Physical::BOOLEAN, Repetition::REQUIRED)?,
-            Values::Unsigned(_) => Type::primitive_type_builder(name, Physical::INT64)
+        ParquetField::Group(name, fields) => {
+            group(name, fields.iter().map(schema_of).collect::<Result<_>>()?)?
+        }
+        ParquetField::Values(name, values) => match values {
+            ColumnValues::Text(_) => text(name, Repetition::REQUIRED)?,
+            ColumnValues::UnknownText(_) => text(name, Repetition::OPTIONAL)?,
+            ColumnValues::Integer(_) => plain(name, Physical::INT64, Repetition::REQUIRED)?,
+            ColumnValues::Number(_) => plain(name, Physical::DOUBLE, Repetition::REQUIRED)?,
+            ColumnValues::UnknownNumber(_) => plain(name, Physical::DOUBLE, Repetition::OPTIONAL)?,
+            ColumnValues::Flag(_) => plain(name, Physical::BOOLEAN, Repetition::REQUIRED)?,
+            ColumnValues::Unsigned(_) => Type::primitive_type_builder(name, Physical::INT64)
                 .with_repetition(Repetition::REQUIRED)
                 .with_logical_type(Some(LogicalType::integer(64, false)))
                 .build()?,
-            Values::Texts(_) => list(name, text("element", Repetition::REQUIRED)?)?,
-            Values::Points(_) => {
+            ColumnValues::Texts(_) => list(name, text("element", Repetition::REQUIRED)?)?,
+            ColumnValues::Points(_) => {
                 let axis = |name| plain(name, Physical::DOUBLE, Repetition::REQUIRED).map(Arc::new);
                 list(name, group("element", vec![axis("x")?, axis("y")?, axis("z")?])?)?
             }
@@ -132,17 +134,21 @@ fn list(name: &str, element: Type) -> Result<Type> {
         .build()
 }
 
-type Group<'a> = SerializedRowGroupWriter<'a, Vec<u8>>;
+type RowGroupWriter<'a> = SerializedRowGroupWriter<'a, Vec<u8>>;
 
-fn write_field(group: &mut Group<'_>, field: &Field) -> Result<()> {
+fn write_field(group: &mut RowGroupWriter<'_>, field: &ParquetField) -> Result<()> {
     let values = match field {
-        Field::Group(_, fields) => return fields.iter().try_for_each(|field| write_field(group, field)),
-        Field::Values(_, values) => values,
+        ParquetField::Group(_, fields) => {
+            return fields.iter().try_for_each(|field| write_field(group, field));
+        }
+        ParquetField::Values(_, values) => values,
     };
     match values {
-        Values::Text(all) => column::<ByteArrayType>(group, &all.iter().map(bytes).collect::<Vec<_>>(), None),
-        Values::Integer(all) => column::<Int64Type>(group, all, None),
-        Values::Unsigned(all) => {
+        ColumnValues::Text(all) => {
+            column::<ByteArrayType>(group, &all.iter().map(bytes).collect::<Vec<_>>(), None)
+        }
+        ColumnValues::Integer(all) => column::<Int64Type>(group, all, None),
+        ColumnValues::Unsigned(all) => {
             // The bits are kept; the type says that there is no sign.
             column::<Int64Type>(
                 group,
@@ -150,17 +156,21 @@ fn write_field(group: &mut Group<'_>, field: &Field) -> Result<()> {
                 None,
             )
         }
-        Values::Number(all) => column::<DoubleType>(group, all, None),
-        Values::Flag(all) => column::<BoolType>(group, all, None),
-        Values::UnknownNumber(count) => column::<DoubleType>(group, &[], Some(Levels::none(*count))),
-        Values::UnknownText(count) => column::<ByteArrayType>(group, &[], Some(Levels::none(*count))),
-        Values::Texts(lists) => {
-            let all: Vec<ByteArray> = lists.iter().flatten().map(bytes).collect();
-            column::<ByteArrayType>(group, &all, Some(Levels::of(lists)))
+        ColumnValues::Number(all) => column::<DoubleType>(group, all, None),
+        ColumnValues::Flag(all) => column::<BoolType>(group, all, None),
+        ColumnValues::UnknownNumber(count) => {
+            column::<DoubleType>(group, &[], Some(NestingLevels::none(*count)))
         }
-        Values::Points(lists) => (0..3).try_for_each(|axis| {
+        ColumnValues::UnknownText(count) => {
+            column::<ByteArrayType>(group, &[], Some(NestingLevels::none(*count)))
+        }
+        ColumnValues::Texts(lists) => {
+            let all: Vec<ByteArray> = lists.iter().flatten().map(bytes).collect();
+            column::<ByteArrayType>(group, &all, Some(NestingLevels::of(lists)))
+        }
+        ColumnValues::Points(lists) => (0..3).try_for_each(|axis| {
             let all: Vec<f64> = lists.iter().flatten().map(|p| p[axis]).collect();
-            column::<DoubleType>(group, &all, Some(Levels::of(lists)))
+            column::<DoubleType>(group, &all, Some(NestingLevels::of(lists)))
         }),
     }
 }
@@ -170,12 +180,12 @@ fn bytes(text: &String) -> ByteArray {
 }
 
 /// Which values are there, and which of them begin a row.
-struct Levels {
+struct NestingLevels {
     definition: Vec<i16>,
     repetition: Option<Vec<i16>>,
 }
 
-impl Levels {
+impl NestingLevels {
     /// Levels of rows without any value.
     fn none(rows: usize) -> Self {
         Self {
@@ -202,9 +212,9 @@ impl Levels {
 }
 
 fn column<T: parquet::data_type::DataType>(
-    group: &mut Group<'_>,
+    group: &mut RowGroupWriter<'_>,
     values: &[T::T],
-    levels: Option<Levels>,
+    levels: Option<NestingLevels>,
 ) -> Result<()> {
     let Some(mut column) = group.next_column()? else {
         return Err(parquet::errors::ParquetError::General(
@@ -229,25 +239,25 @@ mod tests {
     fn nested_columns_are_read_back_row_by_row() {
         let point = |x: f64| DVec3::new(x, -x, x / 2.0);
         let fields = [
-            Field::Group(
+            ParquetField::Group(
                 "key",
                 vec![
-                    Field::Values("clip_id", Values::Text(vec!["a \"b\"".into(), "ü".into()])),
-                    Field::Values("timestamp_micros", Values::Integer(vec![-1, 7])),
+                    ParquetField::Values("clip_id", ColumnValues::Text(vec!["a \"b\"".into(), "ü".into()])),
+                    ParquetField::Values("timestamp_micros", ColumnValues::Integer(vec![-1, 7])),
                 ],
             ),
             vectors("center", &[point(1.0), point(3.0)]),
-            Field::Values(
+            ParquetField::Values(
                 "rail",
-                Values::Points(vec![vec![point(1.0), point(2.0), point(9.0)], vec![]]),
+                ColumnValues::Points(vec![vec![point(1.0), point(2.0), point(9.0)], vec![]]),
             ),
-            Field::Values(
+            ParquetField::Values(
                 "styles",
-                Values::Texts(vec![vec![], vec!["X".into(), "Y".into()]]),
+                ColumnValues::Texts(vec![vec![], vec!["X".into(), "Y".into()]]),
             ),
-            Field::Values("limit", Values::UnknownNumber(2)),
-            Field::Values("implicit", Values::Flag(vec![true, false])),
-            Field::Values("version", Values::Unsigned(vec![1, u64::MAX])),
+            ParquetField::Values("limit", ColumnValues::UnknownNumber(2)),
+            ParquetField::Values("implicit", ColumnValues::Flag(vec![true, false])),
+            ParquetField::Values("version", ColumnValues::Unsigned(vec![1, u64::MAX])),
         ];
         let file = to_bytes(2, &fields).expect("sound");
         assert_eq!(file, to_bytes(2, &fields).expect("sound"));
@@ -282,7 +292,7 @@ mod tests {
 
     #[test]
     fn a_table_without_rows_has_its_columns() {
-        let file = to_bytes(0, &[Field::Values("rail", Values::Points(vec![]))]).expect("sound");
+        let file = to_bytes(0, &[ParquetField::Values("rail", ColumnValues::Points(vec![]))]).expect("sound");
         let reader = SerializedFileReader::new(bytes_of(file)).expect("parquet");
         assert_eq!(reader.metadata().file_metadata().num_rows(), 0);
         assert_eq!(reader.metadata().file_metadata().schema_descr().num_columns(), 3);

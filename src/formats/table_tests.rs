@@ -15,8 +15,8 @@ use scene::{
 
 use tempfile::TempDir;
 
-use crate::export::{self, Exporter, Observed, OutFile, Picture, Products, Seen};
-use crate::import::{self, Content, Importer, Source};
+use crate::export::{self, BoxVisibility, ExportPicture, Exporter, ObservationMasks, OutFile, Products};
+use crate::import::{self, Content, ImportFile, Importer};
 use crate::recipe::Recipe;
 use crate::{FormatError, Holds, box_list, loom, occ3d};
 
@@ -126,16 +126,16 @@ impl Products for Small {
         Ok(())
     }
 
-    fn seen(&mut self) -> Result<Seen, FormatError> {
-        Ok(Seen {
+    fn seen(&mut self) -> Result<BoxVisibility, FormatError> {
+        Ok(BoxVisibility {
             lidar_returns: Some([(BoxId(4), 12)].into()),
             camera_pixels: None,
         })
     }
 
-    fn observed(&mut self) -> Result<Observed, FormatError> {
-        let words = |word: fn([usize; 2]) -> u16| Observed::EXTENT.all_columns().map(word).collect();
-        Ok(Observed {
+    fn observed(&mut self) -> Result<ObservationMasks, FormatError> {
+        let words = |word: fn([usize; 2]) -> u16| ObservationMasks::EXTENT.all_columns().map(word).collect();
+        Ok(ObservationMasks {
             lidar: words(|[x, _]| if x >= 100 { 0x00ff } else { 0 }),
             camera: words(|[_, y]| if y >= 100 { 0xfffe } else { 0 }),
         })
@@ -180,14 +180,14 @@ impl Products for Small {
 
     fn pictures(
         &mut self,
-        take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
+        take: &mut dyn FnMut(ExportPicture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
         take(self.view()?)
     }
 
     fn truth(
         &mut self,
-        take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
+        take: &mut dyn FnMut(ExportPicture, CameraTruth) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
         let pixel = TruthPixel {
             class: Class::Car.id(),
@@ -206,7 +206,7 @@ impl Products for Small {
             flow_s: Some(0.1),
             boxes: Vec::new(),
         };
-        let picture = Picture {
+        let picture = ExportPicture {
             camera: "FRONT".into(),
             width: 2,
             height: 1,
@@ -228,8 +228,8 @@ impl Products for Small {
         Pose::from_wxyz([1.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0])
     }
 
-    fn view(&mut self) -> Result<Picture, FormatError> {
-        Ok(Picture {
+    fn view(&mut self) -> Result<ExportPicture, FormatError> {
+        Ok(ExportPicture {
             camera: "FRONT".into(),
             width: 1,
             height: 1,
@@ -255,7 +255,7 @@ fn read(importer: &Importer, bytes: &[u8]) -> Result<Content, FormatError> {
             path.clone()
         })
     });
-    (importer.read)(&Source {
+    (importer.read)(&ImportFile {
         bytes,
         name: "small",
         path: path.as_deref(),

@@ -14,7 +14,7 @@ static INTO_STDOUT: AtomicBool = AtomicBool::new(false);
 
 /// Where bytes go.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) enum Target {
+pub(crate) enum WriteTarget {
     /// A file, which may not exist yet. No link is left in its last name.
     File(PathBuf),
     /// A pipe, or a device that takes bytes one after the other: `/dev/null`, a terminal.
@@ -23,7 +23,7 @@ pub(crate) enum Target {
     Open(u32, PathBuf),
 }
 
-impl Target {
+impl WriteTarget {
     /// The target of a path. Errors for folders, for block devices (a disk's contents would be lost), for sockets, and
     /// if links lead in a circle.
     pub(crate) fn of(path: &Path) -> io::Result<Self> {
@@ -72,14 +72,14 @@ pub fn stdout_holds_a_file() -> bool {
 }
 
 /// Follows links to the last name, where no file may exist yet.
-fn followed(path: &Path) -> io::Result<Target> {
+fn followed(path: &Path) -> io::Result<WriteTarget> {
     let mut path = path.to_path_buf();
     for _ in 0..MOST_LINKS {
         if let Some(number) = descriptor(&path) {
-            return Ok(Target::Open(number, path));
+            return Ok(WriteTarget::Open(number, path));
         }
         let Ok(to) = fs::read_link(&path) else {
-            return Ok(Target::File(path));
+            return Ok(WriteTarget::File(path));
         };
         path = path.parent().unwrap_or(Path::new("")).join(to);
     }
@@ -130,13 +130,13 @@ mod tests {
         // (looked at only: nothing here is written)
         if Path::new("/dev/stdout").is_symlink() {
             assert!(matches!(
-                Target::of(Path::new("/dev/stdout")),
-                Ok(Target::Open(1, _))
+                WriteTarget::of(Path::new("/dev/stdout")),
+                Ok(WriteTarget::Open(1, _))
             ));
         }
         assert_eq!(
-            Target::of(Path::new("/dev/null")).ok(),
-            Some(Target::Stream("/dev/null".into()))
+            WriteTarget::of(Path::new("/dev/null")).ok(),
+            Some(WriteTarget::Stream("/dev/null".into()))
         );
     }
 
@@ -148,11 +148,14 @@ mod tests {
         symlink("dangling", at("twice")).expect("a link");
         symlink("round", at("about")).expect("a link");
         symlink("about", at("round")).expect("a link");
-        assert_eq!(Target::of(&at("twice")).expect("a file"), Target::File(at("new")));
-        let line = Target::of(&at("round")).expect_err("a circle").to_string();
+        assert_eq!(
+            WriteTarget::of(&at("twice")).expect("a file"),
+            WriteTarget::File(at("new"))
+        );
+        let line = WriteTarget::of(&at("round")).expect_err("a circle").to_string();
         assert_eq!(line, "links lead in a circle");
         let _socket = std::os::unix::net::UnixListener::bind(at("socket")).expect("a socket");
-        let line = Target::of(&at("socket")).expect_err("a socket").to_string();
+        let line = WriteTarget::of(&at("socket")).expect_err("a socket").to_string();
         assert!(line.contains("expected a file or a pipe"), "{line}");
     }
 }

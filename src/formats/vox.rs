@@ -12,8 +12,8 @@ mod place;
 mod read;
 mod write;
 
-pub(crate) use place::{Placed, place};
-pub(crate) use read::File;
+pub(crate) use place::{VoxMap, place};
+pub(crate) use read::VoxFile;
 pub(crate) use write::to_bytes;
 
 /// Most voxels along a side of a model.

@@ -7,7 +7,7 @@ mod resample;
 
 pub(crate) use lattice::Lattice;
 pub(crate) use physical::{Physical, unobserved};
-pub(crate) use resample::{Cell, Cells, cells_of};
+pub(crate) use resample::{LabelledCell, VoxelVotes, cells_of};
 
 use scene::{Class, Frame};
 

@@ -108,7 +108,7 @@ impl FieldShape {
 
 /// Sections of [`AppearanceData::words`], in the order of [`AppearanceData::at`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Section {
+pub enum AppearanceSection {
     /// Softened occupancy `[x][y][z]`, four bytes a word.
     Weight,
     /// Labels `[x][y][z]`, four bytes a word.
@@ -184,13 +184,13 @@ pub struct AppearanceData {
 
 impl AppearanceData {
     /// Puts a section at the end.
-    pub fn push(&mut self, section: Section, words: impl IntoIterator<Item = u32>) {
+    pub fn push(&mut self, section: AppearanceSection, words: impl IntoIterator<Item = u32>) {
         self.at[section as usize] = self.words.len() as u32;
         self.words.extend(words);
     }
 
     /// Puts bytes at the end, four to a word, the first one lowest.
-    pub fn push_bytes(&mut self, section: Section, bytes: &[u8]) {
+    pub fn push_bytes(&mut self, section: AppearanceSection, bytes: &[u8]) {
         let word = |four: &[u8]| four.iter().rev().fold(0, |w, b| w << 8 | u32::from(*b));
         self.push(section, bytes.chunks(4).map(word));
     }
@@ -222,11 +222,11 @@ mod tests {
     #[test]
     fn bytes_are_found_where_the_shader_looks() {
         let mut data = AppearanceData::default();
-        data.push(Section::Weight, [7]);
-        data.push_bytes(Section::Label, &[1, 2, 3, 4, 250]);
-        let at = data.at[Section::Label as usize];
+        data.push(AppearanceSection::Weight, [7]);
+        data.push_bytes(AppearanceSection::Label, &[1, 2, 3, 4, 250]);
+        let at = data.at[AppearanceSection::Label as usize];
         let byte = |i: u32| data.words[(at + i / 4) as usize] >> (i % 4 * 8) & 255;
         assert_eq!([0, 1, 2, 3, 4].map(byte), [1, 2, 3, 4, 250]);
-        assert!((Section::Calm as usize) < SECTIONS);
+        assert!((AppearanceSection::Calm as usize) < SECTIONS);
     }
 }

@@ -70,7 +70,7 @@ impl Members {
 /// Objects that are selected and moved together.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Group {
+pub struct ObjectGroup {
     /// Its name; empty means none.
     #[serde(default, skip_serializing_if = "BoxName::is_empty")]
     pub name: BoxName,
@@ -84,7 +84,7 @@ pub struct Group {
 pub struct Arranged {
     /// The groups; no object is in two of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub groups: Vec<Group>,
+    pub groups: Vec<ObjectGroup>,
     /// Objects that are neither drawn nor selectable in the large views. Sensors see them.
     #[serde(skip_serializing_if = "Members::is_empty")]
     pub hidden: Members,
@@ -132,7 +132,7 @@ impl Arranged {
             Arrangement::Group { .. } | Arrangement::Ungroup => {
                 self.groups.iter_mut().for_each(|g| g.members.remove(members));
                 if let Arrangement::Group { name } = how {
-                    self.groups.push(Group {
+                    self.groups.push(ObjectGroup {
                         name: *name,
                         members: members.clone(),
                     });
@@ -143,12 +143,12 @@ impl Arranged {
     }
 
     /// The group that a box is in.
-    pub fn group_of_box(&self, id: BoxId) -> Option<&Group> {
+    pub fn group_of_box(&self, id: BoxId) -> Option<&ObjectGroup> {
         self.groups.iter().find(|g| g.members.boxes.contains(&id))
     }
 
     /// The group that a thing is in.
-    pub fn group_of_thing(&self, id: ThingId) -> Option<&Group> {
+    pub fn group_of_thing(&self, id: ThingId) -> Option<&ObjectGroup> {
         self.groups.iter().find(|g| g.members.things.contains(&id))
     }
 

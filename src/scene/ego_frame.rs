@@ -93,7 +93,7 @@ impl Scene {
 /// A frame along the axes of its ego vehicle.
 fn in_ego(frame: &Frame, extent: Extent) -> Frame {
     let pose = frame.world_from_ego;
-    let from_ego = Source::new(extent, frame.extent(), &pose);
+    let from_ego = ColumnLookup::new(extent, frame.extent(), &pose);
     let boxes = |boxes: &BTreeMap<BoxId, SceneBox>| -> BTreeMap<BoxId, SceneBox> {
         let to_ego = pose.inverse();
         boxes.iter().map(|(id, b)| (*id, b.in_frame(&to_ego))).collect()
@@ -139,14 +139,14 @@ fn in_ego(frame: &Frame, extent: Extent) -> Frame {
 }
 
 /// The column of another frame's map that each column of a map shows.
-struct Source {
+struct ColumnLookup {
     extent: Extent,
     /// `[x][y]`: place in the map, by column; none beyond it.
     columns: Vec<Option<u32>>,
     of: Extent,
 }
 
-impl Source {
+impl ColumnLookup {
     fn new(extent: Extent, of: Extent, of_from_here: &Pose) -> Self {
         let column = |[x, y]: [usize; 2]| {
             let p = of_from_here.apply(extent.center(x, y, 0).with_z(0.0));

@@ -157,7 +157,7 @@ pub enum Locked {
 /// A node.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Node {
+pub struct GraphNode {
     /// Its id within the graph.
     pub id: u32,
     /// Kind.
@@ -248,7 +248,7 @@ impl RelationKind {
 /// A statement: `from` stands in `relation` to `to`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Edge {
+pub struct GraphEdge {
     /// Which relation.
     pub relation: RelationKind,
     /// Node whose place is described.
@@ -264,7 +264,7 @@ pub struct Edge {
     pub distance_m: Option<f64>,
 }
 
-impl Edge {
+impl GraphEdge {
     /// A statement without distance.
     pub fn new(from: u32, relation: RelationKind, to: u32) -> Self {
         Self {
@@ -282,9 +282,9 @@ impl Edge {
 #[serde(deny_unknown_fields)]
 pub struct SceneGraph {
     /// Nodes, with different ids; at most one is the ego vehicle.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<GraphNode>,
     /// Statements between nodes of the graph.
-    pub edges: Vec<Edge>,
+    pub edges: Vec<GraphEdge>,
 }
 
 impl SceneGraph {
@@ -306,7 +306,7 @@ impl SceneGraph {
             .map(|n| n.id)
             .max()
             .map_or(0, |id| id.saturating_add(1));
-        self.nodes.push(Node {
+        self.nodes.push(GraphNode {
             id,
             kind,
             locked: None,
@@ -316,11 +316,11 @@ impl SceneGraph {
 
     /// Adds a statement without distance.
     pub fn relate(&mut self, from: u32, relation: RelationKind, to: u32) {
-        self.edges.push(Edge::new(from, relation, to));
+        self.edges.push(GraphEdge::new(from, relation, to));
     }
 
     /// The node of that id.
-    pub fn node(&self, id: u32) -> Option<&Node> {
+    pub fn node(&self, id: u32) -> Option<&GraphNode> {
         self.nodes.iter().find(|n| n.id == id)
     }
 

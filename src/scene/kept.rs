@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 /// Versions and typed words. They belong to a file, not to a state of the scene: undo leaves them as they are.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Kept {
+pub struct ProjectHistory {
     /// The versions, the oldest first.
     pub versions: Vec<KeptVersion>,
     /// Texts typed in the prompt field, the oldest first, whether or not they had an effect.
     pub typed: Vec<String>,
 }
 
-impl Kept {
+impl ProjectHistory {
     /// Most versions of a file.
     pub const MAX_VERSIONS: usize = 1000;
     /// Most texts that were typed.

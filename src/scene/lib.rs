@@ -50,12 +50,12 @@ pub mod truth;
 pub mod variants;
 pub mod waiver;
 
-use clip::Seen;
+use clip::ComposedFrame;
 use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-pub use arranged::{Arranged, Arrangement, Group, Members};
+pub use arranged::{Arranged, Arrangement, Members, ObjectGroup};
 pub use background::{Background, Form, Thing, ThingId};
 pub use box_label::{BoxLabel, BoxName, Paint};
 pub use boxes::{BoxId, SceneBox};
@@ -68,7 +68,7 @@ pub use frame::{Frame, SourceFrame};
 pub use gaussians::{Baking, GaussianScene, SceneGaussian};
 pub use grid::{Extent, VoxelGrid, VoxelPaint, Window};
 pub use inferred::{Inferred, Unobserved};
-pub use kept::{Kept, KeptVersion};
+pub use kept::{KeptVersion, ProjectHistory};
 pub use layout::{BevLayout, Polyline, PolylineKind};
 pub use lens::{Lens, Optics, ReadOut, Shutter};
 pub use model::Model;
@@ -125,7 +125,7 @@ pub struct Scene {
     pub seed: u64,
     /// Versions and texts that its file keeps beside it: they are no part of any state, so neither revision covers
     /// them.
-    pub kept: Arc<Kept>,
+    pub kept: Arc<ProjectHistory>,
     content: SceneRev,
     canvas: Arc<Frame>,
     clip: Arc<Clip>,
@@ -232,7 +232,7 @@ impl Scene {
         }
         let time_s = self.time_s();
         let boxes = self.clip.boxes_at(time_s, &self.canvas);
-        let seen = Seen {
+        let seen = ComposedFrame {
             frame: &self.view,
             boxes: &boxes,
             time_s,
@@ -298,7 +298,7 @@ impl Scene {
         let before = self.clip.unsettled(&self.canvas);
         let drafts = self.clip.tracks.values().filter(|t| !t.settled);
         let boxes: Vec<SceneBox> = drafts.map(|t| t.made).collect();
-        let seen = Seen {
+        let seen = ComposedFrame {
             frame: &before,
             boxes: &boxes,
             time_s: self.canvas.time_s,
@@ -309,7 +309,7 @@ impl Scene {
 
     /// The part of the scene in the networks' window after a move by whole columns, with the whole scene moved. It
     /// stands still and shows the frame that this scene shows. The content's revision stays.
-    pub fn window_at(&self, by: moved::Columns) -> Scene {
+    pub fn window_at(&self, by: moved::ColumnShift) -> Scene {
         let mut scene = self.still();
         scene.view = Arc::new(self.frame().crop(by.back().extent(Extent::WINDOW)));
         scene.canvas = scene.view.clone();

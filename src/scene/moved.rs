@@ -12,9 +12,9 @@ use crate::{
 
 /// A move by whole columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Columns(pub [i32; 2]);
+pub struct ColumnShift(pub [i32; 2]);
 
-impl Columns {
+impl ColumnShift {
     /// The move in the opposite direction.
     pub fn back(self) -> Self {
         Self(self.0.map(|c| -c))
@@ -117,8 +117,8 @@ impl Columns {
 
 impl Scene {
     /// A scene that stands still, with everything in it moved by whole columns. The revisions stay.
-    pub fn moved(&self, by: Columns) -> Scene {
-        if by == Columns::default() {
+    pub fn moved(&self, by: ColumnShift) -> Scene {
+        if by == ColumnShift::default() {
             return self.clone();
         }
         let mut scene = self.still();
@@ -158,7 +158,7 @@ mod tests {
         };
         let frame = Frame::new(layout, [(b.id, b)].into(), grid);
         let scene = Scene::single("map", frame, Arc::new(SensorRig::default()), 1);
-        let by = Columns([-160, 48]);
+        let by = ColumnShift([-160, 48]);
         let there = scene.moved(by);
         assert_eq!(there.frame().extent().from(), [-280, 88]);
         assert_eq!(there.frame().occupancy.get(200, 100, 3), Class::Car.id());

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use super::graph::{Edge, LaneRole, Locked, NodeKind, RelationKind, SceneGraph};
+use super::graph::{GraphEdge, LaneRole, Locked, NodeKind, RelationKind, SceneGraph};
 use super::road_map::{CrossingArea, HALF_LANE_M, RoadMap, inside, outline_distance_m};
 use super::{BevLayer, BoxId, BoxLabel, Class, SceneBox};
 
@@ -52,7 +52,7 @@ pub struct PlacedGraph<'a> {
 }
 
 /// Place or object on the map that a statement refers to.
-enum Anchor<'a> {
+enum RelationTarget<'a> {
     /// An object, or the ego vehicle: its box, and the point that distances count from.
     Thing(SceneBox, DVec2),
     Lane(LaneRole, Option<u32>),
@@ -81,11 +81,11 @@ impl PlacedGraph<'_> {
     ///   of it; of a crossing: on it (1 m grown).
     /// - `waiting_at`: standing, up to 8 m from the area and not on it (on the road: before it).
     /// - `same_direction`, `opposite_direction`: headings within 30 (beyond 150) degrees.
-    pub fn satisfied(&self, edge: &Edge) -> bool {
+    pub fn satisfied(&self, edge: &GraphEdge) -> bool {
         self.check(edge).unwrap_or(false)
     }
 
-    fn check(&self, edge: &Edge) -> Option<bool> {
+    fn check(&self, edge: &GraphEdge) -> Option<bool> {
         let (from, _) = self.thing(edge.from)?;
         let sound = from.problem().is_none();
         let anchor = self.anchor(edge.to)?;
@@ -119,28 +119,28 @@ impl PlacedGraph<'_> {
         }
     }
 
-    fn anchor(&self, id: u32) -> Option<Anchor<'_>> {
+    fn anchor(&self, id: u32) -> Option<RelationTarget<'_>> {
         Some(match &self.graph.node(id)?.kind {
             NodeKind::Ego | NodeKind::Object(_) => {
                 let (b, at) = self.thing(id)?;
                 if b.problem().is_some() {
                     return None;
                 }
-                Anchor::Thing(b, at)
+                RelationTarget::Thing(b, at)
             }
-            NodeKind::Lane { role, polyline } => Anchor::Lane(*role, *polyline),
-            NodeKind::Crossing { polyline } => Anchor::Area(crossing_of(self.road, *polyline)?),
-            NodeKind::Junction => Anchor::Junction(*self.road.junctions_m.first()?),
+            NodeKind::Lane { role, polyline } => RelationTarget::Lane(*role, *polyline),
+            NodeKind::Crossing { polyline } => RelationTarget::Area(crossing_of(self.road, *polyline)?),
+            NodeKind::Junction => RelationTarget::Junction(*self.road.junctions_m.first()?),
         })
     }
 
-    fn holds(&self, relation: RelationKind, from: &SceneBox, anchor: &Anchor<'_>) -> bool {
+    fn holds(&self, relation: RelationKind, from: &SceneBox, anchor: &RelationTarget<'_>) -> bool {
         let standing = from.velocity_mps.length() <= STANDING_MPS;
         let p = from.center_m.truncate();
         match anchor {
-            Anchor::Thing(to, at) => self.to_thing(relation, from, to, *at),
-            Anchor::Lane(role, polyline) => self.to_lane(relation, from, *role, *polyline),
-            Anchor::Area(_) | Anchor::Junction(_) => {
+            RelationTarget::Thing(to, at) => self.to_thing(relation, from, to, *at),
+            RelationTarget::Lane(role, polyline) => self.to_lane(relation, from, *role, *polyline),
+            RelationTarget::Area(_) | RelationTarget::Junction(_) => {
                 let (distance, center) = self.area(anchor, p);
                 let on = distance <= 0.0;
                 let ahead = self.road.ego_direction(center).dot(p - center);
@@ -185,10 +185,10 @@ impl PlacedGraph<'_> {
     }
 
     /// Distance to an area (0 or less: on it) and its middle.
-    fn area(&self, anchor: &Anchor<'_>, p: DVec2) -> (f64, DVec2) {
+    fn area(&self, anchor: &RelationTarget<'_>, p: DVec2) -> (f64, DVec2) {
         match anchor {
-            Anchor::Area(c) => (outline_distance_m(&c.outline_m, p), c.center_m),
-            Anchor::Junction(center) => (p.distance(*center) - JUNCTION_M, *center),
+            RelationTarget::Area(c) => (outline_distance_m(&c.outline_m, p), c.center_m),
+            RelationTarget::Junction(center) => (p.distance(*center) - JUNCTION_M, *center),
             _ => (f64::NAN, p),
         }
     }
@@ -345,10 +345,10 @@ impl PlacedGraph<'_> {
     }
 
     /// The distance that `distance_m` of a statement refers to.
-    fn distance_m(&self, relation: RelationKind, from: &SceneBox, anchor: &Anchor<'_>) -> f64 {
+    fn distance_m(&self, relation: RelationKind, from: &SceneBox, anchor: &RelationTarget<'_>) -> f64 {
         let p = from.center_m.truncate();
         match anchor {
-            Anchor::Thing(to, at) => {
+            RelationTarget::Thing(to, at) => {
                 let (axis, d) = (course(to), p - *at);
                 match relation {
                     RelationKind::InFrontOf | RelationKind::Behind | RelationKind::Following => {
@@ -358,7 +358,7 @@ impl PlacedGraph<'_> {
                     _ => d.length(),
                 }
             }
-            Anchor::Lane(role, polyline) => {
+            RelationTarget::Lane(role, polyline) => {
                 let hits = self
                     .lanes(*role, *polyline)
                     .filter_map(|i| self.road.on_lane(i, p));

@@ -61,9 +61,9 @@ fn holds(road: &RoadMap, b: SceneBox, relation: RelationKind, to: NodeKind, dist
         graph.add(to)
     };
     let boxes = BTreeMap::from([(from, b)]);
-    let edge = Edge {
+    let edge = GraphEdge {
         distance_m,
-        ..Edge::new(from, relation, to)
+        ..GraphEdge::new(from, relation, to)
     };
     PlacedGraph {
         graph: &graph,
@@ -245,12 +245,12 @@ fn between_needs_both() {
         boxes: &boxes,
         road: &road,
     };
-    let edge = |from: usize, a: usize, b: usize| Edge {
+    let edge = |from: usize, a: usize, b: usize| GraphEdge {
         and: Some(ids[b]),
-        ..Edge::new(ids[from], RelationKind::Between, ids[a])
+        ..GraphEdge::new(ids[from], RelationKind::Between, ids[a])
     };
     assert!(placed.satisfied(&edge(0, 1, 2)) && !placed.satisfied(&edge(1, 0, 2)));
-    assert!(!placed.satisfied(&Edge::new(ids[0], RelationKind::Between, ids[1])));
+    assert!(!placed.satisfied(&GraphEdge::new(ids[0], RelationKind::Between, ids[1])));
 }
 
 #[test]

@@ -57,7 +57,7 @@ pub struct CameraMaps {
 
 /// Depths of the planes of a multi-plane image: plane l at near + (far - near) l / count (SyntheOcc, equation 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Planes {
+pub struct PlaneDepths {
     /// Number of planes.
     pub count: u16,
     /// Depth of the first plane along the optical axis, m.
@@ -66,7 +66,7 @@ pub struct Planes {
     pub far_m: f64,
 }
 
-impl Default for Planes {
+impl Default for PlaneDepths {
     fn default() -> Self {
         Self {
             count: 256,
@@ -76,7 +76,7 @@ impl Default for Planes {
     }
 }
 
-impl Planes {
+impl PlaneDepths {
     /// Depth of a plane along the optical axis, m.
     pub fn depth_m(&self, plane: u16) -> f64 {
         self.near_m + (self.far_m - self.near_m) * f64::from(plane) / f64::from(self.count.max(1))
@@ -104,7 +104,7 @@ pub struct MultiPlaneImage {
     /// Rows.
     pub height: usize,
     /// Depths.
-    pub planes: Planes,
+    pub planes: PlaneDepths,
     /// Start of each pixel's runs, row-major; one entry more than there are pixels.
     pub starts: Vec<u32>,
     /// Runs, near to far in each pixel.

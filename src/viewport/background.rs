@@ -1,8 +1,8 @@
 //! The gradient behind the scene, and the clearing of a part of the picture that is drawn again.
 
 use super::Background;
-use super::change::Change;
-use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::change::PictureChange;
+use super::drawable::{DrawContext, DrawInput, DrawLayer, Drawable, Gpu, Pipelines};
 use super::shared::PipelineSpec;
 
 /// Drawable of the background behind everything.
@@ -17,8 +17,8 @@ impl Drawable for Backdrop {
         "background"
     }
 
-    fn prepare(&mut self, _gpu: Gpu<'_>, _shown: Shown<'_>) -> Change {
-        Change::None // it is in the uniforms
+    fn prepare(&mut self, _gpu: Gpu<'_>, _shown: DrawInput<'_>) -> PictureChange {
+        PictureChange::None // it is in the uniforms
     }
 
     fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
@@ -41,10 +41,10 @@ impl Drawable for Backdrop {
             .build(samples, || gradient.build(gpu.device, gpu.shared, samples));
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &DrawContext<'_>, layer: DrawLayer) {
         let drawn = match layer {
-            Layer::Erase => view.part && self.eraser.set(pass, view),
-            Layer::Backdrop => {
+            DrawLayer::Erase => view.part && self.eraser.set(pass, view),
+            DrawLayer::Backdrop => {
                 view.options.background != Background::Transparent && self.gradient.set(pass, view)
             }
             _ => false,

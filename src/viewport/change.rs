@@ -7,12 +7,12 @@ use scene::Extent;
 
 /// A part of the ego frame, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Part {
+pub(super) struct EgoBounds {
     pub low_m: DVec3,
     pub high_m: DVec3,
 }
 
-impl Part {
+impl EgoBounds {
     /// The box around some points; `None` without any, or if one is not finite.
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         let mut part: Option<Self> = None;
@@ -46,19 +46,19 @@ impl Part {
 
 /// How much of a picture differs from the one drawn last.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) enum Change {
+pub(super) enum PictureChange {
     /// No change.
     #[default]
     None,
     /// These parts of space, and a margin of so many pixels around them in the picture.
-    Parts(Vec<(Part, f64)>),
+    Parts(Vec<(EgoBounds, f64)>),
     /// Any change: the whole picture is drawn.
     All,
 }
 
-impl Change {
+impl PictureChange {
     /// One part, with a margin in pixels.
-    pub fn part(part: Part, around_px: f64) -> Self {
+    pub fn part(part: EgoBounds, around_px: f64) -> Self {
         Self::Parts(vec![(part, around_px)])
     }
 
@@ -89,14 +89,14 @@ const MOST: f64 = 0.6;
 /// The pixels that a change touches in a picture of `size`, whose camera maps the ego frame by `clip_from_ego`. [`Whole`] if
 /// that is most of it or cannot be told (a part reaches behind the eye); `Ok(None)` if none are.
 pub(super) fn touched(
-    change: &Change,
+    change: &PictureChange,
     clip_from_ego: &DMat4,
     size: [u32; 2],
 ) -> Result<Option<PixelRect>, Whole> {
     let parts = match change {
-        Change::None => return Ok(None),
-        Change::All => return Err(Whole),
-        Change::Parts(parts) => parts,
+        PictureChange::None => return Ok(None),
+        PictureChange::All => return Err(Whole),
+        PictureChange::Parts(parts) => parts,
     };
     let [w, h] = size.map(f64::from);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -188,9 +188,9 @@ mod tests {
 
     const SIZE: [u32; 2] = [400, 300];
 
-    fn cube(at: DVec3, side_m: f64) -> Change {
-        Change::part(
-            Part {
+    fn cube(at: DVec3, side_m: f64) -> PictureChange {
+        PictureChange::part(
+            EgoBounds {
                 low_m: at - side_m / 2.0,
                 high_m: at + side_m / 2.0,
             },
@@ -225,16 +225,16 @@ mod tests {
     fn what_cannot_be_told_is_all() {
         let camera = ViewCamera::default();
         let clip = camera.clip_from_world(SIZE);
-        let touch = |change: &Change| touched(change, &clip, SIZE);
-        assert_eq!(touch(&Change::None), Ok(None));
-        assert_eq!(touch(&Change::All), Err(Whole));
+        let touch = |change: &PictureChange| touched(change, &clip, SIZE);
+        assert_eq!(touch(&PictureChange::None), Ok(None));
+        assert_eq!(touch(&PictureChange::All), Err(Whole));
         assert_eq!(touch(&cube(camera.eye_m(), 4.0)), Err(Whole), "around the eye");
         assert_eq!(touch(&cube(DVec3::ZERO, 200.0)), Err(Whole), "everything");
-        let nowhere = Part::around([DVec3::NAN]);
+        let nowhere = EgoBounds::around([DVec3::NAN]);
         assert_eq!(nowhere, None);
         let mut both = cube(DVec3::new(4.0, 0.0, 0.0), 1.0);
-        both.add(Change::All);
-        assert_eq!(both, Change::All);
+        both.add(PictureChange::All);
+        assert_eq!(both, PictureChange::All);
         // Beside the picture nothing is touched.
         let ahead = camera.axes()[2];
         let beside = camera.eye_m() + ahead * 10.0 + camera.axes()[0] * 100.0;

@@ -7,9 +7,9 @@ use std::fmt::Debug;
 
 use glam::DMat4;
 
-use super::change::Change;
+use super::change::PictureChange;
 use super::marks::Marks;
-use super::shared::{FrameUniforms, Shared};
+use super::shared::{DrawableResources, FrameUniforms};
 use super::{ViewCamera, ViewOptions, ViewScene};
 
 /// Every drawable. Those of one layer are drawn in this order: near opaque things before far ones, since a software
@@ -18,9 +18,9 @@ pub(super) fn all() -> Vec<Box<dyn Drawable>> {
     vec![
         Box::new(super::ego::Ego::default()),
         Box::new(super::points::Points::default()),
-        Box::new(super::voxels::Voxels::new()),
+        Box::new(super::voxels::VoxelDrawable::new()),
         Box::new(super::background::Backdrop::default()),
-        Box::new(super::ground::Ground::default()),
+        Box::new(super::ground::LayoutDrawable::default()),
         Box::new(super::lines::Lines::default()),
         Box::new(super::faces::Faces::default()),
     ]
@@ -28,7 +28,7 @@ pub(super) fn all() -> Vec<Box<dyn Drawable>> {
 
 /// Layer in which a thing is drawn. A drawable may draw in several layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Layer {
+pub(super) enum DrawLayer {
     /// First of all, if only a part of a picture is drawn again: clears that part.
     Erase,
     /// Opaque things.
@@ -45,16 +45,16 @@ pub(super) enum Layer {
     Lines,
 }
 
-impl Layer {
+impl DrawLayer {
     /// Every layer, first to last.
-    pub const ALL: [Layer; 7] = [
-        Layer::Erase,
-        Layer::Opaque,
-        Layer::Backdrop,
-        Layer::Ground,
-        Layer::Covered,
-        Layer::Fills,
-        Layer::Lines,
+    pub const ALL: [DrawLayer; 7] = [
+        DrawLayer::Erase,
+        DrawLayer::Opaque,
+        DrawLayer::Backdrop,
+        DrawLayer::Ground,
+        DrawLayer::Covered,
+        DrawLayer::Fills,
+        DrawLayer::Lines,
     ];
 }
 
@@ -63,12 +63,12 @@ impl Layer {
 pub(super) struct Gpu<'a> {
     pub device: &'a wgpu::Device,
     pub queue: &'a wgpu::Queue,
-    pub shared: &'a Shared,
+    pub shared: &'a DrawableResources,
 }
 
 /// The scene of a picture, and values of it that several drawables need.
 #[derive(Clone, Copy)]
-pub(super) struct Shown<'a> {
+pub(super) struct DrawInput<'a> {
     pub scene: &'a ViewScene<'a>,
     /// Lines and fills over the voxels.
     pub marks: &'a Marks,
@@ -78,13 +78,13 @@ pub(super) struct Shown<'a> {
 
 /// How a picture is drawn.
 #[derive(Clone, Copy)]
-pub(super) struct View<'a> {
+pub(super) struct DrawContext<'a> {
     pub camera: &'a ViewCamera,
     /// Maps the ego frame to clip space (-1 to 1) of the part that is drawn, with room for the discs of LiDAR returns.
     pub clip: DMat4,
     pub uniforms: &'a FrameUniforms,
     pub options: &'a ViewOptions,
-    pub shared: &'a Shared,
+    pub shared: &'a DrawableResources,
     /// Samples per pixel, 1 or 4.
     pub samples: u32,
     /// True if only a part of the picture is drawn again.
@@ -98,13 +98,13 @@ pub(super) trait Drawable: Debug + Send + Sync {
 
     /// Takes over the scene and uploads the parts that differ from the last one. Returns which part of the picture
     /// changes. Parts that did not change must cost no more than a comparison.
-    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change;
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: DrawInput<'_>) -> PictureChange;
 
     /// Makes its pipelines for a number of samples per pixel, if they are not there yet.
     fn build(&mut self, gpu: Gpu<'_>, samples: u32);
 
     /// Draws its part of a layer.
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer);
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &DrawContext<'_>, layer: DrawLayer);
 
     /// Memory of its vertices on the device, bytes.
     fn memory_bytes(&self) -> u64;
@@ -126,7 +126,7 @@ impl Pipelines {
     }
 
     /// Sets the pipeline for the view's samples; false if it was never made.
-    pub fn set(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>) -> bool {
+    pub fn set(&self, pass: &mut wgpu::RenderPass<'_>, view: &DrawContext<'_>) -> bool {
         match &self.0[usize::from(view.samples > 1)] {
             Some(pipeline) => {
                 pass.set_pipeline(pipeline);

@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::change::Change;
-use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::change::PictureChange;
+use super::drawable::{DrawContext, DrawInput, DrawLayer, Drawable, Gpu, Pipelines};
 use super::options::drop_m;
 use super::shared::{PipelineSpec, VertexBuffer};
 use scene::{Pose, SensorRig};
@@ -39,17 +39,17 @@ impl Drawable for Ego {
         "ego"
     }
 
-    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: DrawInput<'_>) -> PictureChange {
         let (rig, options) = (shown.scene.rig, shown.scene.options);
         let lowered = options.drop_m.to_bits();
         let held = self.uploaded.as_ref().map(|(rig, lowered)| (rig, *lowered));
         if held == Some((rig, lowered)) {
-            return Change::None;
+            return PictureChange::None;
         }
         let vertices = car(rig, drop_m(options));
         self.quads.write(gpu.device, gpu.queue, "ego", &vertices);
         self.uploaded = Some((rig.clone(), lowered));
-        Change::All
+        PictureChange::All
     }
 
     fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
@@ -63,8 +63,8 @@ impl Drawable for Ego {
             .build(samples, || spec.build(gpu.device, gpu.shared, samples));
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
-        if layer == Layer::Opaque && view.options.ego && self.pipelines.set(pass, view) {
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &DrawContext<'_>, layer: DrawLayer) {
+        if layer == DrawLayer::Opaque && view.options.ego && self.pipelines.set(pass, view) {
             self.quads.draw_quads(pass, view.shared, 0..self.quads.quads());
         }
     }
@@ -89,7 +89,7 @@ pub(super) fn measures(rig: &SensorRig) -> (DVec3, DVec3) {
     )
 }
 
-struct Builder {
+struct EgoMeshBuilder {
     size: DVec3,
     base: DVec3,
     vertices: Vec<EgoVertex>,
@@ -98,7 +98,7 @@ struct Builder {
 /// The mesh stands `drop_m` below the physical ground.
 fn car(rig: &SensorRig, drop_m: f64) -> Vec<EgoVertex> {
     let (size, center) = measures(rig);
-    let mut b = Builder {
+    let mut b = EgoMeshBuilder {
         size,
         base: DVec3::new(center.x, center.y, -drop_m),
         vertices: Vec::new(),
@@ -160,7 +160,7 @@ fn car(rig: &SensorRig, drop_m: f64) -> Vec<EgoVertex> {
     b.vertices
 }
 
-impl Builder {
+impl EgoMeshBuilder {
     /// Moves the built vehicle to where the vehicle is.
     fn place(&mut self, vehicle: &Pose) {
         if *vehicle == Pose::IDENTITY {

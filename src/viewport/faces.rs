@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::change::Change;
-use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::change::PictureChange;
+use super::drawable::{DrawContext, DrawInput, DrawLayer, Drawable, Gpu, Pipelines};
 use super::marks::{differing, marked};
 use super::shared::{PipelineSpec, VertexBuffer};
 
@@ -67,10 +67,10 @@ impl Drawable for Faces {
         "faces"
     }
 
-    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: DrawInput<'_>) -> PictureChange {
         let list = &shown.marks.faces;
         if *list == self.list {
-            return Change::None;
+            return PictureChange::None;
         }
         let differing = differing(&list.vertices, &self.list.vertices);
         self.quads.write(gpu.device, gpu.queue, "faces", &list.vertices);
@@ -91,8 +91,8 @@ impl Drawable for Faces {
             .build(samples, || spec.build(gpu.device, gpu.shared, samples));
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
-        if layer == Layer::Fills && self.pipelines.set(pass, view) {
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &DrawContext<'_>, layer: DrawLayer) {
+        if layer == DrawLayer::Fills && self.pipelines.set(pass, view) {
             self.quads.draw_quads(pass, view.shared, 0..self.quads.quads());
         }
     }

@@ -1,7 +1,7 @@
 //! The layout: road markings painted on ground voxels, and a thin plane with all of its layers.
 
-use super::change::{Change, Part};
-use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::change::{EgoBounds, PictureChange};
+use super::drawable::{DrawContext, DrawInput, DrawLayer, Drawable, Gpu, Pipelines};
 use super::shared::PipelineSpec;
 use super::{LayoutPlane, ViewOptions};
 use scene::{BevLayer, Class, Extent, VoxelGrid};
@@ -29,7 +29,7 @@ const PLANE: [BevLayer; 8] = [
 
 /// Drawable of the layout: both textures as uploaded last, compared to learn what changed.
 #[derive(Debug, Default)]
-pub(super) struct Ground {
+pub(super) struct LayoutDrawable {
     pipelines: Pipelines,
     extent: Option<Extent>,
     markings: Vec<[u8; 4]>,
@@ -40,20 +40,26 @@ pub(super) struct Ground {
 /// Sources of both textures: grid, fingerprint of the cells, kind of plane, voxels shown.
 type MadeFrom = (VoxelGrid, u64, LayoutPlane, bool);
 
-impl Ground {
+impl LayoutDrawable {
     /// Uploads the textures if they differ from the last ones. Returns which part of the picture changes.
-    fn update(&mut self, gpu: Gpu<'_>, bev: &[u32], grid: &VoxelGrid, options: &ViewOptions) -> Change {
+    fn update(
+        &mut self,
+        gpu: Gpu<'_>,
+        bev: &[u32],
+        grid: &VoxelGrid,
+        options: &ViewOptions,
+    ) -> PictureChange {
         let extent = grid.extent();
         let markings = marking_texels(extent, bev);
         let plane = plane_texels(bev, grid, options);
         if self.extent == Some(extent) && markings == self.markings && plane == self.plane {
-            return Change::None;
+            return PictureChange::None;
         }
         gpu.shared.write_layout(gpu.queue, &markings, &plane);
         // Shown on top of the ground voxels of a column, and beneath them.
         let mut seen = match self.extent == Some(extent) {
-            true => Change::None,
-            false => Change::All,
+            true => PictureChange::None,
+            false => PictureChange::All,
         };
         for (texels, old) in [(&markings, &self.markings), (&plane, &self.plane)] {
             seen.add(differing(texels, old, grid));
@@ -69,12 +75,12 @@ impl Ground {
         (bev, bricks): (&[u32], &[usize]),
         grid: &VoxelGrid,
         options: &ViewOptions,
-    ) -> Change {
+    ) -> PictureChange {
         let extent = grid.extent();
         if !only_where_empty(options) || bev.len() != extent.columns() {
-            return Change::None;
+            return PictureChange::None;
         }
-        let mut around = Columns::default();
+        let mut around = ChangedTexels::default();
         for &brick in bricks {
             let ([x0, y0], [w, h]) = grid.brick_columns(brick);
             for (x, y) in (x0..x0 + w).flat_map(|x| (y0..y0 + h).map(move |y| (x, y))) {
@@ -86,7 +92,7 @@ impl Ground {
             }
         }
         let seen = around.change(extent);
-        if seen != Change::None {
+        if seen != PictureChange::None {
             gpu.shared.write_layout(gpu.queue, &self.markings, &self.plane);
         }
         seen
@@ -98,12 +104,12 @@ impl Ground {
     }
 }
 
-impl Drawable for Ground {
+impl Drawable for LayoutDrawable {
     fn name(&self) -> &'static str {
         "ground"
     }
 
-    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: DrawInput<'_>) -> PictureChange {
         let (scene, options) = (shown.scene, shown.scene.options);
         let now = (
             scene.grid.clone(),
@@ -118,7 +124,7 @@ impl Drawable for Ground {
         let changed = held.map(|(grid, ..)| scene.grid.changed_bricks(grid));
         self.made_from = Some(now);
         match changed {
-            Some(bricks) if bricks.is_empty() => Change::None,
+            Some(bricks) if bricks.is_empty() => PictureChange::None,
             Some(bricks) => self.update_bricks(gpu, (scene.bev, &bricks), scene.grid, options),
             None => self.update(gpu, scene.bev, scene.grid, options),
         }
@@ -136,8 +142,8 @@ impl Drawable for Ground {
             .build(samples, || spec.build(gpu.device, gpu.shared, samples));
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
-        if layer == Layer::Ground
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &DrawContext<'_>, layer: DrawLayer) {
+        if layer == DrawLayer::Ground
             && self.is_visible()
             && view.uniforms.shows_layout_plane()
             && self.pipelines.set(pass, view)
@@ -153,9 +159,9 @@ impl Drawable for Ground {
 
 /// Columns whose texels differ, and the highest ground voxel among them.
 #[derive(Default)]
-struct Columns(Option<([usize; 3], [usize; 3])>);
+struct ChangedTexels(Option<([usize; 3], [usize; 3])>);
 
-impl Columns {
+impl ChangedTexels {
     fn add(&mut self, grid: &VoxelGrid, x: usize, y: usize) {
         let is_ground = |label: &u8| Class::from_id(*label).is_some_and(Class::is_ground);
         let top = grid.column(x, y).iter().rposition(is_ground).map_or(1, |z| z + 1);
@@ -166,24 +172,24 @@ impl Columns {
         ));
     }
 
-    fn change(self, extent: Extent) -> Change {
+    fn change(self, extent: Extent) -> PictureChange {
         let Some((low, high)) = self.0 else {
-            return Change::None;
+            return PictureChange::None;
         };
-        let part = Part::of_voxels(extent, low, high);
+        let part = EgoBounds::of_voxels(extent, low, high);
         // The plane lies just above the top of the lowest bin.
         let high_m = part.high_m + glam::DVec3::Z * 0.05;
-        Change::part(Part { high_m, ..part }, 2.0)
+        PictureChange::part(EgoBounds { high_m, ..part }, 2.0)
     }
 }
 
 /// Where texels `[y][x]` differ, up to the highest ground voxel.
-fn differing(new: &[[u8; 4]], old: &[[u8; 4]], grid: &VoxelGrid) -> Change {
+fn differing(new: &[[u8; 4]], old: &[[u8; 4]], grid: &VoxelGrid) -> PictureChange {
     let extent = grid.extent();
     if new.len() != old.len() || new.len() != extent.columns() {
-        return Change::All;
+        return PictureChange::All;
     }
-    let mut around = Columns::default();
+    let mut around = ChangedTexels::default();
     for (i, _) in new.iter().zip(old).enumerate().filter(|(_, (a, b))| a != b) {
         around.add(grid, i % extent.nx(), i / extent.nx());
     }

@@ -1,7 +1,7 @@
 //! The 3D view as an image in memory: screenshots, `shot`, tests.
 
 use super::error::one_line;
-use super::target::Target;
+use super::target::RenderTarget;
 use super::{ViewCamera, ViewScene, Viewport, ViewportError};
 
 /// Largest supersampling: 64 pictures for one.
@@ -35,7 +35,7 @@ impl Viewport {
             return Err(ViewportError::Supersample(supersample));
         }
         let samples = if supersample > 1 { 1 } else { scene.options.samples };
-        let target = Target::new(device, [width, height], super::view::samples(samples));
+        let target = RenderTarget::new(device, [width, height], super::view::samples(samples));
         let mut sums = vec![0u32; width as usize * height as usize * 4];
         for i in 0..supersample * supersample {
             let part = |k: u32| (f64::from(k) + 0.5) / f64::from(supersample) - 0.5;
@@ -70,7 +70,7 @@ fn straight_alpha(sums: &[u32], n: u32) -> Vec<u8> {
 pub(super) fn read_back(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    target: &Target,
+    target: &RenderTarget,
 ) -> Result<Vec<u8>, ViewportError> {
     let [width, height] = target.size;
     let row = width as usize * 4;

@@ -37,7 +37,7 @@ pub struct LightBlock {
 
 /// A step of a ray: columns aside, and bins up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Step {
+struct RayStep {
     aside: [isize; 2],
     dz: u32,
 }
@@ -52,8 +52,8 @@ struct Offset {
 /// The rays of both kinds, as steps from a cell's centre.
 #[derive(Clone, Debug)]
 pub struct LightRays {
-    sun: Vec<Vec<Step>>,
-    sky: Vec<Vec<Step>>,
+    sun: Vec<Vec<RayStep>>,
+    sky: Vec<Vec<RayStep>>,
 }
 
 impl Default for LightRays {
@@ -99,14 +99,14 @@ impl LightRays {
         let column = |i: usize| {
             // The margin of the padded columns is wide enough for this one and for every ray.
             let at = solid.index(origin[0] + i % w, origin[1] + i / w) - stride - 1;
-            Column {
+            ColumnLight {
                 own: solid.padded()[at],
                 sun: free_counts(solid.padded(), &sun, at),
                 sky: free_counts(solid.padded(), &sky, at),
             }
         };
         // Around an edit in this thread: others would take longer to wake.
-        let traced: Vec<Column> = match w * h {
+        let traced: Vec<ColumnLight> = match w * h {
             0..=FEW => (0..w * h).map(column).collect(),
             _ => pool::run(|| (0..w * h).into_par_iter().with_min_len(64).map(column).collect()),
         };
@@ -124,19 +124,19 @@ impl LightRays {
     }
 }
 
-struct Column {
+struct ColumnLight {
     own: u16,
     sun: [u8; Extent::NZ],
     sky: [u8; Extent::NZ],
 }
 
-impl Column {
+impl ColumnLight {
     fn is_free(&self, z: usize) -> bool {
         self.own >> z & 1 == 0
     }
 }
 
-fn cell(around: [&Column; 5], z: usize) -> [u8; 2] {
+fn cell(around: [&ColumnLight; 5], z: usize) -> [u8; 2] {
     let byte = |v: f64| (v * 255.0).round() as u8;
     let here = around[0];
     if here.is_free(z) {
@@ -159,8 +159,8 @@ fn cell(around: [&Column; 5], z: usize) -> [u8; 2] {
 }
 
 /// Offsets of the steps of rays in columns, `stride` apart along x.
-fn offsets(rays: &[Vec<Step>], stride: usize) -> Vec<Vec<Offset>> {
-    let offset = |&Step { aside: [dx, dy], dz }: &Step| Offset {
+fn offsets(rays: &[Vec<RayStep>], stride: usize) -> Vec<Vec<Offset>> {
+    let offset = |&RayStep { aside: [dx, dy], dz }: &RayStep| Offset {
         offset: dx * stride as isize + dy,
         dz,
     };
@@ -188,7 +188,7 @@ fn free_counts(columns: &[u16], rays: &[Vec<Offset>], at: usize) -> [u8; Extent:
 }
 
 /// Cells that a ray from a cell's centre enters, until it is above the grid or `reach` cells away.
-fn steps(dir: glam::DVec3, reach: f64) -> Vec<Step> {
+fn steps(dir: glam::DVec3, reach: f64) -> Vec<RayStep> {
     let mut cell = [0isize; 3];
     let axis_t = |d: f64| if d == 0.0 { f64::INFINITY } else { 0.5 / d.abs() };
     let mut next = [axis_t(dir.x), axis_t(dir.y), axis_t(dir.z)];
@@ -204,7 +204,7 @@ fn steps(dir: glam::DVec3, reach: f64) -> Vec<Step> {
             break;
         }
         debug_assert!(cell[0].unsigned_abs() < REACH && cell[1].unsigned_abs() < REACH);
-        out.push(Step {
+        out.push(RayStep {
             aside: [cell[0], cell[1]],
             dz: cell[2] as u32,
         });

@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::change::Change;
-use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::change::PictureChange;
+use super::drawable::{DrawContext, DrawInput, DrawLayer, Drawable, Gpu, Pipelines};
 use super::marks::{differing, marked};
 use super::shared::{PipelineSpec, VertexBuffer};
 
@@ -92,11 +92,11 @@ impl Drawable for Lines {
         "lines"
     }
 
-    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: DrawInput<'_>) -> PictureChange {
         let px = f64::from(shown.scene.options.pixels_per_point);
         let lists = [&shown.marks.see_through, &shown.marks.plain];
         let buffers = [(&mut self.see_through, "lines"), (&mut self.plain, "plain lines")];
-        let mut seen = Change::None;
+        let mut seen = PictureChange::None;
         for ((list, held), (buffer, label)) in lists.into_iter().zip(&mut self.lists).zip(buffers) {
             if list == held {
                 continue;
@@ -117,13 +117,13 @@ impl Drawable for Lines {
         }
     }
 
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &DrawContext<'_>, layer: DrawLayer) {
         let all = |pass: &mut wgpu::RenderPass<'_>, lines: &VertexBuffer| {
             lines.draw_quads(pass, view.shared, 0..lines.quads());
         };
         match layer {
-            Layer::Covered if self.covered.set(pass, view) => all(pass, &self.see_through),
-            Layer::Lines if self.in_sight.set(pass, view) => {
+            DrawLayer::Covered if self.covered.set(pass, view) => all(pass, &self.see_through),
+            DrawLayer::Lines if self.in_sight.set(pass, view) => {
                 all(pass, &self.plain);
                 all(pass, &self.see_through);
             }

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 
-use super::change::{Change, Part};
+use super::change::{EgoBounds, PictureChange};
 use super::faces::{FaceList, FaceStyle};
 use super::lines::LineList;
 use super::meshing::NORMALS;
@@ -249,13 +249,13 @@ pub(super) fn differing<V: Copy + PartialEq>(a: &[V], b: &[V]) -> Vec<V> {
 }
 
 /// The change of a picture by some points and what is drawn around them, up to `around_px` pixels wide.
-pub(super) fn marked(points_m: impl Iterator<Item = DVec3>, around_px: f64) -> Change {
+pub(super) fn marked(points_m: impl Iterator<Item = DVec3>, around_px: f64) -> PictureChange {
     let mut points_m = points_m.peekable();
     if points_m.peek().is_none() {
-        return Change::None;
+        return PictureChange::None;
     }
     // They are drawn a little nearer to the viewer than they are, along the line of sight: at the same pixels.
-    Part::around(points_m).map_or(Change::All, |part| Change::part(part, around_px))
+    EgoBounds::around(points_m).map_or(PictureChange::All, |part| PictureChange::part(part, around_px))
 }
 
 fn lighter(color: [u8; 3], by: f32) -> [u8; 3] {

@@ -7,8 +7,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::LidarView;
-use super::change::{Change, Part, may_be_seen};
-use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::change::{EgoBounds, PictureChange, may_be_seen};
+use super::drawable::{DrawContext, DrawInput, DrawLayer, Drawable, Gpu, Pipelines};
 use super::shared::{PipelineSpec, VertexBuffer};
 use scene::{Class, LidarPoint, LidarSweep};
 
@@ -90,7 +90,7 @@ const SQUARES: usize = 16;
 struct Square {
     triangles: VertexBuffer,
     vertices: Vec<PointVertex>, // as uploaded
-    part: Option<Part>,
+    part: Option<EgoBounds>,
 }
 
 /// Drawable of a sweep.
@@ -116,12 +116,12 @@ impl Drawable for Points {
         "points"
     }
 
-    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: DrawInput<'_>) -> PictureChange {
         let options = shown.scene.options;
         let lidar = shown.scene.lidar.filter(|_| options.lidar);
         let points = lidar.map_or(0, fingerprint);
         if self.uploaded == Some(points) {
-            return Change::None;
+            return PictureChange::None;
         }
         self.uploaded = Some(points);
         let nothing = LidarSweep::default();
@@ -142,12 +142,12 @@ impl Drawable for Points {
 
     /// Draws the squares in view. A square beyond -1 or 1 in the space of `clip` is out of view: `clip` leaves room for
     /// the discs, see [`Points::reach_px`].
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
-        if layer != Layer::Opaque || !self.pipelines.set(pass, view) {
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &DrawContext<'_>, layer: DrawLayer) {
+        if layer != DrawLayer::Opaque || !self.pipelines.set(pass, view) {
             return;
         }
         for square in &self.squares {
-            let seen = |p: Part| may_be_seen(p.low_m, p.high_m, &view.clip);
+            let seen = |p: EgoBounds| may_be_seen(p.low_m, p.high_m, &view.clip);
             if square.part.is_some_and(seen) {
                 square.triangles.draw_triangles(pass);
             }
@@ -183,7 +183,13 @@ impl Points {
 
     /// Uploads the returns; a return without a colour is white, a non-finite one is left out. Returns which part of the
     /// picture changes, with discs of `point_px`.
-    fn write(&mut self, gpu: Gpu<'_>, sweep: &LidarSweep, colors: &[[u8; 4]], point_px: f64) -> Change {
+    fn write(
+        &mut self,
+        gpu: Gpu<'_>,
+        sweep: &LidarSweep,
+        colors: &[[u8; 4]],
+        point_px: f64,
+    ) -> PictureChange {
         // The ground is drawn where the labels have it, so returns on the physical ground are moved with it.
         let lift_m = if sweep.physical {
             super::GROUND_TOP_M as f32
@@ -201,15 +207,15 @@ impl Points {
                 squares[square_of(vertex.position_m)].extend([vertex; 3]);
             }
         }
-        let mut seen = Change::None;
+        let mut seen = PictureChange::None;
         for (square, vertices) in self.squares.iter_mut().zip(squares) {
             if square.vertices == vertices {
                 continue;
             }
             let at = |v: &PointVertex| DVec3::from_array(v.position_m.map(f64::from));
-            let part = Part::around(vertices.iter().map(at));
+            let part = EgoBounds::around(vertices.iter().map(at));
             for part in [part, square.part].into_iter().flatten() {
-                seen.add(Change::part(part, Self::reach_px(point_px)));
+                seen.add(PictureChange::part(part, Self::reach_px(point_px)));
             }
             square.triangles.write(gpu.device, gpu.queue, "points", &vertices);
             (square.vertices, square.part) = (vertices, part);

@@ -119,7 +119,7 @@ impl FrameUniforms {
 
 /// Device objects that all drawables bind or draw with.
 #[derive(Debug)]
-pub(super) struct Shared {
+pub(super) struct DrawableResources {
     pub bind_group_layout: wgpu::BindGroupLayout,
     pub quad_indices: wgpu::Buffer,
     uniforms: wgpu::Buffer,
@@ -137,7 +137,7 @@ struct OfMap {
     layout: wgpu::Texture,
 }
 
-impl Shared {
+impl DrawableResources {
     /// For a map of this extent.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, extent: Extent) -> Self {
         let uniforms = device.create_buffer(&wgpu::BufferDescriptor {
@@ -388,7 +388,12 @@ impl PipelineSpec<'_> {
         topology: wgpu::PrimitiveTopology::TriangleList,
     };
 
-    pub fn build(&self, device: &wgpu::Device, shared: &Shared, samples: u32) -> wgpu::RenderPipeline {
+    pub fn build(
+        &self,
+        device: &wgpu::Device,
+        shared: &DrawableResources,
+        samples: u32,
+    ) -> wgpu::RenderPipeline {
         let source = SHADERS
             .iter()
             .find(|s| s.name == self.shader)
@@ -489,7 +494,12 @@ impl VertexBuffer {
     }
 
     /// Draws some of the rectangles, four vertices each, with the pipeline that is set.
-    pub fn draw_quads(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared, quads: std::ops::Range<u32>) {
+    pub fn draw_quads(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        shared: &DrawableResources,
+        quads: std::ops::Range<u32>,
+    ) {
         self.draw_quads_as(pass, shared, quads, 0);
     }
 
@@ -497,7 +507,7 @@ impl VertexBuffer {
     pub fn draw_quads_as(
         &self,
         pass: &mut wgpu::RenderPass<'_>,
-        shared: &Shared,
+        shared: &DrawableResources,
         quads: std::ops::Range<u32>,
         instance: u32,
     ) {

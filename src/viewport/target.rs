@@ -4,7 +4,7 @@ use super::shared::{COLOR_FORMAT, DEPTH_FORMAT};
 
 /// Own colour and depth target; egui's pass has no depth.
 #[derive(Debug)]
-pub(super) struct Target {
+pub(super) struct RenderTarget {
     pub size: [u32; 2],
     pub samples: u32,
     pub color: wgpu::Texture,
@@ -13,7 +13,7 @@ pub(super) struct Target {
     depth: wgpu::TextureView,
 }
 
-impl Target {
+impl RenderTarget {
     /// `size` in pixels, each side at least 1 and within the device's limit; `samples` 1 or 4.
     pub fn new(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
         let texture = |label, format, sample_count, usage| {

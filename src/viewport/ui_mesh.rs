@@ -41,12 +41,12 @@ pub struct UiPainter {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     format: wgpu::TextureFormat,
-    canvas: Option<Canvas>,
+    canvas: Option<UiPicture>,
 }
 
 /// The picture that the window shows, kept here because the target of a frame does not keep the last one.
 #[derive(Debug)]
-struct Canvas {
+struct UiPicture {
     size: [u32; 2],
     view: wgpu::TextureView,
     group: wgpu::BindGroup,
@@ -272,7 +272,7 @@ impl UiPainter {
                 entry(2, self.screen.as_entire_binding()),
             ],
         });
-        self.canvas = Some(Canvas { size, view, group });
+        self.canvas = Some(UiPicture { size, view, group });
         true
     }
 

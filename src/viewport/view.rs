@@ -2,28 +2,28 @@
 
 use std::hash::{DefaultHasher, Hasher as _};
 
-use super::change::{self, Change, PixelRect};
-use super::drawable::{self, Drawable, Gpu, Layer, Shown, View};
+use super::change::{self, PictureChange, PixelRect};
+use super::drawable::{self, DrawContext, DrawInput, DrawLayer, Drawable, Gpu};
 use super::marks::Marks;
 use super::points::Points;
-use super::shared::{FrameUniforms, Shared};
-use super::target::Target;
+use super::shared::{DrawableResources, FrameUniforms};
+use super::target::RenderTarget;
 use super::{ViewCamera, ViewOptions, ViewScene};
 use scene::Extent;
 
 /// The 3D view: device objects of every drawable, and the picture drawn last.
 #[derive(Debug)]
 pub struct Viewport {
-    shared: Shared,
+    shared: DrawableResources,
     drawables: Vec<Box<dyn Drawable>>,
-    pub(super) target: Target,
-    drawn: Option<Drawn>,
+    pub(super) target: RenderTarget,
+    drawn: Option<FrameInputs>,
     drawn_rect: PixelRect,
 }
 
 /// The part of the input of the last picture that no drawable keeps.
 #[derive(Clone, Debug, PartialEq)]
-struct Drawn {
+struct FrameInputs {
     uniforms: FrameUniforms,
     options: ViewOptions,
 }
@@ -42,9 +42,9 @@ impl Viewport {
     /// Makes the device objects; pipelines follow with the first picture.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
         Self {
-            shared: Shared::new(device, queue, nothing()),
+            shared: DrawableResources::new(device, queue, nothing()),
             drawables: drawable::all(),
-            target: Target::new(device, [1, 1], 1),
+            target: RenderTarget::new(device, [1, 1], 1),
             drawn: None,
             drawn_rect: [0; 4],
         }
@@ -69,19 +69,19 @@ impl Viewport {
         let max = device.limits().max_texture_dimension_2d;
         let size = [width.min(max), height.min(max)];
         let samples = samples(scene.options.samples);
-        let now = Drawn {
+        let now = FrameInputs {
             uniforms: FrameUniforms::new(camera, scene.options, scene.grid.extent(), size, [0.0; 2]),
             options: scene.options.clone(),
         };
         let mut change = self.prepare(device, queue, scene);
-        let same_view = |drawn: &Drawn| drawn.uniforms == now.uniforms && drawn.options == now.options;
+        let same_view = |drawn: &FrameInputs| drawn.uniforms == now.uniforms && drawn.options == now.options;
         if self.target.size != size || self.target.samples != samples {
-            self.target = Target::new(device, size, samples);
-            change = Change::All;
-        } else if !self.target.keeps() && change != Change::None
+            self.target = RenderTarget::new(device, size, samples);
+            change = PictureChange::All;
+        } else if !self.target.keeps() && change != PictureChange::None
             || !self.drawn.as_ref().is_some_and(same_view)
         {
-            change = Change::All;
+            change = PictureChange::All;
         }
         let clip = camera.sane().clip_from_world(size);
         let part = match change::touched(&change, &clip, size) {
@@ -132,7 +132,7 @@ impl Viewport {
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        target: &Target,
+        target: &RenderTarget,
         camera: &ViewCamera,
         scene: &ViewScene<'_>,
         jitter_px: [f64; 2],
@@ -150,15 +150,20 @@ impl Viewport {
     }
 
     /// Brings the drawables up to date. Returns which part of the picture changes by that.
-    fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, scene: &ViewScene<'_>) -> Change {
-        let (marks, mut change) = (Marks::of(scene), Change::None);
+    fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        scene: &ViewScene<'_>,
+    ) -> PictureChange {
+        let (marks, mut change) = (Marks::of(scene), PictureChange::None);
         self.shared.fit(device, queue, scene.grid.extent());
         let gpu = Gpu {
             device,
             queue,
             shared: &self.shared,
         };
-        let shown = Shown {
+        let shown = DrawInput {
             scene,
             marks: &marks,
             bev: fingerprint(bytemuck::cast_slice(scene.bev)),
@@ -185,7 +190,7 @@ impl Viewport {
         &self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        target: &Target,
+        target: &RenderTarget,
         (camera, uniforms, options): (&ViewCamera, &FrameUniforms, &ViewOptions),
         part: Option<PixelRect>,
     ) {
@@ -193,7 +198,7 @@ impl Viewport {
         let rect = part.unwrap_or([0, 0, w, h]);
         let margin_px = Points::reach_px(f64::from(options.point_px));
         let camera = &camera.sane();
-        let view = View {
+        let view = DrawContext {
             camera,
             clip: change::crop(rect, margin_px, target.size) * camera.clip_from_world(target.size),
             uniforms,
@@ -212,7 +217,7 @@ impl Viewport {
             if let Some([x, y, w, h]) = part {
                 pass.set_scissor_rect(x, y, w, h);
             }
-            for layer in Layer::ALL {
+            for layer in DrawLayer::ALL {
                 for drawable in &self.drawables {
                     drawable.draw(&mut pass, &view, layer);
                 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::change::{Change, Part, may_be_seen};
-use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::change::{EgoBounds, PictureChange, may_be_seen};
+use super::drawable::{DrawContext, DrawInput, DrawLayer, Drawable, Gpu, Pipelines};
 use super::light::{LightBlock, LightRays, REACH};
 use super::meshing::{BrickMesh, ColumnBox, NORMALS, Solidity, Visible, join, mesh_bricks};
 use super::shared::{PipelineSpec, VertexBuffer};
@@ -26,9 +26,9 @@ const EDGE_PX: f64 = 2.0;
 
 /// Drawable of the occupancy.
 #[derive(Debug)]
-pub(super) struct Voxels {
+pub(super) struct VoxelDrawable {
     pipelines: Pipelines,
-    held: Held,
+    held: UploadedVoxels,
     rays: LightRays,
     lit: [usize; 2],     // columns that have light
     light: Vec<[u8; 2]>, // theirs as uploaded, `[z][y][x]`
@@ -37,7 +37,7 @@ pub(super) struct Voxels {
 
 /// The voxels that are shown, as last uploaded.
 #[derive(Debug)]
-struct Held {
+struct UploadedVoxels {
     grid: VoxelGrid, // holding it keeps the addresses of its bricks unique
     visible: Visible,
     solid: Solidity,
@@ -68,15 +68,15 @@ pub(super) fn visible(options: &ViewOptions) -> Visible {
     }
 }
 
-impl Drawable for Voxels {
+impl Drawable for VoxelDrawable {
     fn name(&self) -> &'static str {
         "voxels"
     }
 
-    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: DrawInput<'_>) -> PictureChange {
         let (grid, visible) = (shown.scene.grid, visible(shown.scene.options));
         if visible == self.held.visible && same_bricks(grid, &self.held.grid) {
-            return Change::None;
+            return PictureChange::None;
         }
         self.update(gpu, grid, visible)
     }
@@ -95,8 +95,8 @@ impl Drawable for Voxels {
 
     /// Draws the bricks in view, nearest first, and of each only the sides that face the eye. A brick beyond -1 or 1 in
     /// the space of `clip` is out of view.
-    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
-        if layer != Layer::Opaque || !self.pipelines.set(pass, view) {
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &DrawContext<'_>, layer: DrawLayer) {
+        if layer != DrawLayer::Opaque || !self.pipelines.set(pass, view) {
             return;
         }
         for (b, _) in self.in_view(view.camera, &view.clip) {
@@ -118,7 +118,7 @@ impl Drawable for Voxels {
     }
 }
 
-impl Held {
+impl UploadedVoxels {
     fn nothing_of(extent: Extent) -> Self {
         Self {
             grid: VoxelGrid::over(extent),
@@ -152,11 +152,11 @@ impl Held {
     }
 }
 
-impl Voxels {
+impl VoxelDrawable {
     pub fn new() -> Self {
         Self {
             pipelines: Pipelines::default(),
-            held: Held::nothing_of(nothing()),
+            held: UploadedVoxels::nothing_of(nothing()),
             rays: LightRays::new(),
             lit: [0; 2],
             light: Vec::new(),
@@ -166,7 +166,7 @@ impl Voxels {
 
     /// Starts with an empty map of another extent.
     fn resize(&mut self, extent: Extent, lit: [usize; 2]) {
-        self.held = Held::nothing_of(extent);
+        self.held = UploadedVoxels::nothing_of(extent);
         self.lit = lit;
         self.light = vec![[255; 2]; lit[0] * lit[1] * Extent::NZ];
         self.bricks.clear();
@@ -175,7 +175,7 @@ impl Voxels {
     }
 
     /// Takes over a grid. Returns which part of the picture changes.
-    fn update(&mut self, gpu: Gpu<'_>, grid: &VoxelGrid, visible: Visible) -> Change {
+    fn update(&mut self, gpu: Gpu<'_>, grid: &VoxelGrid, visible: Visible) -> PictureChange {
         let resized = grid.extent() != self.held.grid.extent();
         if resized {
             self.resize(grid.extent(), gpu.shared.lit_columns());
@@ -188,7 +188,7 @@ impl Voxels {
         };
         let mut seen = match same && !resized {
             true => self.differing(grid, &changed),
-            false => Change::All,
+            false => PictureChange::All,
         };
         let (stale, shape_changed) = self.held.take(grid, &changed, visible);
         let meshes = mesh_bricks(grid, &self.held.solid, &stale);
@@ -209,18 +209,18 @@ impl Voxels {
     }
 
     /// Where the labels of some bricks differ from those held.
-    fn differing(&self, grid: &VoxelGrid, bricks: &[usize]) -> Change {
-        let (mut seen, held) = (Change::None, self.held.grid.bricks());
+    fn differing(&self, grid: &VoxelGrid, bricks: &[usize]) -> PictureChange {
+        let (mut seen, held) = (PictureChange::None, self.held.grid.bricks());
         for &b in bricks {
             if let Some(part) = differing_part(grid.extent(), b, &grid.bricks()[b], &held[b]) {
-                seen.add(Change::part(part, EDGE_PX));
+                seen.add(PictureChange::part(part, EDGE_PX));
             }
         }
         seen
     }
 
     /// Remembers baked light; where surfaces look different by it.
-    fn keep_light(&mut self, block: &LightBlock) -> Change {
+    fn keep_light(&mut self, block: &LightBlock) -> PictureChange {
         let ([x0, y0], [w, h]) = (block.origin, block.size);
         let [lit_x, lit_y] = self.lit;
         let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
@@ -233,15 +233,15 @@ impl Voxels {
             }
         }
         if low[0] == usize::MAX {
-            return Change::None;
+            return PictureChange::None;
         }
         // Light is interpolated half a voxel off a surface.
-        let part = Part::of_voxels(self.held.grid.extent(), low, high);
-        let wider = Part {
+        let part = EgoBounds::of_voxels(self.held.grid.extent(), low, high);
+        let wider = EgoBounds {
             low_m: part.low_m - 2.0 * Extent::VOXEL_M,
             high_m: part.high_m + 2.0 * Extent::VOXEL_M,
         };
-        Change::part(wider, EDGE_PX)
+        PictureChange::part(wider, EDGE_PX)
     }
 
     fn in_view(&self, camera: &ViewCamera, clip: &DMat4) -> Vec<(usize, f64)> {
@@ -299,7 +299,7 @@ fn facing(
 }
 
 /// The box around the voxels whose label differs.
-fn differing_part(extent: Extent, brick: usize, new: &Brick, old: &Brick) -> Option<Part> {
+fn differing_part(extent: Extent, brick: usize, new: &Brick, old: &Brick) -> Option<EgoBounds> {
     let ([x0, y0], _) = brick_columns(extent, brick);
     let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
     for (column, (new, old)) in new.chunks(BRICK).zip(old.chunks(BRICK)).enumerate() {
@@ -312,7 +312,7 @@ fn differing_part(extent: Extent, brick: usize, new: &Brick, old: &Brick) -> Opt
             high = [0, 1, 2].map(|k| high[k].max(at[k] + 1));
         }
     }
-    (low[0] < usize::MAX).then(|| Part::of_voxels(extent, low, high))
+    (low[0] < usize::MAX).then(|| EgoBounds::of_voxels(extent, low, high))
 }
 
 fn neighbours(extent: Extent, brick: usize) -> impl Iterator<Item = usize> {
@@ -354,7 +354,7 @@ mod tests {
     fn an_edit_meshes_its_brick_again_and_those_beside_it() {
         let extent = Extent::new([-150, -110], [480, 320]).expect("sound");
         let mut grid = VoxelGrid::over(extent);
-        let mut held = Held::nothing_of(extent);
+        let mut held = UploadedVoxels::nothing_of(extent);
         assert_eq!(held.take(&grid, &[], Visible::ALL), (vec![], None));
         let [x, y] = extent.column_at(100.0, 5.0).expect("inside");
         grid.set(x, y, 3, 4);

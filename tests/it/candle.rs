@@ -5,17 +5,17 @@ use std::sync::Arc;
 
 use dataset::occupancy_frame;
 use glam::DVec3;
-use nets::layout::input::{EdgeInput, LayoutInput, MAP_CHANNELS, MAP_SIDE, NodeInput, Shape, VALUES};
+use nets::layout::input::{EdgeInput, LayoutInput, MAP_CHANNELS, MAP_SIDE, NodeGeometry, NodeInput, VALUES};
 use nets::layout::net::LayoutNet;
 use nets::lidar::LidarNet;
-use nets::lidar::field::{Field, Ray};
+use nets::lidar::field::{LidarRay, SignedDistanceField};
 use nets::lidar::update::Changed;
 use nets::picture::{self, Condition, Motion, PictureDit, PictureVae, RingSize};
 use nets::refiner::{Refiner, Rough};
 use nets::scenery::{self, SceneryCondition, SceneryNet};
 use nets::text::TextEncoder;
 use nets::{
-    CELLS, CellRect, ColumnHeights, DecoderInput, DitCondition, KeysValues, Middle, OccDit, OccModels,
+    BlockReuse, CELLS, CellRect, ColumnHeights, DecoderInput, DitCondition, KeysValues, OccDit, OccModels,
     OccVae, tokens_of,
 };
 use nn::weights::WeightFile;
@@ -110,7 +110,14 @@ fn a_part_of_the_dit_agrees_with_candle() {
     assert!(a[0] != a[1]);
     let prepared = candle.prepare(&condition).expect("a sound condition");
     let mut kept = KeysValues::default();
-    let eight = candle.forward_in(&x, 1.0, &prepared, &mut kept, Precision::Int8, Middle::Computed);
+    let eight = candle.forward_in(
+        &x,
+        1.0,
+        &prepared,
+        &mut kept,
+        Precision::Int8,
+        BlockReuse::Computed,
+    );
     let told = eight.expect_err("not there").to_string();
     assert_eq!(told, "candle: eight bits are for the processor's own kernels");
 }
@@ -123,9 +130,9 @@ fn part_of<B: Ops>(net: &OccDit<B>, condition: &DitCondition, x: &[f32], cells: 
         .prepare_some(condition, tokens_of(cells, 1))
         .expect("a sound condition");
     let mut added = Vec::new();
-    let middle = Middle::Kept(&mut added);
+    let middle = BlockReuse::Kept(&mut added);
     let first = net.forward_in(x, 437.5, &some, &mut kept, Precision::F32, middle);
-    let middle = Middle::Reused(&added);
+    let middle = BlockReuse::Reused(&added);
     let second = net.forward_in(x, 300.0, &some, &mut kept, Precision::F32, middle);
     [first.expect("finite"), second.expect("finite")]
 }
@@ -208,19 +215,19 @@ fn refiner_and_scenery_agree_with_candle() {
 }
 
 /// All that a field holds of its voxels.
-fn of_voxels(field: &Field) -> [Vec<f32>; 3] {
-    let flat = |lines: &[nets::lidar::field::Line]| lines.iter().flat_map(|l| l.0).collect();
+fn of_voxels(field: &SignedDistanceField) -> [Vec<f32>; 3] {
+    let flat = |lines: &[nets::lidar::field::SiteFeatures]| lines.iter().flat_map(|l| l.0).collect();
     let planes = field.planes.iter().flatten().copied().collect();
     [flat(&field.hidden), flat(&field.appearance), planes]
 }
 
 /// Signed distances along some rays, and the logits of lost echoes.
-fn seen<B: Ops>(net: &LidarNet<B>, field: &Field) -> [Vec<f32>; 2] {
+fn seen<B: Ops>(net: &LidarNet<B>, field: &SignedDistanceField) -> [Vec<f32>; 2] {
     let t: Vec<f32> = (0..120).map(|i| 2.0 + 0.25 * i as f32).collect();
     let mut out = [Vec::new(), Vec::new()];
     for i in 0..64 {
         let (around, up) = (f64::from(i) * 0.098, -0.2 + 0.03 * f64::from(i % 8));
-        let ray = Ray {
+        let ray = LidarRay {
             origin: DVec3::new(0.3, -0.2, 1.8),
             direction: DVec3::new(around.cos() * up.cos(), around.sin() * up.cos(), up.sin()),
             range_m: [1.0, 60.0],
@@ -245,7 +252,7 @@ fn lidar_agrees_with_candle() {
     let mut a = ours.field(&grid).expect("finite");
     let mut b = theirs.field(&grid).expect("finite");
     assert!(a.keys == b.keys && a.keys.len() > 10_000);
-    let compare = |a: &Field, b: &Field, when: &str| {
+    let compare = |a: &SignedDistanceField, b: &SignedDistanceField, when: &str| {
         let names = ["hidden", "appearance", "planes"];
         for ((a, b), name) in of_voxels(a).iter().zip(&of_voxels(b)).zip(names) {
             agree(a, b, &format!("{name} {when}"));
@@ -269,7 +276,7 @@ fn layout_input(nodes: usize, map: bool) -> LayoutInput {
         kind: (i % 27) as u8,
         state: (i % 4) as u8,
         size: (i % 3) as u8,
-        shape: [Shape::None, Shape::Box, Shape::Line][i % 3],
+        shape: [NodeGeometry::None, NodeGeometry::Box, NodeGeometry::Line][i % 3],
         locked: i % 5 == 0,
         values: values.try_into().expect("the numbers of a node"),
     };
@@ -295,7 +302,7 @@ fn layout_agrees_with_candle() {
     for (nodes, map) in [(1, false), (40, true), (77, false)] {
         let mut input = layout_input(nodes, map);
         if nodes == 1 {
-            input.nodes[0].shape = Shape::Box;
+            input.nodes[0].shape = NodeGeometry::Box;
             input.nodes[0].locked = false;
             input.edges.clear();
         }

@@ -4,7 +4,7 @@
 //! max(1, max|x|) of the run, 1e-9 for `f64_final`, max(1e-5, 4 gap) for diffusers (its tables are f32).
 
 use diffusion::inversion::{Refinement, invert, round_trip_error};
-use diffusion::schedule::{Betas, Level, Schedule, Spacing};
+use diffusion::schedule::{Betas, NoiseLevel, Schedule, Spacing};
 use diffusion::solver::{Branch, Denoiser, Guidance, Prediction, Sampler, SolverError, SolverKind};
 use serde::Deserialize;
 
@@ -195,23 +195,23 @@ fn row_05_solvers() {
 
 /// Levels evenly spaced in log(sigma / alpha) from the noisiest to the cleanest step, then clean data; the
 /// network is shown `timesteps`.
-fn even_in_log_snr(schedule: &Schedule, timesteps: &[usize]) -> Vec<Level> {
+fn even_in_log_snr(schedule: &Schedule, timesteps: &[usize]) -> Vec<NoiseLevel> {
     let log_ratio = |t: usize| {
         let level = schedule.level(t);
         (level.sigma / level.alpha).ln()
     };
     let (first, last) = (log_ratio(schedule.train_steps() - 1), log_ratio(0));
     let n = timesteps.len();
-    let mut levels: Vec<Level> = timesteps
+    let mut levels: Vec<NoiseLevel> = timesteps
         .iter()
         .enumerate()
         .map(|(i, t)| {
             let log_ratio = first + (last - first) * i as f64 / (n - 1) as f64;
             // alpha^2 = 1 / (1 + ratio^2)
-            Level::from_log_alpha_bar(*t as f64, -(2.0 * log_ratio).exp().ln_1p())
+            NoiseLevel::from_log_alpha_bar(*t as f64, -(2.0 * log_ratio).exp().ln_1p())
         })
         .collect();
-    levels.push(Level::CLEAN);
+    levels.push(NoiseLevel::CLEAN);
     levels
 }
 
@@ -329,7 +329,7 @@ fn row_21_and_23_obelm() {
 #[test]
 fn row_08_second_order_solvers() {
     let schedule = schedule("linear", 1000, false);
-    let gauss = |levels: &[Level], solver| {
+    let gauss = |levels: &[NoiseLevel], solver| {
         let mut model = ObelmModel {
             gauss: true,
             schedule: &schedule,
@@ -343,12 +343,12 @@ fn row_08_second_order_solvers() {
         let states = sampler.sample(vec![1.0], &mut model, |_| Ok(())).expect("finite");
         // The exact flow from the first level to the last one with noise.
         let (a, b) = (levels[0], levels[levels.len() - 1]);
-        let spread = |l: &Level| (l.alpha * l.alpha * 0.25 + l.sigma * l.sigma).sqrt();
+        let spread = |l: &NoiseLevel| (l.alpha * l.alpha * 0.25 + l.sigma * l.sigma).sqrt();
         let exact = b.alpha * 0.3 + (1.0 - a.alpha * 0.3) * spread(&b) / spread(&a);
         (states[levels.len() - 1][0] - exact).abs()
     };
     // Twelve and more even steps in log SNR between two noisy levels.
-    let grid = |n: usize| -> Vec<Level> {
+    let grid = |n: usize| -> Vec<NoiseLevel> {
         let of = |t: usize| (schedule.level(t).sigma / schedule.level(t).alpha).ln();
         let mut at: Vec<usize> = Vec::new();
         for i in 0..=n {

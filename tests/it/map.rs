@@ -15,7 +15,7 @@ use scene::{
     VoxelGrid, draft,
 };
 use sensors::appearance::Quality;
-use sensors::cameras::{self, CameraInput, Detail, Ready, RenderContext, RenderOptions};
+use sensors::cameras::{self, CameraInput, Detail, PreparedSource, RenderContext, RenderOptions};
 
 use super::cli::{Folder, json, sceneloom};
 
@@ -277,7 +277,7 @@ fn the_window_is_one_part_of_a_larger_map() {
     for source in sources {
         let picture = |frame: &Frame| {
             let input = CameraInput { frame, ..input };
-            Ready::new(*source, &input)
+            PreparedSource::new(*source, &input)
                 .render(front, &options, RenderContext::processor())
                 .unwrap_or_else(|e| panic!("{}: {e}", source.id().name()))
         };

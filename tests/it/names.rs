@@ -16,27 +16,64 @@ const APP_FILES: usize = 28;
 
 /// Words that open a comment without saying what the item is.
 const OPENINGS: [&str; 24] = [
-    "What", "That", "Those", "This", "Who", "Whom", "Whose", "Of", "As", "Something", "Nothing", "Nobody", "Somebody",
-    "Anything", "Everything", "Both", "Or", "And", "Else", "Where", "When", "All that", "The same", "It",
+    "What",
+    "That",
+    "Those",
+    "This",
+    "Who",
+    "Whom",
+    "Whose",
+    "Of",
+    "As",
+    "Something",
+    "Nothing",
+    "Nobody",
+    "Somebody",
+    "Anything",
+    "Everything",
+    "Both",
+    "Or",
+    "And",
+    "Else",
+    "Where",
+    "When",
+    "All that",
+    "The same",
+    "It",
 ];
 
 /// A file's lines up to its tests.
 fn program(text: &str) -> Vec<&str> {
-    text.split("#[cfg(test)]\nmod tests").next().unwrap_or("").lines().collect()
+    text.split("#[cfg(test)]\nmod tests")
+        .next()
+        .unwrap_or("")
+        .lines()
+        .collect()
 }
 
 fn is_test(name: &str) -> bool {
     name.split('/').any(|part| {
         let part = part.trim_end_matches(".rs");
-        part.starts_with("test") || part.ends_with("_test") || part.ends_with("_tests") || part.contains("tests_")
+        part.starts_with("test")
+            || part.ends_with("_test")
+            || part.ends_with("_tests")
+            || part.contains("tests_")
     })
 }
 
 /// Files of the program with their names from the root.
 fn sources() -> Vec<(String, String)> {
-    let name = |path: &std::path::PathBuf| path.strip_prefix(root()).expect("below the root").display().to_string();
+    let name = |path: &std::path::PathBuf| {
+        path.strip_prefix(root())
+            .expect("below the root")
+            .display()
+            .to_string()
+    };
     let files = rust("src").into_iter().chain(rust("assets"));
-    files.filter(|p| !is_test(&name(p))).map(|p| (name(&p), read(&p))).collect()
+    files
+        .filter(|p| !is_test(&name(p)))
+        .map(|p| (name(&p), read(&p)))
+        .collect()
 }
 
 /// The name of a type that a line declares, at any depth; an associated type of a trait is none.
@@ -52,7 +89,9 @@ fn declared(line: &str) -> Option<&str> {
     let is_nested_alias = kind == "type" && line.starts_with([' ', '\t']);
     let declares = matches!(kind, "struct" | "enum" | "trait" | "type" | "union") && !is_nested_alias;
     let name = words.next().filter(|_| declares)?;
-    let end = name.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(name.len());
+    let end = name
+        .find(|c: char| !c.is_alphanumeric() && c != '_')
+        .unwrap_or(name.len());
     Some(&name[..end]).filter(|n| n.starts_with(char::is_uppercase))
 }
 
@@ -65,7 +104,8 @@ fn opened<'a>(line: &'a str, before: &str) -> Option<&'a str> {
 
 fn opens_without_noun(text: &str) -> bool {
     OPENINGS.iter().any(|opening| {
-        text.strip_prefix(opening).is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || "-'".contains(c)))
+        text.strip_prefix(opening)
+            .is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || "-'".contains(c)))
     })
 }
 
@@ -76,7 +116,8 @@ fn has_bare_literal(line: &str) -> bool {
         outside_of_strings.match_indices(literal).any(|(at, _)| {
             let before = outside_of_strings[..at].chars().next_back();
             let after = outside_of_strings[at + 3..].chars().next();
-            !before.is_some_and(|c| c.is_alphanumeric() || "._".contains(c)) && !after.is_some_and(|c| c.is_alphanumeric() || c == '_')
+            !before.is_some_and(|c| c.is_alphanumeric() || "._".contains(c))
+                && !after.is_some_and(|c| c.is_alphanumeric() || c == '_')
         })
     })
 }
@@ -87,7 +128,10 @@ fn names_say_what_things_are() {
     for (file, text) in sources() {
         for (number, line) in program(&text).iter().enumerate() {
             if let Some(name) = declared(line) {
-                places.entry(name.to_owned()).or_default().push(format!("{file}:{}", number + 1));
+                places
+                    .entry(name.to_owned())
+                    .or_default()
+                    .push(format!("{file}:{}", number + 1));
             }
         }
     }
@@ -116,10 +160,17 @@ fn comments_open_with_what_the_item_is() {
             before = line;
         }
     }
-    println!("{} of {all} comments open without a noun or a verb", nounless.len());
+    println!(
+        "{} of {all} comments open without a noun or a verb",
+        nounless.len()
+    );
     assert!(all > 10_000, "{all} comments were found");
     let share = nounless.len() as f64 / all as f64;
-    assert!(share <= NOUNLESS_COMMENTS, "{:.1} %: {nounless:#?}", 100.0 * share);
+    assert!(
+        share <= NOUNLESS_COMMENTS,
+        "{:.1} %: {nounless:#?}",
+        100.0 * share
+    );
 }
 
 #[test]
@@ -129,14 +180,30 @@ fn facts_of_the_grid_and_the_app_do_not_spread() {
         let lines = program(&text);
         let of_grid = file.contains("src/scene/grid") || file.contains("lattice");
         if !of_grid {
-            literals.extend(lines.iter().filter(|l| has_bare_literal(l)).map(|l| format!("{file}: {}", l.trim())));
+            literals.extend(
+                lines
+                    .iter()
+                    .filter(|l| has_bare_literal(l))
+                    .map(|l| format!("{file}: {}", l.trim())),
+            );
         }
-        if lines.iter().any(|l| l.starts_with("impl") && l.contains(" SceneloomApp ")) {
+        if lines
+            .iter()
+            .any(|l| l.starts_with("impl") && l.contains(" SceneloomApp "))
+        {
             apps.push(file);
         }
     }
-    println!("{} lines with a bare 2.5 or 0.4, {} files with impl SceneloomApp", literals.len(), apps.len());
-    assert!(literals.len() <= BARE_LITERALS, "{}: {literals:#?}", literals.len());
+    println!(
+        "{} lines with a bare 2.5 or 0.4, {} files with impl SceneloomApp",
+        literals.len(),
+        apps.len()
+    );
+    assert!(
+        literals.len() <= BARE_LITERALS,
+        "{}: {literals:#?}",
+        literals.len()
+    );
     assert!(apps.len() <= APP_FILES, "{}: {apps:#?}", apps.len());
 }
 

@@ -551,7 +551,7 @@ fn old_files_take_their_conditions_from_the_prompt() {
 /// Background and relief, of the frame and of its source, come back bit for bit; a file of version 1 opens without either.
 #[test]
 fn background_and_relief_come_back_and_version_1_opens() {
-    use scene::background::{Background, Form, Line, LineKind, Tree, TreeKind};
+    use scene::background::{Background, Form, LineKind, SceneryLine, Tree, TreeKind};
     use scene::{Relief, Thing, ThingId};
     let mut scene = clip();
     let mut background = Background::default();
@@ -564,7 +564,7 @@ fn background_and_relief_come_back_and_version_1_opens() {
     let points_m = vec![DVec2::new(-3.0, 9.0), DVec2::new(8.0, 0.1 + 0.2)];
     background.insert(Thing {
         id: ThingId(9),
-        form: Form::Line(Line::typical(LineKind::GuardRail, points_m)),
+        form: Form::Line(SceneryLine::typical(LineKind::GuardRail, points_m)),
         look: 77,
         placed: true,
     });

@@ -83,7 +83,7 @@ fn row_38_projection_reference() {
     let cloud = reference_cloud(&data);
     for (i, v) in data["cameras"].as_array().expect("cameras").iter().enumerate() {
         let camera = camera_of(v);
-        let view = project::View::new(&camera, camera.width, camera.height, 1.3);
+        let view = project::SplatCamera::new(&camera, camera.width, camera.height, 1.3);
         let mut depths = Vec::new();
         for (g, want) in cloud
             .gaussians()

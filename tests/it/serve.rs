@@ -118,7 +118,7 @@ fn write_scene(path: &Path) {
     formats::loom::save(path, &scene).expect("saved");
 }
 
-fn pose_of(pose: &::serve::wire::Pose) -> Pose {
+fn pose_of(pose: &::serve::wire::WirePose) -> Pose {
     let (at, q) = (pose.vec.expect("a place"), pose.quat.expect("a rotation"));
     Pose {
         rotation: DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into()).normalize(),
@@ -126,9 +126,9 @@ fn pose_of(pose: &::serve::wire::Pose) -> Pose {
     }
 }
 
-fn wire_of(pose: &Pose) -> ::serve::wire::Pose {
+fn wire_of(pose: &Pose) -> ::serve::wire::WirePose {
     let (at, q) = (pose.translation_m.as_vec3(), pose.rotation.as_quat());
-    ::serve::wire::Pose {
+    ::serve::wire::WirePose {
         vec: Some(::serve::wire::Vec3 {
             x: at.x,
             y: at.y,

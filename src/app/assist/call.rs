@@ -49,7 +49,7 @@ pub struct CallDef {
 
 /// Answer to a call.
 #[derive(Debug)]
-pub struct Answer {
+pub struct CallAnswer {
     /// The receipt as JSON, an object.
     pub receipt: Value,
     /// A PNG picture that goes with it.
@@ -111,13 +111,13 @@ calls! {
     /// See [`calls::new`].
     New(calls::new::New),
     /// See [`calls::open`].
-    Open(calls::open::Open),
+    Open(calls::open::OpenCall),
     /// See [`calls::save`].
     Save(calls::save::Save),
     /// See [`calls::files`].
     Files(calls::files::ListFiles),
     /// See [`calls::prompt`].
-    Prompt(calls::prompt::Prompt),
+    Prompt(calls::prompt::PromptCall),
     /// See [`calls::apply`].
     Apply(calls::apply::Apply),
     /// See [`calls::place_model`].
@@ -131,11 +131,11 @@ calls! {
     /// See [`calls::show`].
     Show(calls::show::Show),
     /// See [`calls::generate`].
-    Generate(calls::generate::Generate),
+    Generate(calls::generate::GenerateCall),
     /// See [`calls::render`].
     Render(calls::render::Render),
     /// See [`calls::check`].
-    Check(calls::check::Check),
+    Check(calls::check::CheckCall),
     /// See [`calls::diff`].
     Diff(calls::diff::Diff),
     /// See [`calls::export`].
@@ -181,9 +181,9 @@ fn unknown(name: &str) -> String {
 
 impl Call {
     /// Reads a call and carries it out; see [`Call::parse`] and [`Call::run`].
-    pub fn answer(name: &str, args: Map<String, Value>, desk: &mut Desk) -> Result<Answer, String> {
+    pub fn answer(name: &str, args: Map<String, Value>, desk: &mut Desk) -> Result<CallAnswer, String> {
         let (receipt, picture) = Self::parse(name, args)?.run(desk)?;
         let receipt = serde_json::to_value(receipt).map_err(|e| message::one_line(&e))?;
-        Ok(Answer { receipt, picture })
+        Ok(CallAnswer { receipt, picture })
     }
 }

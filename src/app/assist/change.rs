@@ -12,9 +12,9 @@ const MOST_IDS: usize = 100;
 
 /// Changes by a call. Of more than 100 boxes the first are named.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
-pub struct Change {
+pub struct ChangeSummary {
     /// Boxes by what became of them.
-    pub boxes: Counts,
+    pub boxes: ChangeCounts,
     /// Ids of boxes that came.
     pub boxes_added: Vec<u32>,
     /// Ids of boxes that went.
@@ -22,9 +22,9 @@ pub struct Change {
     /// Ids of boxes that moved, turned, or changed otherwise.
     pub boxes_changed: Vec<u32>,
     /// Things beside the road (buildings, trees, posts) by what became of them.
-    pub things: Counts,
+    pub things: ChangeCounts,
     /// Motions by what became of them; the ego vehicle counts as one.
-    pub tracks: Counts,
+    pub tracks: ChangeCounts,
     /// Cells of the map, 0.4 x 0.4 m each, in which a layer changed.
     pub layout_cells: usize,
     /// Cells set and cleared, by layer that changed.
@@ -45,7 +45,7 @@ pub struct Change {
 
 /// How many came, went and changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Counts {
+pub struct ChangeCounts {
     /// That came.
     pub added: usize,
     /// That went.
@@ -63,7 +63,7 @@ pub struct Gained {
     pub lost: usize,
 }
 
-impl Change {
+impl ChangeSummary {
     /// The differences between two states, at the moment that the later one shows.
     pub fn between(before: &Scene, after: &Scene) -> Self {
         if before.content() == after.content() {
@@ -86,7 +86,7 @@ impl Change {
         let voxels = changed_voxels(a, b);
         let (layout_cells, layers) = layers(a, b);
         Self {
-            boxes: Counts {
+            boxes: ChangeCounts {
                 added: added().count(),
                 removed: removed().count(),
                 changed: changed().count(),
@@ -108,9 +108,9 @@ impl Change {
     }
 }
 
-fn things(before: &Scene, after: &Scene) -> Counts {
+fn things(before: &Scene, after: &Scene) -> ChangeCounts {
     let (a, b) = (&before.background, &after.background);
-    Counts {
+    ChangeCounts {
         added: b.iter().filter(|t| a.get(t.id).is_none()).count(),
         removed: a.iter().filter(|t| b.get(t.id).is_none()).count(),
         changed: b
@@ -120,7 +120,7 @@ fn things(before: &Scene, after: &Scene) -> Counts {
     }
 }
 
-fn tracks(before: &Scene, after: &Scene) -> Counts {
+fn tracks(before: &Scene, after: &Scene) -> ChangeCounts {
     let (a, b) = (before.clip(), after.clip());
     let own = |was: bool, is: bool| usize::from(is && !was);
     let moved = b.tracks.iter().filter(|(id, now)| {
@@ -128,7 +128,7 @@ fn tracks(before: &Scene, after: &Scene) -> Counts {
         was.is_some_and(|was| was.motion != now.motion || was.there_s != now.there_s)
     });
     let ego_moved = a.ego.is_some() && b.ego.is_some() && a.ego != b.ego;
-    Counts {
+    ChangeCounts {
         added: b.tracks.keys().filter(|id| !a.tracks.contains_key(id)).count()
             + own(a.ego.is_some(), b.ego.is_some()),
         removed: a.tracks.keys().filter(|id| !b.tracks.contains_key(id)).count()
@@ -226,14 +226,14 @@ mod tests {
             },
         ];
         document.apply_all("Both", &edits).expect("sound edits");
-        let there = Change::between(&before, document.scene());
+        let there = ChangeSummary::between(&before, document.scene());
         assert_eq!((there.boxes.added, there.boxes_added.clone()), (1, vec![1]));
         assert_eq!(there.layout_cells, 25);
         assert_eq!(there.layers["walkway"], Gained { gained: 25, lost: 0 });
         assert!(there.classes["car"].gained > 10 && there.voxels >= there.classes["car"].gained);
-        let back = Change::between(document.scene(), &before);
+        let back = ChangeSummary::between(document.scene(), &before);
         assert_eq!((back.boxes.removed, back.voxels), (1, there.voxels));
         assert_eq!(back.classes["car"].lost, there.classes["car"].gained);
-        assert_eq!(Change::between(&before, &before), Change::default());
+        assert_eq!(ChangeSummary::between(&before, &before), ChangeSummary::default());
     }
 }

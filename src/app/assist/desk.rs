@@ -10,9 +10,9 @@ use crossbeam_channel::bounded;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::change::Change;
+use crate::change::ChangeSummary;
 use crate::folder::Folder;
-pub use app::shell::guests::Task;
+pub use app::shell::guests::DocumentTask;
 use authoring::new_ground::with_scenery;
 use editor::checks::{self, Finding};
 use editor::{Document, Edit};
@@ -30,7 +30,7 @@ pub enum Holder {
     /// The session itself.
     Own(Box<Document>),
     /// Another thread, such as that of a window. It is handed tasks, which it does one by one; false if it is gone.
-    Elsewhere(Box<dyn FnMut(Task) -> bool + Send>),
+    Elsewhere(Box<dyn FnMut(DocumentTask) -> bool + Send>),
 }
 
 impl Holder {
@@ -43,7 +43,7 @@ impl Holder {
             Self::Own(document) => Ok(work(document)),
             Self::Elsewhere(hand) => {
                 let (answer, answered) = bounded(1);
-                let task: Task = Box::new(move |document| drop(answer.send(work(document))));
+                let task: DocumentTask = Box::new(move |document| drop(answer.send(work(document))));
                 let handed = hand(task);
                 let answer = handed.then(|| answered.recv().ok()).flatten();
                 answer.context("the window that owns the scene lets nobody in any more")
@@ -60,7 +60,7 @@ pub struct Done {
     /// Name of the undo step; empty if nothing changed.
     pub step: String,
     /// Changes, in numbers.
-    pub changed: Change,
+    pub changed: ChangeSummary,
     /// Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
     pub draft_columns: usize,
     /// Warnings to look at, such as findings of the checks that were not there before.
@@ -175,7 +175,7 @@ impl Desk {
 
     /// The receipt of a change.
     pub fn done(&mut self, step: String, [before, after]: &[Arc<Scene>; 2]) -> Done {
-        let changed = Change::between(before, after);
+        let changed = ChangeSummary::between(before, after);
         self.number(before.content());
         let differs = before.content() != after.content();
         let warnings = match differs {

@@ -14,9 +14,9 @@ mod service;
 mod session;
 mod window;
 
-pub use call::{Answer, Call, CallDef, Operation, Receipt, find, table};
-pub use change::{Change, Counts, Gained, changed_voxels, gained_and_lost};
-pub use desk::{Desk, Done, Holder, Stop, Task};
+pub use call::{Call, CallAnswer, CallDef, Operation, Receipt, find, table};
+pub use change::{ChangeCounts, ChangeSummary, Gained, changed_voxels, gained_and_lost};
+pub use desk::{Desk, DocumentTask, Done, Holder, Stop};
 pub use folder::{FileEntry, Folder};
 pub use mcp::{Http, http, random_token, stdio};
 pub use service::{Busy, MOST_WAITING, Service};

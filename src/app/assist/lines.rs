@@ -6,7 +6,7 @@ use serde_json::Value;
 
 /// A line of the input.
 #[derive(Debug, PartialEq)]
-pub enum Line {
+pub enum InputLine {
     /// All of it, without its end.
     Whole(Vec<u8>),
     /// A line that was longer than allowed and was passed over.
@@ -19,7 +19,7 @@ pub enum Line {
 }
 
 /// The next line; `None` at the end of the input. A line has at most `most` bytes.
-pub fn next_line(input: &mut impl BufRead, most: usize) -> io::Result<Option<Line>> {
+pub fn next_line(input: &mut impl BufRead, most: usize) -> io::Result<Option<InputLine>> {
     let mut line = Vec::new();
     let mut long: Option<(IdFinder, u64)> = None;
     loop {
@@ -32,7 +32,7 @@ pub fn next_line(input: &mut impl BufRead, most: usize) -> io::Result<Option<Lin
             return Ok(match (long, line.is_empty()) {
                 (Some((finder, bytes)), _) => Some(too_long(finder, bytes)),
                 (None, true) => None,
-                (None, false) => Some(Line::Whole(line)),
+                (None, false) => Some(InputLine::Whole(line)),
             });
         }
         let end = chunk.iter().position(|b| *b == b'\n');
@@ -60,15 +60,15 @@ pub fn next_line(input: &mut impl BufRead, most: usize) -> io::Result<Option<Lin
                     if line.last() == Some(&b'\r') {
                         line.pop();
                     }
-                    Line::Whole(line)
+                    InputLine::Whole(line)
                 }
             }));
         }
     }
 }
 
-fn too_long(finder: IdFinder, bytes: u64) -> Line {
-    Line::TooLong {
+fn too_long(finder: IdFinder, bytes: u64) -> InputLine {
+    InputLine::TooLong {
         id: finder.id(),
         bytes,
     }
@@ -164,7 +164,7 @@ mod tests {
     use serde_json::json;
     use std::io::BufReader;
 
-    fn all(text: &[u8], most: usize, buffer: usize) -> Vec<Line> {
+    fn all(text: &[u8], most: usize, buffer: usize) -> Vec<InputLine> {
         let mut input = BufReader::with_capacity(buffer, text);
         let mut out = Vec::new();
         while let Some(line) = next_line(&mut input, most).expect("memory does not fail") {
@@ -200,19 +200,22 @@ mod tests {
                 let whole = format!("{{}}\n{text}\r\n{text}\n[1]");
                 let lines = all(whole.as_bytes(), 80, buffer);
                 assert_eq!(lines.len(), 4, "{text}");
-                assert_eq!(lines[0], Line::Whole(b"{}".to_vec()));
+                assert_eq!(lines[0], InputLine::Whole(b"{}".to_vec()));
                 for (line, more) in [(&lines[1], 1), (&lines[2], 0)] {
                     let bytes = text.len() as u64 + more;
-                    let expected = Line::TooLong {
+                    let expected = InputLine::TooLong {
                         id: id.clone(),
                         bytes,
                     };
                     assert_eq!(*line, expected, "{text} {buffer}");
                 }
-                assert_eq!(lines[3], Line::Whole(b"[1]".to_vec()));
+                assert_eq!(lines[3], InputLine::Whole(b"[1]".to_vec()));
             }
         }
         assert_eq!(all(b"", 8, 8), []);
-        assert_eq!(all(b"\n\n", 8, 8), [Line::Whole(vec![]), Line::Whole(vec![])]);
+        assert_eq!(
+            all(b"\n\n", 8, 8),
+            [InputLine::Whole(vec![]), InputLine::Whole(vec![])]
+        );
     }
 }

@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use serde_json::{Map, Value};
 
-use crate::call::{Answer, Call};
+use crate::call::{Call, CallAnswer};
 use crate::desk::{Desk, Stop};
 use job::guard::guarded;
 
@@ -19,9 +19,9 @@ const STACK: usize = 8 << 20;
 const THREAD: &str = "assistant";
 
 /// Callback that gets the answer.
-type Reply = Box<dyn FnOnce(Result<Answer, String>) + Send>;
+type Reply = Box<dyn FnOnce(Result<CallAnswer, String>) + Send>;
 
-struct Request {
+struct QueuedCall {
     name: String,
     args: Map<String, Value>,
     stop: Stop,
@@ -43,7 +43,7 @@ impl Busy {
 /// Handle by which calls are asked for. Clones ask the same thread; it ends with the last of them.
 #[derive(Clone)]
 pub struct Service {
-    queue: Sender<Request>,
+    queue: Sender<QueuedCall>,
     unanswered: Arc<AtomicUsize>,
 }
 
@@ -78,10 +78,10 @@ impl Service {
         name: String,
         args: Map<String, Value>,
         stop: Stop,
-        reply: impl FnOnce(Result<Answer, String>) + Send + 'static,
+        reply: impl FnOnce(Result<CallAnswer, String>) + Send + 'static,
     ) -> Result<(), Busy> {
         self.unanswered.fetch_add(1, Ordering::AcqRel);
-        let request = Request {
+        let request = QueuedCall {
             name,
             args,
             stop,
@@ -99,9 +99,9 @@ impl Service {
     }
 }
 
-fn work(mut desk: Desk, requests: &Receiver<Request>) {
+fn work(mut desk: Desk, requests: &Receiver<QueuedCall>) {
     for request in requests {
-        let Request {
+        let QueuedCall {
             name,
             args,
             stop,

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use crate::LONGEST_CALL;
 use crate::call::Call;
 use crate::desk::Desk;
-use crate::lines::{Line, next_line};
+use crate::lines::{InputLine, next_line};
 use job::guard::guarded;
 use scene::message::{one_line, quoted};
 
@@ -15,9 +15,9 @@ use scene::message::{one_line, quoted};
 pub fn session(desk: &mut Desk, mut input: impl BufRead, mut output: impl Write) -> io::Result<()> {
     while let Some(line) = next_line(&mut input, LONGEST_CALL)? {
         let reply = match line {
-            Line::Whole(line) if line.trim_ascii().is_empty() => continue,
-            Line::Whole(line) => reply_to(desk, &line),
-            Line::TooLong { id, bytes } => {
+            InputLine::Whole(line) if line.trim_ascii().is_empty() => continue,
+            InputLine::Whole(line) => reply_to(desk, &line),
+            InputLine::TooLong { id, bytes } => {
                 let error = format!("the line has {bytes} bytes, expected at most {LONGEST_CALL}");
                 failed(id.unwrap_or_default(), &error)
             }

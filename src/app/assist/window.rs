@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use anyhow::Context;
 use crossbeam_channel::unbounded;
 
-use crate::desk::{Desk, Holder, Task};
+use crate::desk::{Desk, DocumentTask, Holder};
 use crate::folder::Folder;
 use crate::mcp::{http, random_token};
 use crate::service::Service;
-use app::shell::guests::{Door, OpenDoor, Wake};
+use app::shell::guests::{AssistantListener, OpenDoor, Wake};
 
 /// The port that is tried first, so that clients find the window again.
 pub const PORT: u16 = 7333;
@@ -23,11 +23,11 @@ pub struct WindowDoor {
     pub port: u16,
 }
 
-impl Door for WindowDoor {
+impl AssistantListener for WindowDoor {
     fn open(&mut self, wake: Wake) -> anyhow::Result<OpenDoor> {
         let folder = Folder::new(&self.folder)?;
         let (sender, tasks) = unbounded();
-        let hand = move |task: Task| {
+        let hand = move |task: DocumentTask| {
             let sent = sender.send(task).is_ok();
             wake();
             sent

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 
 use super::deep_pictures;
-use super::plan::{Base, Change, Generate, Output, Plan, video};
-use super::record::{FILE, FileRecord, Findings, Record};
+use super::plan::{Base, BatchGeneration, BatchPlan, Output, VariantChange, video};
+use super::record::{FILE, FileRecord, Findings, VariantRecord};
 use super::thumb;
 use crate::camera_views::LidarModel;
 use crate::clip_export::{ClipOptions, ClipView, clip};
@@ -19,7 +19,7 @@ use authoring::new_ground::with_scenery;
 use authoring::whole::scenery_first;
 use editor::checks::Severity;
 use editor::{Document, Edit, apply_all};
-use formats::export::Span;
+use formats::export::ExportSpan;
 use formats::recipe::{Recipe, hex_of};
 use formats::{atomic, loom};
 use job::pipeline::OccPipeline;
@@ -35,7 +35,7 @@ const CLIP_SIZE: [u32; 2] = [400, 225];
 
 /// Maker of the variants of a plan.
 pub struct Maker {
-    plan: Plan,
+    plan: BatchPlan,
     /// Folder of the plan, to which its paths are relative.
     folder: std::path::PathBuf,
     models: Option<Arc<OccModels>>,
@@ -44,7 +44,7 @@ pub struct Maker {
 impl Maker {
     /// A maker for a plan in a folder. Errors if the plan asks for networks that are not there, or for a quality that
     /// no preset has.
-    pub fn new(plan: Plan, folder: &Path) -> anyhow::Result<Self> {
+    pub fn new(plan: BatchPlan, folder: &Path) -> anyhow::Result<Self> {
         let models = match &plan.generate {
             Some(generate) => {
                 params_of(generate, 0)?;
@@ -60,17 +60,17 @@ impl Maker {
     }
 
     /// The plan.
-    pub fn plan(&self) -> &Plan {
+    pub fn plan(&self) -> &BatchPlan {
         &self.plan
     }
 
     /// Makes a variant in an empty folder that exists, and returns its record. The record is the last file that is
     /// written. Errors in one line.
-    pub fn make(&self, variant: usize, into: &Path) -> anyhow::Result<Record> {
-        let mut record = Record {
+    pub fn make(&self, variant: usize, into: &Path) -> anyhow::Result<VariantRecord> {
+        let mut record = VariantRecord {
             variant,
             changes: self.changes(variant),
-            ..Record::default()
+            ..VariantRecord::default()
         };
         let scene = self.scene_of(&record)?;
         let recipe = Recipe::of(&scene);
@@ -101,14 +101,14 @@ impl Maker {
     }
 
     /// The changes that a variant takes, by axis.
-    pub fn changes(&self, variant: usize) -> BTreeMap<String, Vec<Change>> {
+    pub fn changes(&self, variant: usize) -> BTreeMap<String, Vec<VariantChange>> {
         let values = self.plan.values_of(variant);
         let axes = self.plan.sweep.iter().zip(values);
         axes.map(|(axis, i)| (axis.name.clone(), axis.value(i))).collect()
     }
 
     /// The changes in the order of the plan.
-    fn in_order<'r>(&self, record: &'r Record) -> Vec<&'r Change> {
+    fn in_order<'r>(&self, record: &'r VariantRecord) -> Vec<&'r VariantChange> {
         let axes = self.plan.sweep.iter();
         axes.flat_map(|axis| record.changes.get(&axis.name).into_iter().flatten())
             .collect()
@@ -116,20 +116,20 @@ impl Maker {
 
     /// The scene of a variant.
     pub fn scene(&self, variant: usize) -> anyhow::Result<Scene> {
-        self.scene_of(&Record {
+        self.scene_of(&VariantRecord {
             variant,
             changes: self.changes(variant),
-            ..Record::default()
+            ..VariantRecord::default()
         })
     }
 
-    fn scene_of(&self, record: &Record) -> anyhow::Result<Scene> {
+    fn scene_of(&self, record: &VariantRecord) -> anyhow::Result<Scene> {
         let changes = self.in_order(record);
         let (mut seed, mut base) = (self.plan.seed, &self.plan.base);
         for change in &changes {
             match change {
-                Change::Seed(new) => seed = *new,
-                Change::Base(new) => base = new,
+                VariantChange::Seed(new) => seed = *new,
+                VariantChange::Base(new) => base = new,
                 _ => {}
             }
         }
@@ -231,7 +231,7 @@ impl Maker {
         let Some(format) = formats::export::from_id(&output.format) else {
             bail!("format {:?} is not known", output.format);
         };
-        if format.span == Span::Clip && !first {
+        if format.span == ExportSpan::Clip && !first {
             return Ok(());
         }
         make()?;
@@ -266,7 +266,7 @@ fn clip_options(output: &Output, scene: &Scene) -> ClipOptions {
 }
 
 /// The knobs of a generation.
-fn params_of(generate: &Generate, seed: u64) -> anyhow::Result<GenParams> {
+fn params_of(generate: &BatchGeneration, seed: u64) -> anyhow::Result<GenParams> {
     let presets = Presets::bundled();
     let Some(preset) = presets.named(&generate.quality) else {
         let names: Vec<&str> = presets.all.iter().map(|s| s.name.as_str()).collect();
@@ -289,18 +289,18 @@ fn params_of(generate: &Generate, seed: u64) -> anyhow::Result<GenParams> {
 }
 
 /// The edits that make a change in a scene.
-fn edits_of(change: &Change, scene: &Scene, seed: u64) -> anyhow::Result<Vec<Edit>> {
+fn edits_of(change: &VariantChange, scene: &Scene, seed: u64) -> anyhow::Result<Vec<Edit>> {
     Ok(match change {
-        Change::Seed(_) | Change::Base(_) => Vec::new(),
-        Change::Conditions { time, weather } => {
+        VariantChange::Seed(_) | VariantChange::Base(_) => Vec::new(),
+        VariantChange::Conditions { time, weather } => {
             let timed = time.map_or(scene.conditions, |time| scene.conditions.at(time));
             vec![Edit::SetConditions {
                 conditions: weather.map_or(timed, |weather| timed.under(weather)),
             }]
         }
-        Change::Words(words) => by_words(words, scene, seed)?,
-        Change::Edits(edits) => text::with_conditions(edits, scene.conditions.seed),
-        Change::Offset { id, by_m, turn_deg } => {
+        VariantChange::Words(words) => by_words(words, scene, seed)?,
+        VariantChange::Edits(edits) => text::with_conditions(edits, scene.conditions.seed),
+        VariantChange::Offset { id, by_m, turn_deg } => {
             let Some(b) = scene.frame().boxes.get(id) else {
                 bail!("offset: box {} does not exist", id.0);
             };
@@ -316,7 +316,7 @@ fn edits_of(change: &Change, scene: &Scene, seed: u64) -> anyhow::Result<Vec<Edi
                 size_m: None,
             }]
         }
-        Change::Count { class, n } => counted(*class, *n, scene, seed)?,
+        VariantChange::Count { class, n } => counted(*class, *n, scene, seed)?,
     })
 }
 

@@ -15,6 +15,6 @@ pub mod record;
 pub mod run;
 mod thumb;
 
-pub use plan::Plan;
+pub use plan::BatchPlan;
 pub use queue::Queue;
-pub use run::{Batch, Progress, Report, Shard};
+pub use run::{Batch, BatchProgress, BatchReport, Shard};

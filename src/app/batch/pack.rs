@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
-use super::record::{FILE, Record};
+use super::record::{FILE, VariantRecord};
 use formats::{atomic, input};
 use scene::plain_name;
 
@@ -29,7 +29,7 @@ pub fn is_there(output: &Path, pack: usize) -> bool {
 }
 
 /// Reads the records of the variants in a pack.
-pub fn records(output: &Path, pack: usize) -> anyhow::Result<Vec<Record>> {
+pub fn records(output: &Path, pack: usize) -> anyhow::Result<Vec<VariantRecord>> {
     let path = records_of(output, pack);
     let text = input::read_text(&path, input::LARGEST_TEXT)?;
     serde_json::from_str(&text).with_context(|| path.display().to_string())
@@ -37,7 +37,7 @@ pub fn records(output: &Path, pack: usize) -> anyhow::Result<Vec<Record>> {
 
 /// Moves variants from their folders into a tar and removes the folders. Files are named `000012.FORMAT.FILE`, files of
 /// a clip's later frames `000012_f0003.FORMAT.FILE`. The same variants give the same bytes: no times, no owners.
-pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<()> {
+pub fn write(output: &Path, pack: usize, records: &[VariantRecord]) -> anyhow::Result<()> {
     let text = serde_json::to_string_pretty(records)?;
     atomic::write(&records_of(output, pack), text.as_bytes())?;
     let half = output.join(format!(".{}.tar", stem(pack)));

@@ -22,7 +22,7 @@ pub const MOST_VARIANTS: usize = 1_000_000;
 /// A plan. Unknown keys are refused by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Plan {
+pub struct BatchPlan {
     /// `sceneloom_batch`.
     pub format: String,
     /// 1.
@@ -35,13 +35,13 @@ pub struct Plan {
     /// Axes that vary. A variant takes one value of each, in this order. There is one variant for every combination;
     /// the last axis changes fastest.
     #[serde(default)]
-    pub sweep: Vec<Axis>,
+    pub sweep: Vec<VariationAxis>,
     /// Number of combinations to make, drawn by the seed; all of them if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sample: Option<usize>,
     /// Makes the occupancy with the networks; drafted without networks if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub generate: Option<Generate>,
+    pub generate: Option<BatchGeneration>,
     /// Runs the quality checks and counts their findings.
     #[serde(default)]
     pub check: bool,
@@ -64,7 +64,7 @@ pub enum Base {
     /// A file that the program reads, beside the plan.
     Scene(PathBuf),
     /// A place on the roads of a file.
-    Road(Road),
+    Road(RoadPlace),
     /// A new scene by words, drawn by the seed.
     Words(String),
 }
@@ -72,7 +72,7 @@ pub enum Base {
 /// A place on roads.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Road {
+pub struct RoadPlace {
     /// The road file, beside the plan.
     pub file: PathBuf,
     /// The ego vehicle's place in the file's frame, m; a good place on a lane if left out.
@@ -86,7 +86,7 @@ pub struct Road {
 /// One axis: a property that varies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Axis {
+pub struct VariationAxis {
     /// Its name in records and in the index.
     pub name: String,
     /// The values, each a list of changes made together.
@@ -112,15 +112,15 @@ pub struct Seeds {
 #[serde(untagged)]
 pub enum Value {
     /// Several changes.
-    Many(Vec<Change>),
+    Many(Vec<VariantChange>),
     /// One change.
-    One(Change),
+    One(VariantChange),
 }
 
 /// A change of a variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Change {
+pub enum VariantChange {
     /// Another seed.
     Seed(u64),
     /// Another base.
@@ -162,7 +162,7 @@ pub enum Change {
 /// How the networks make the occupancy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Generate {
+pub struct BatchGeneration {
     /// A preset of the measured trade: `draft`, `balanced`, `careful`, `reference`.
     pub quality: String,
     /// True: generates the whole scene. False: only the region that the changes touch.
@@ -196,7 +196,7 @@ pub fn video(format: &str) -> Option<VideoKind> {
 
 impl Value {
     /// The changes of the value.
-    pub fn changes(&self) -> &[Change] {
+    pub fn changes(&self) -> &[VariantChange] {
         match self {
             Value::Many(many) => many,
             Value::One(one) => std::slice::from_ref(one),
@@ -204,7 +204,7 @@ impl Value {
     }
 }
 
-impl Axis {
+impl VariationAxis {
     /// Number of values.
     pub fn len(&self) -> usize {
         self.seeds.map_or(self.values.len(), |s| s.count)
@@ -216,19 +216,19 @@ impl Axis {
     }
 
     /// The changes of a value.
-    pub fn value(&self, i: usize) -> Vec<Change> {
+    pub fn value(&self, i: usize) -> Vec<VariantChange> {
         match self.seeds {
-            Some(seeds) => vec![Change::Seed(seeds.from.wrapping_add(i as u64))],
+            Some(seeds) => vec![VariantChange::Seed(seeds.from.wrapping_add(i as u64))],
             None => self.values[i].changes().to_vec(),
         }
     }
 }
 
-impl Plan {
+impl BatchPlan {
     /// Reads a plan. Errors in one line that names the file.
-    pub fn read(path: &Path) -> anyhow::Result<Plan> {
+    pub fn read(path: &Path) -> anyhow::Result<BatchPlan> {
         let text = input::read_text(path, input::LARGEST_TEXT)?;
-        let plan: Plan = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
+        let plan: BatchPlan = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
         match plan.problem() {
             Some(problem) => bail!("{}: {problem}", path.display()),
             None => Ok(plan),
@@ -339,11 +339,11 @@ fn shuffled(i: usize, n: usize, seed: u64) -> usize {
 mod tests {
     use super::*;
 
-    fn plan(json: &str) -> Result<Plan, String> {
+    fn plan(json: &str) -> Result<BatchPlan, String> {
         let text = format!(
             r#"{{"format":"sceneloom_batch","version":1,"base":{{"template":"straight"}},"write":[{{"format":"boxes"}}]{json}}}"#
         );
-        let plan: Plan = serde_json::from_str(&text).map_err(|e| e.to_string())?;
+        let plan: BatchPlan = serde_json::from_str(&text).map_err(|e| e.to_string())?;
         plan.problem().map_or(Ok(plan), Err)
     }
 
@@ -358,16 +358,16 @@ mod tests {
         let all: std::collections::BTreeSet<Vec<usize>> = (0..12).map(|i| plan.values_of(i)).collect();
         assert_eq!(all.len(), 12);
         assert_eq!(plan.values_of(5), [1, 1]);
-        assert_eq!(plan.sweep[1].value(3), [Change::Seed(13)]);
+        assert_eq!(plan.sweep[1].value(3), [VariantChange::Seed(13)]);
         assert_eq!(plan.sweep[0].value(2).len(), 2);
-        let some = Plan {
+        let some = BatchPlan {
             sample: Some(7),
             ..plan.clone()
         };
         let drawn: std::collections::BTreeSet<Vec<usize>> =
             (0..some.count()).map(|i| some.values_of(i)).collect();
         assert_eq!((some.count(), drawn.len()), (7, 7));
-        let other = Plan { seed: 1, ..some };
+        let other = BatchPlan { seed: 1, ..some };
         assert!(
             (0..7).any(|i| !drawn.contains(&other.values_of(i))),
             "another seed draws others"
@@ -399,11 +399,12 @@ mod tests {
             let line = plan(json).expect_err(json);
             assert!(line.contains(word), "{line}");
         }
-        let line =
-            serde_json::from_str::<Plan>(r#"{"format":"x","version":1,"base":{"template":"a"},"write":[]}"#)
-                .expect("it can be read")
-                .problem()
-                .expect("foreign");
+        let line = serde_json::from_str::<BatchPlan>(
+            r#"{"format":"x","version":1,"base":{"template":"a"},"write":[]}"#,
+        )
+        .expect("it can be read")
+        .problem()
+        .expect("foreign");
         assert!(line.contains("sceneloom_batch"), "{line}");
     }
 }

@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::marks::Marks;
-use super::plan::Plan;
-use super::run::{Batch, Progress, Report, Shard, claim};
+use super::plan::BatchPlan;
+use super::run::{Batch, BatchProgress, BatchReport, Shard, claim};
 
 /// How urgent a batch is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -39,7 +39,7 @@ impl Priority {
 
 /// State of a batch.
 #[derive(Clone, Debug, PartialEq)]
-pub enum State {
+pub enum BatchState {
     /// Waits for its turn.
     Waiting,
     /// Runs on the thread.
@@ -47,7 +47,7 @@ pub enum State {
     /// Paused until it is resumed.
     Paused,
     /// All variants are ready or failed.
-    Done(Report),
+    Done(BatchReport),
     /// The batch cannot be run.
     Failed(String),
 }
@@ -59,13 +59,13 @@ pub struct Item {
     /// Name of its folder.
     pub name: String,
     /// Plan of the batch.
-    pub plan: Plan,
+    pub plan: BatchPlan,
     /// Output folder.
     pub output: PathBuf,
     /// How urgent it is.
     pub priority: Priority,
     /// Its state.
-    pub state: State,
+    pub state: BatchState,
     /// Number of variants that are ready or failed.
     pub done: usize,
     /// Variants that failed, with the reason of each.
@@ -85,15 +85,15 @@ impl Item {
     }
 }
 
-enum News {
-    At(Progress),
-    Ended(anyhow::Result<Report>),
+enum BatchEvent {
+    At(BatchProgress),
+    Ended(anyhow::Result<BatchReport>),
 }
 
-struct Running {
+struct RunningBatch {
     id: u64,
     stop: Arc<AtomicBool>,
-    news: Receiver<News>,
+    news: Receiver<BatchEvent>,
     /// True if the run only writes the index again.
     is_index: bool,
 }
@@ -102,7 +102,7 @@ struct Running {
 #[derive(Default)]
 pub struct Queue {
     items: Vec<Item>,
-    running: Option<Running>,
+    running: Option<RunningBatch>,
     next_id: u64,
 }
 
@@ -123,7 +123,7 @@ impl Queue {
 
     /// Adds a batch at the end. `folder` is the folder of the plan. Errors if the output folder belongs to another
     /// plan, cannot be written, or is in the queue already.
-    pub fn add(&mut self, plan: Plan, folder: &Path, output: &Path) -> anyhow::Result<u64> {
+    pub fn add(&mut self, plan: BatchPlan, folder: &Path, output: &Path) -> anyhow::Result<u64> {
         if let Some(problem) = plan.problem() {
             anyhow::bail!("{problem}");
         }
@@ -141,7 +141,7 @@ impl Queue {
             plan,
             output: output.into(),
             priority: Priority::default(),
-            state: State::Waiting,
+            state: BatchState::Waiting,
             done: 0,
             failed: Vec::new(),
             is_index_old: false,
@@ -165,14 +165,14 @@ impl Queue {
 
     /// The batch that runs after the current one: of the most urgent that wait, the first.
     pub fn next_up(&self) -> Option<u64> {
-        let waiting = self.items.iter().filter(|i| i.state == State::Waiting);
+        let waiting = self.items.iter().filter(|i| i.state == BatchState::Waiting);
         // `max_by_key` takes the last of equals: searched from the back, that is the first of the queue.
         waiting.rev().max_by_key(|i| i.priority).map(|i| i.id)
     }
 
     /// Moves a waiting batch before all others that wait. The batch that runs goes on.
     pub fn run_next(&mut self, id: u64) {
-        let waits = |i: &&Item| i.state == State::Waiting;
+        let waits = |i: &&Item| i.state == BatchState::Waiting;
         let most = self.items.iter().filter(waits).map(|i| i.priority).max();
         let at = self.items.iter().position(|i| i.id == id && waits(&i));
         if let (Some(at), Some(most)) = (at, most) {
@@ -188,9 +188,9 @@ impl Queue {
     pub fn pause(&mut self, id: u64) {
         self.stop(id);
         if let Some(item) = self.item_mut(id)
-            && matches!(item.state, State::Waiting | State::Running)
+            && matches!(item.state, BatchState::Waiting | BatchState::Running)
         {
-            item.state = State::Paused;
+            item.state = BatchState::Paused;
         }
     }
 
@@ -198,9 +198,9 @@ impl Queue {
     pub fn resume(&mut self, id: u64) {
         let runs = self.running.as_ref().is_some_and(|r| r.id == id);
         if let Some(item) = self.item_mut(id)
-            && (!runs || item.state == State::Paused)
+            && (!runs || item.state == BatchState::Paused)
         {
-            item.state = State::Waiting;
+            item.state = BatchState::Waiting;
         }
     }
 
@@ -227,7 +227,7 @@ impl Queue {
         match &self.running {
             None => self.start_next(wake),
             Some(running) => {
-                let urgent = |i: &Item| i.state == State::Waiting && i.id != running.id;
+                let urgent = |i: &Item| i.state == BatchState::Waiting && i.id != running.id;
                 let most = self.items.iter().filter(|i| urgent(i)).map(|i| i.priority).max();
                 let own = self.item(running.id).map(|i| i.priority);
                 if most > own {
@@ -247,25 +247,25 @@ impl Queue {
         let mut is_over = false;
         for news in running.news.try_iter().collect::<Vec<_>>() {
             let Some(item) = self.item_mut(id) else {
-                is_over |= matches!(news, News::Ended(_));
+                is_over |= matches!(news, BatchEvent::Ended(_));
                 continue; // the batch was taken out of the queue
             };
             match news {
-                News::At(progress) => {
+                BatchEvent::At(progress) => {
                     item.done = progress.done;
                     item.failed
                         .extend(progress.failed.map(|why| (progress.variant, why)));
                 }
-                News::Ended(result) => {
+                BatchEvent::Ended(result) => {
                     is_over = true;
-                    let paused = item.state == State::Paused;
+                    let paused = item.state == BatchState::Paused;
                     item.state = match result {
-                        Ok(report) if report.open == 0 => State::Done(report),
-                        Ok(_) if paused => State::Paused,
-                        Ok(_) => State::Waiting,
-                        Err(error) => State::Failed(scene::message::of_error(error.as_ref())),
+                        Ok(report) if report.open == 0 => BatchState::Done(report),
+                        Ok(_) if paused => BatchState::Paused,
+                        Ok(_) => BatchState::Waiting,
+                        Err(error) => BatchState::Failed(scene::message::of_error(error.as_ref())),
                     };
-                    if !is_index && !matches!(item.state, State::Waiting | State::Paused) {
+                    if !is_index && !matches!(item.state, BatchState::Waiting | BatchState::Paused) {
                         ended.push(id);
                     }
                 }
@@ -280,7 +280,7 @@ impl Queue {
     fn start_next(&mut self, wake: impl Fn() + Clone + Send + 'static) {
         let next = self.next_up();
         let is_index = next.is_none();
-        let old = |i: &&mut Item| i.is_index_old && matches!(i.state, State::Done(_));
+        let old = |i: &&mut Item| i.is_index_old && matches!(i.state, BatchState::Done(_));
         let Some(item) = (match next {
             Some(id) => self.item_mut(id),
             None => self.items.iter_mut().find(old),
@@ -288,37 +288,39 @@ impl Queue {
             return;
         };
         if !is_index {
-            (item.state, item.done) = (State::Running, 0);
+            (item.state, item.done) = (BatchState::Running, 0);
             item.failed.clear();
         }
         item.is_index_old = false;
         let (news, stop) = (unbounded(), Arc::new(AtomicBool::new(false)));
-        let (tell, told): (Sender<News>, _) = news;
+        let (tell, told): (Sender<BatchEvent>, _) = news;
         let (plan, folder, output) = (item.plan.clone(), item.folder.clone(), item.output.clone());
         let id = item.id;
         let (stopped, progress, wake_up) = (stop.clone(), tell.clone(), wake.clone());
         let work = move || {
             Batch::new(plan, &folder, &output)?.run(Shard::default(), &mut |at| {
                 // Sending fails if the window has closed.
-                let _ = progress.send(News::At(at.clone()));
+                let _ = progress.send(BatchEvent::At(at.clone()));
                 wake_up();
                 !stopped.load(Ordering::Relaxed)
             })
         };
         let thread = job::guard::spawn("batch", work, move |result| {
-            let _ = tell.send(News::Ended(result.unwrap_or_else(|panic| Err(panic.into()))));
+            let _ = tell.send(BatchEvent::Ended(
+                result.unwrap_or_else(|panic| Err(panic.into())),
+            ));
             wake();
         });
         match thread {
             Ok(_) => {
-                self.running = Some(Running {
+                self.running = Some(RunningBatch {
                     id,
                     stop,
                     news: told,
                     is_index,
                 })
             }
-            Err(error) => item.state = State::Failed(error.to_string()),
+            Err(error) => item.state = BatchState::Failed(error.to_string()),
         }
     }
 }
@@ -337,7 +339,7 @@ mod tests {
 
     use super::*;
 
-    fn plan(variants: usize) -> Plan {
+    fn plan(variants: usize) -> BatchPlan {
         let text = format!(
             r#"{{"format":"sceneloom_batch","version":1,"base":{{"template":"straight"}},
             "sweep":[{{"name":"seed","seeds":{{"from":0,"count":{variants}}}}}],"write":[{{"format":"surroundocc"}}]}}"#
@@ -373,10 +375,10 @@ mod tests {
         until(&mut queue, "begins", |q| q.item(long).is_some_and(|i| i.done > 0));
         queue.set_priority(short, Priority::High);
         let ended = until(&mut queue, "all done", |q| {
-            q.items().iter().all(|i| matches!(i.state, State::Done(_)))
+            q.items().iter().all(|i| matches!(i.state, BatchState::Done(_)))
         });
         assert_eq!(ended, [short, long], "the long one made way");
-        let State::Done(report) = &queue.item(long).expect("there").state else {
+        let BatchState::Done(report) = &queue.item(long).expect("there").state else {
             panic!("not done");
         };
         assert!(report.kept >= 1 && report.kept + report.made == 6, "{report:?}");
@@ -409,7 +411,7 @@ mod tests {
         // A running batch cannot be moved to run next.
         queue.run_next(first);
         let ended = until(&mut queue, "all done", |q| {
-            q.items().iter().all(|i| matches!(i.state, State::Done(_)))
+            q.items().iter().all(|i| matches!(i.state, BatchState::Done(_)))
         });
         assert_eq!(ended, [first, third, second]);
     }
@@ -424,11 +426,11 @@ mod tests {
         until(&mut queue, "begins", |q| q.item(id).is_some_and(|i| i.done > 0));
         queue.pause(id);
         until(&mut queue, "stops", |q| q.running.is_none());
-        assert_eq!(queue.item(id).expect("there").state, State::Paused);
+        assert_eq!(queue.item(id).expect("there").state, BatchState::Paused);
         assert!(queue.tick(|| {}).is_empty() && queue.running.is_none());
         queue.resume(id);
         until(&mut queue, "done", |q| {
-            matches!(q.items()[0].state, State::Done(_))
+            matches!(q.items()[0].state, BatchState::Done(_))
         });
         let index = dir.path().join("a/index.parquet");
         let before = std::fs::read(&index).expect("an index");

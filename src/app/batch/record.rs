@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::plan::Change;
+use super::plan::VariantChange;
 use scene::{Conditions, SceneBox};
 
 /// Name of the record's file in the variant's folder.
@@ -12,11 +12,11 @@ pub const FILE: &str = "variant.json";
 
 /// The record of a variant.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Record {
+pub struct VariantRecord {
     /// Its number in the plan.
     pub variant: usize,
     /// The changes that it took, by the name of the axis.
-    pub changes: BTreeMap<String, Vec<Change>>,
+    pub changes: BTreeMap<String, Vec<VariantChange>>,
     /// The seed of its scene.
     pub seed: u64,
     /// SHA-256 of its scene as a `.loom` file.

@@ -10,8 +10,8 @@ use super::index;
 use super::make::Maker;
 use super::marks::Marks;
 use super::pack;
-use super::plan::Plan;
-use super::record::{FILE, Record};
+use super::plan::BatchPlan;
+use super::record::{FILE, VariantRecord};
 use formats::{atomic, input};
 use scene::Scene;
 
@@ -51,7 +51,7 @@ impl std::str::FromStr for Shard {
 
 /// Progress of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Progress {
+pub struct BatchProgress {
     /// The variant that was just handled.
     pub variant: usize,
     /// Number of variants of this shard that are ready or failed.
@@ -64,7 +64,7 @@ pub struct Progress {
 
 /// The result of a run.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Report {
+pub struct BatchReport {
     /// Number of variants of the plan.
     pub variants: usize,
     /// Variants made in this run.
@@ -88,7 +88,7 @@ pub struct Batch {
 impl Batch {
     /// A batch for a plan. `folder` is the folder of the plan. Makes the output folder and keeps a copy of the plan
     /// there. Errors if the output folder belongs to another plan.
-    pub fn new(plan: Plan, folder: &Path, output: &Path) -> anyhow::Result<Self> {
+    pub fn new(plan: BatchPlan, folder: &Path, output: &Path) -> anyhow::Result<Self> {
         let maker = Maker::new(plan, folder)?;
         claim(maker.plan(), output)?;
         Ok(Self {
@@ -98,7 +98,7 @@ impl Batch {
     }
 
     /// The plan.
-    pub fn plan(&self) -> &Plan {
+    pub fn plan(&self) -> &BatchPlan {
         self.maker.plan()
     }
 
@@ -118,16 +118,20 @@ impl Batch {
 
     /// Makes the variants that a shard lacks. `tell` is called after each variant and returns whether to go on.
     /// Variants that failed before are tried again. Errors if files cannot be written.
-    pub fn run(&self, shard: Shard, tell: &mut dyn FnMut(&Progress) -> bool) -> anyhow::Result<Report> {
+    pub fn run(
+        &self,
+        shard: Shard,
+        tell: &mut dyn FnMut(&BatchProgress) -> bool,
+    ) -> anyhow::Result<BatchReport> {
         let plan = self.plan();
         let size = plan.pack.unwrap_or(1);
         let packs = plan.count().div_ceil(size);
         let mine: Vec<usize> = (0..packs).filter(|p| p % shard.of == shard.number).collect();
         let variants_of = |pack: usize| pack * size..((pack + 1) * size).min(plan.count());
         let of = mine.iter().map(|p| variants_of(*p).len()).sum();
-        let mut report = Report {
+        let mut report = BatchReport {
             variants: plan.count(),
-            ..Report::default()
+            ..BatchReport::default()
         };
         let mut done = 0;
         'packs: for pack in mine {
@@ -145,7 +149,7 @@ impl Batch {
                     None => report.made += 1,
                 }
                 done += 1;
-                let progress = Progress {
+                let progress = BatchProgress {
                     variant,
                     done,
                     of,
@@ -184,11 +188,11 @@ impl Batch {
         let failed = self.failed_file(variant);
         if let Some(reason) = &reason {
             std::fs::remove_dir_all(&half).with_context(|| format!("remove {}", half.display()))?;
-            let record = Record {
+            let record = VariantRecord {
                 variant,
                 changes: self.maker.changes(variant),
                 failed: Some(reason.clone()),
-                ..Record::default()
+                ..VariantRecord::default()
             };
             atomic::write(&failed, serde_json::to_string_pretty(&record)?.as_bytes())?;
             return Ok(Some(reason.clone()));
@@ -201,7 +205,7 @@ impl Batch {
     }
 
     /// Reads the records of variants that are ready or failed and lie in folders.
-    fn records(&self, variants: std::ops::Range<usize>) -> anyhow::Result<Vec<Record>> {
+    fn records(&self, variants: std::ops::Range<usize>) -> anyhow::Result<Vec<VariantRecord>> {
         let read = |variant| {
             let own = self.folder_of(variant).join(FILE);
             let path = if own.exists() {
@@ -216,7 +220,7 @@ impl Batch {
     }
 
     /// Writes the index and the contact sheet once every variant is ready or failed.
-    fn finish(&self, report: &mut Report) -> anyhow::Result<()> {
+    fn finish(&self, report: &mut BatchReport) -> anyhow::Result<()> {
         let plan = self.plan();
         let ready = |v: usize| match plan.pack {
             Some(size) => pack::is_there(&self.output, v / size),
@@ -229,7 +233,7 @@ impl Batch {
         let records = match plan.pack {
             Some(size) => {
                 let packs = 0..plan.count().div_ceil(size);
-                let all: anyhow::Result<Vec<Vec<Record>>> =
+                let all: anyhow::Result<Vec<Vec<VariantRecord>>> =
                     packs.map(|p| pack::records(&self.output, p)).collect();
                 all?.concat()
             }
@@ -242,7 +246,7 @@ impl Batch {
 }
 
 /// Makes the output folder and keeps a copy of the plan there. Errors if the folder belongs to another plan.
-pub fn claim(plan: &Plan, output: &Path) -> anyhow::Result<()> {
+pub fn claim(plan: &BatchPlan, output: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(output).with_context(|| format!("create {}", output.display()))?;
     let copy = output.join(PLAN);
     let text = serde_json::to_string_pretty(plan)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Context;
 
 use crate::camera_views::camera_input;
-use crate::picture::{self, Picture};
+use crate::picture::{self, RgbaPicture};
 use formats::{atomic, png};
 use scene::Scene;
 use sensors::appearance::{Appearance, Quality};
@@ -29,7 +29,7 @@ pub fn write(scene: &Scene, path: &Path) -> anyhow::Result<()> {
 }
 
 /// The map from above and beside it the view of the front camera, if the rig has a camera.
-fn draw(scene: &Scene) -> Picture {
+fn draw(scene: &Scene) -> RgbaPicture {
     let scene = scene.with_rig_in_world();
     let map = fitted(picture::layout_top(scene.frame(), 1), SIZE[1]);
     let front = scene.rig.cameras.iter().find(|c| c.name.ends_with("FRONT"));
@@ -39,16 +39,16 @@ fn draw(scene: &Scene) -> Picture {
     let input = camera_input(&scene, Detail::Full);
     let appearance = Appearance::with_things(input.frame, input.background, input.rig, &input.conditions);
     let image = appearance.render(camera, SIZE[0], SIZE[1], Quality::Preview);
-    let seen = Picture {
+    let seen = RgbaPicture {
         width: image.width,
         height: image.height,
         rgba: image.rgba,
     };
-    Picture::sheet(&[vec![map, seen]], 2)
+    RgbaPicture::sheet(&[vec![map, seen]], 2)
 }
 
 /// A picture shrunk so that neither side is longer than `side`.
-fn fitted(picture: Picture, side: u32) -> Picture {
+fn fitted(picture: RgbaPicture, side: u32) -> RgbaPicture {
     let (width, height) = (picture.width as u32, picture.height as u32);
     let Some(image) = image::RgbaImage::from_raw(width, height, picture.rgba.clone()) else {
         return picture;
@@ -56,7 +56,7 @@ fn fitted(picture: Picture, side: u32) -> Picture {
     let share = f64::from(side) / f64::from(width.max(height).max(1));
     let [w, h] = [width, height].map(|v| ((f64::from(v) * share).round() as u32).max(1));
     let small = image::imageops::thumbnail(&image, w, h);
-    Picture {
+    RgbaPicture {
         width: w as usize,
         height: h as usize,
         rgba: small.into_raw(),

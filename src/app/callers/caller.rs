@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::places::{Ending, Place, Places};
+use crate::places::{CallerPlace, Ending, Places};
 
 /// Interval between two checks of the deadlines.
 const SWEEP_EVERY: Duration = Duration::from_millis(250);
@@ -25,7 +25,7 @@ impl Wait {
 
 /// How many may be in each state, and for how long.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits {
+pub struct CallerLimits {
     /// Connections of which no request was read yet.
     pub strangers: Wait,
     /// Connections that have asked and do not ask now.
@@ -47,7 +47,7 @@ pub struct Callers {
 
 impl Callers {
     /// Starts without callers.
-    pub fn new(limits: Limits) -> Self {
+    pub fn new(limits: CallerLimits) -> Self {
         Self {
             strangers: limits.strangers.places(),
             idle: limits.idle.places(),
@@ -63,7 +63,7 @@ impl Callers {
         Arc::new(Caller {
             callers: self.clone(),
             ending,
-            state: Mutex::new(State {
+            state: Mutex::new(ConnectionState {
                 asking: 0,
                 is_known: false,
                 place: Some(place),
@@ -72,7 +72,7 @@ impl Callers {
     }
 
     /// A place for the body of a request to come in, and the signal that tells that the server waits for it no longer.
-    pub fn reading(&self) -> (Arc<Ending>, Place) {
+    pub fn reading(&self) -> (Arc<Ending>, CallerPlace) {
         let ending = Arc::new(Ending::default());
         (ending.clone(), self.reading.take(ending, Instant::now()))
     }
@@ -99,17 +99,17 @@ impl Callers {
 pub struct Caller {
     callers: Callers,
     ending: Arc<Ending>,
-    state: Mutex<State>,
+    state: Mutex<ConnectionState>,
 }
 
 #[derive(Debug)]
-struct State {
+struct ConnectionState {
     /// Requests of it that are not answered yet.
     asking: usize,
     /// A request of it was read whole.
     is_known: bool,
     /// None while it asks: its requests have their own.
-    place: Option<Place>,
+    place: Option<CallerPlace>,
 }
 
 impl Caller {
@@ -132,7 +132,7 @@ impl Caller {
         Asking(self.clone())
     }
 
-    fn with<T>(&self, work: impl FnOnce(&mut State) -> T) -> T {
+    fn with<T>(&self, work: impl FnOnce(&mut ConnectionState) -> T) -> T {
         work(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
@@ -148,7 +148,7 @@ impl Asking {
     }
 
     /// A place for its answer to go out. Where that takes too long, the connection ends.
-    pub fn sending(&self) -> Place {
+    pub fn sending(&self) -> CallerPlace {
         let sending = &self.0.callers.sending;
         sending.take(self.0.ending.clone(), Instant::now())
     }
@@ -179,7 +179,7 @@ mod tests {
             most,
             within: Duration::from_secs(600),
         };
-        Callers::new(Limits {
+        Callers::new(CallerLimits {
             strangers: wait(2),
             idle: wait(3),
             reading: wait(2),

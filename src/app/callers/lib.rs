@@ -8,7 +8,7 @@ mod connection;
 mod places;
 mod sending;
 
-pub use caller::{Asking, Caller, Callers, Limits, Wait};
+pub use caller::{Asking, Caller, CallerLimits, Callers, Wait};
 pub use connection::{Connection, listen};
-pub use places::{Ending, Place, Places};
+pub use places::{CallerPlace, Ending, Places};
 pub use sending::Sending;

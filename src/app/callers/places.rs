@@ -36,23 +36,23 @@ impl Ending {
 
 /// A bounded number of places. Clones share them.
 #[derive(Clone, Debug)]
-pub struct Places(Arc<Shared>);
+pub struct Places(Arc<SharedPlaces>);
 
 #[derive(Debug)]
-struct Shared {
+struct SharedPlaces {
     most: usize,
     within: Duration,
-    waiting: Mutex<Waiting>,
+    waiting: Mutex<WaitingCallers>,
 }
 
 /// Waiting callers with the time of their arrival; numbers grow, so the first number came first.
 #[derive(Debug, Default)]
-struct Waiting {
+struct WaitingCallers {
     next: u64,
     all: BTreeMap<u64, (Instant, Arc<Ending>)>,
 }
 
-impl Waiting {
+impl WaitingCallers {
     /// Ends the oldest, if there is one.
     fn end_oldest(&mut self) -> bool {
         let oldest = self.all.pop_first();
@@ -63,7 +63,7 @@ impl Waiting {
 impl Places {
     /// Makes `most` places, at least one, each held for `within` at most.
     pub fn new(most: usize, within: Duration) -> Self {
-        Self(Arc::new(Shared {
+        Self(Arc::new(SharedPlaces {
             most: most.max(1),
             within,
             waiting: Mutex::default(),
@@ -71,7 +71,7 @@ impl Places {
     }
 
     /// A place from now on. Where all are taken, the oldest of them is told that it ends.
-    pub fn take(&self, ending: Arc<Ending>, now: Instant) -> Place {
+    pub fn take(&self, ending: Arc<Ending>, now: Instant) -> CallerPlace {
         self.with(|waiting| {
             while waiting.all.len() >= self.0.most {
                 waiting.end_oldest();
@@ -79,7 +79,7 @@ impl Places {
             let number = waiting.next;
             waiting.next += 1;
             waiting.all.insert(number, (now, ending));
-            Place {
+            CallerPlace {
                 of: self.clone(),
                 number,
             }
@@ -98,7 +98,7 @@ impl Places {
 
     /// Ends the oldest, if there is one; true if there was.
     pub fn end_oldest(&self) -> bool {
-        self.with(Waiting::end_oldest)
+        self.with(WaitingCallers::end_oldest)
     }
 
     /// How many are taken.
@@ -106,19 +106,19 @@ impl Places {
         self.with(|waiting| waiting.all.len())
     }
 
-    fn with<T>(&self, work: impl FnOnce(&mut Waiting) -> T) -> T {
+    fn with<T>(&self, work: impl FnOnce(&mut WaitingCallers) -> T) -> T {
         work(&mut self.0.waiting.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
 /// A place, until it is dropped.
 #[derive(Debug)]
-pub struct Place {
+pub struct CallerPlace {
     of: Places,
     number: u64,
 }
 
-impl Drop for Place {
+impl Drop for CallerPlace {
     fn drop(&mut self) {
         self.of.with(|waiting| drop(waiting.all.remove(&self.number)));
     }
@@ -128,7 +128,7 @@ impl Drop for Place {
 mod tests {
     use super::*;
 
-    fn come(places: &Places, now: Instant) -> (Arc<Ending>, Place) {
+    fn come(places: &Places, now: Instant) -> (Arc<Ending>, CallerPlace) {
         let ending = Arc::new(Ending::default());
         (ending.clone(), places.take(ending, now))
     }

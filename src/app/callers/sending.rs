@@ -8,7 +8,7 @@ use bytes::Bytes;
 use http_body::{Body, Frame, SizeHint};
 
 use crate::caller::Asking;
-use crate::places::Place;
+use crate::places::CallerPlace;
 
 /// Longest piece, bytes. A body in one piece would be taken over at once, and the server could not tell whether it was
 /// sent.
@@ -21,7 +21,7 @@ pub struct Sending<B> {
     /// Unsent rest of the piece that the body gave last.
     rest: Bytes,
     /// (the place first: it must be free before the connection idles)
-    _place: Option<Place>,
+    _place: Option<CallerPlace>,
     _asking: Option<Arc<Asking>>,
 }
 

@@ -8,7 +8,7 @@ use scene::{BevLayer, BoxId, Class, Extent, Scene, SceneBox};
 use sensors::rolling;
 
 use super::{BEHIND, Subject};
-use crate::picture::{self, Picture};
+use crate::picture::{self, RgbaPicture};
 
 /// Brightness of scenery on the map, of 255.
 const SCENERY: u16 = 150;
@@ -26,7 +26,7 @@ fn per_column(extent: Extent, [width, height]: [u32; 2]) -> f64 {
 }
 
 /// A picture of the size `size`, pixels. Cells are drawn at a whole number of pixels, then scaled down.
-pub(super) fn picture(scene: &Scene, subject: Subject, size: [u32; 2]) -> anyhow::Result<Picture> {
+pub(super) fn picture(scene: &Scene, subject: Subject, size: [u32; 2]) -> anyhow::Result<RgbaPicture> {
     let frame = scene.frame();
     let extent = frame.extent();
     let wanted = per_column(extent, size);
@@ -42,7 +42,7 @@ pub(super) fn picture(scene: &Scene, subject: Subject, size: [u32; 2]) -> anyhow
         false => {
             let whole = image::RgbaImage::from_raw(drawn.width as u32, drawn.height as u32, drawn.rgba);
             let whole = whole.context("a picture has four bytes per pixel")?;
-            Picture {
+            RgbaPicture {
                 width: w as usize,
                 height: h as usize,
                 rgba: resize(&whole, w, h, FilterType::Triangle).into_raw(),
@@ -50,7 +50,7 @@ pub(super) fn picture(scene: &Scene, subject: Subject, size: [u32; 2]) -> anyhow
         }
     };
     let [width, height] = size.map(|s| s as usize);
-    let mut out = Picture::filled(width, height, BEHIND);
+    let mut out = RgbaPicture::filled(width, height, BEHIND);
     let middle = |whole: usize, part: usize| whole.saturating_sub(part) / 2;
     out.put(
         &fitted,
@@ -61,7 +61,7 @@ pub(super) fn picture(scene: &Scene, subject: Subject, size: [u32; 2]) -> anyhow
 }
 
 /// The layout, the boxes, the scenery and the ego vehicle.
-fn map(scene: &Scene, scale: usize) -> Picture {
+fn map(scene: &Scene, scale: usize) -> RgbaPicture {
     let frame = scene.frame();
     let extent = frame.extent();
     let mut out = picture::layout_top(frame, scale);

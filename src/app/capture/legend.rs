@@ -12,7 +12,7 @@ use widgets::{fonts, theme};
 
 use super::{BEHIND, CaptureOptions, Subject, above};
 use crate::paint;
-use crate::picture::Picture;
+use crate::picture::RgbaPicture;
 
 /// Height of a line, points.
 const LINE: f32 = 20.0;
@@ -24,7 +24,7 @@ const LETTERS: f32 = 13.0;
 const DIM: Color32 = Color32::from_rgb(170, 176, 186);
 
 /// A colour and what it means.
-type Entry = (Color32, String);
+type LegendEntry = (Color32, String);
 
 /// Pixels per point on a picture of a width, pixels.
 fn pixels_per_point(width: usize) -> f32 {
@@ -32,7 +32,7 @@ fn pixels_per_point(width: usize) -> f32 {
 }
 
 /// A picture drawn by egui: `show` on `size` points, with `pixels_per_point`.
-fn drawn(size: [f32; 2], pixels_per_point: f32, show: impl FnMut(&mut Ui)) -> Picture {
+fn drawn(size: [f32; 2], pixels_per_point: f32, show: impl FnMut(&mut Ui)) -> RgbaPicture {
     let ctx = egui::Context::default();
     theme::apply(&ctx, theme::Theme::Dark);
     fonts::apply(&ctx, language::chosen().map_or("", |l| &l.code));
@@ -40,7 +40,7 @@ fn drawn(size: [f32; 2], pixels_per_point: f32, show: impl FnMut(&mut Ui)) -> Pi
 }
 
 /// Writes a name into the upper left corner.
-pub(super) fn name(picture: &mut Picture, name: &str) {
+pub(super) fn name(picture: &mut RgbaPicture, name: &str) {
     let scale = pixels_per_point(picture.width);
     let wide = (name.chars().count() as f32 * LETTERS + 14.0).min(picture.width as f32 / scale);
     let mut right = 0.0f32;
@@ -66,7 +66,12 @@ pub(super) fn name(picture: &mut Picture, name: &str) {
 }
 
 /// The legend below a picture of a width, pixels. `per_m` is the number of pixels per metre of a map.
-pub(super) fn below(width: usize, per_m: Option<f32>, scene: &Scene, options: &CaptureOptions) -> Picture {
+pub(super) fn below(
+    width: usize,
+    per_m: Option<f32>,
+    scene: &Scene,
+    options: &CaptureOptions,
+) -> RgbaPicture {
     let (pixels, scale) = (width, pixels_per_point(width));
     let width = pixels as f32 / scale;
     let per_m = per_m.map(|per_m| per_m / scale);
@@ -98,7 +103,7 @@ pub(super) fn below(width: usize, per_m: Option<f32>, scene: &Scene, options: &C
 }
 
 /// The entries of the legend: each colour and its meaning.
-fn entries(scene: &Scene, options: &CaptureOptions) -> Vec<Entry> {
+fn entries(scene: &Scene, options: &CaptureOptions) -> Vec<LegendEntry> {
     let frame = scene.frame();
     let of_class = |c: Class| (theme::class_color(c), theme::sentence(t(&c.label())));
     match options.subject {
@@ -173,7 +178,7 @@ fn fit(at: Pos2, wide: f32, width: f32) -> Pos2 {
     }
 }
 
-fn swatch(ui: &Ui, at: Pos2, (color, name): &Entry, width: f32) -> Pos2 {
+fn swatch(ui: &Ui, at: Pos2, (color, name): &LegendEntry, width: f32) -> Pos2 {
     let font = FontId::proportional(LETTERS);
     let text = ui.painter().layout_no_wrap(name.clone(), font, DIM).size().x;
     let at = fit(at, text + 18.0, width);

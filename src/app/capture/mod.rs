@@ -10,10 +10,10 @@ use formats::recipe::Recipe;
 use formats::video::{VideoKind, VideoWriter};
 use scene::{Camera, Scene};
 use sensors::appearance::Quality;
-use sensors::cameras::{self, Detail, Ready, RenderOptions, SourceId, ViewId, bounds};
+use sensors::cameras::{self, Detail, PreparedSource, RenderOptions, SourceId, ViewId, bounds};
 
 use crate::camera_views::{camera_input, camera_label};
-use crate::picture::{Picture, SHEET_COLOR, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
+use crate::picture::{RgbaPicture, SHEET_COLOR, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
 
 /// Subject of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -78,7 +78,7 @@ const COLUMNS: usize = 3;
 const MARGIN: usize = 6;
 
 /// Takes a picture. Errors in one line if the size does not fit into memory, or if the 3D view finds no adapter.
-pub fn capture(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Picture> {
+pub fn capture(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<RgbaPicture> {
     const BYTES_PER_PIXEL: u64 = 16;
     let legend = options.legend && !(options.subject == Subject::View && options.shot.transparent);
     if options.subject == Subject::Cameras {
@@ -105,7 +105,7 @@ pub fn capture(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Pictur
 
 /// The legend below a picture of the requested size. The scale bar depends on the height left for the picture, and that
 /// height on the lines of the legend; the number of lines hardly ever changes by it.
-fn below(scene: &Scene, options: &CaptureOptions) -> Picture {
+fn below(scene: &Scene, options: &CaptureOptions) -> RgbaPicture {
     let [width, height] = options.shot.size;
     let drawn = |left: u32| {
         let per_m = (options.subject != Subject::View).then(|| above::per_m(scene, [width, left]) as f32);
@@ -116,25 +116,25 @@ fn below(scene: &Scene, options: &CaptureOptions) -> Picture {
     drawn(if left < height / 2 { height } else { left })
 }
 
-fn stacked(picture: Picture, below: Option<Picture>) -> Picture {
+fn stacked(picture: RgbaPicture, below: Option<RgbaPicture>) -> RgbaPicture {
     let Some(below) = below else {
         return picture;
     };
-    let mut out = Picture::filled(picture.width, picture.height + below.height, BEHIND);
+    let mut out = RgbaPicture::filled(picture.width, picture.height + below.height, BEHIND);
     out.put(&picture, 0, 0);
     out.put(&below, 0, picture.height);
     out
 }
 
 /// The bytes of a PNG that also holds the recipe of the picture and the scene.
-pub fn to_png(scene: &Scene, picture: &Picture) -> anyhow::Result<Vec<u8>> {
+pub fn to_png(scene: &Scene, picture: &RgbaPicture) -> anyhow::Result<Vec<u8>> {
     to_png_made_with(scene, picture, serde_json::Value::Null)
 }
 
 /// The bytes of a PNG, as from [`to_png`], with the parameters that the scene was made with.
 pub fn to_png_made_with(
     scene: &Scene,
-    picture: &Picture,
+    picture: &RgbaPicture,
     parameters: serde_json::Value,
 ) -> anyhow::Result<Vec<u8>> {
     let encode = |notes: &formats::png::Notes<'_>| {
@@ -148,7 +148,7 @@ pub fn to_png_made_with(
 }
 
 /// All cameras of the rig, three in a row.
-fn sheet(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Picture> {
+fn sheet(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<RgbaPicture> {
     let source = cameras::source_of(options.view, options.source);
     let scene = &*scene.with_rig_in_world();
     let all = &scene.rig.cameras;
@@ -159,7 +159,7 @@ fn sheet(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Picture> {
     let rows = all.len().div_ceil(COLUMNS) as u32;
     bounds::check(options.camera_size, source.about().bytes_per_pixel, 0)?;
     bounds::check([w.saturating_mul(COLUMNS as u32), h.saturating_mul(rows)], 16, 0)?;
-    let ready = Ready::new(source, &camera_input(scene, Detail::Full));
+    let ready = PreparedSource::new(source, &camera_input(scene, Detail::Full));
     let render = RenderOptions {
         size: options.camera_size,
         quality: Quality::Full,
@@ -168,15 +168,15 @@ fn sheet(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Picture> {
     for group in all.chunks(ready.side_by_side(&render)) {
         for (camera, picture) in group.iter().zip(ready.render_all(group, &render, None)?) {
             let ([width, height], rgba) = picture.rgba(options.view, 0.0);
-            let mut picture = Picture { width, height, rgba };
+            let mut picture = RgbaPicture { width, height, rgba };
             if options.legend {
                 legend::name(&mut picture, &title(camera));
             }
             pictures.push(picture);
         }
     }
-    let rows: Vec<Vec<Picture>> = pictures.chunks(COLUMNS).map(<[Picture]>::to_vec).collect();
-    Ok(Picture::sheet(&rows, MARGIN))
+    let rows: Vec<Vec<RgbaPicture>> = pictures.chunks(COLUMNS).map(<[RgbaPicture]>::to_vec).collect();
+    Ok(RgbaPicture::sheet(&rows, MARGIN))
 }
 
 fn title(camera: &Camera) -> String {
@@ -310,7 +310,7 @@ mod tests {
             [3 * 96 + 4 * MARGIN, 2 * 54 + 3 * MARGIN]
         );
         let named = capture(&scene, &options(Subject::Cameras)).expect("small");
-        let row = |p: &Picture, y: usize| p.rgba[y * p.width * 4..][..p.width * 4].to_vec();
+        let row = |p: &RgbaPicture, y: usize| p.rgba[y * p.width * 4..][..p.width * 4].to_vec();
         assert_ne!(row(&bare, MARGIN + 8), row(&named, MARGIN + 8));
         let png = to_png(&scene, &named).expect("encoded");
         let inside = formats::png::notes_inside(&png).expect("sound");

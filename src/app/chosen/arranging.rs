@@ -4,7 +4,7 @@ use language::{t, tf};
 
 use crate::arranging::{arranging, label};
 use crate::shell::app::SceneloomApp;
-use crate::shell::toasts::Level;
+use crate::shell::toasts::MessageLevel;
 use crate::tools::Choose;
 use editor::{Edit, arranged};
 use scene::{Arrangement, BoxId, Members};
@@ -75,7 +75,7 @@ impl SceneloomApp {
                 (n, _) => tf!("{n} locked objects stay as they are", n = n),
             };
             let now_s = self.now_s();
-            self.toasts.push(Level::Info, text, now_s);
+            self.toasts.push(MessageLevel::Info, text, now_s);
         }
         open
     }

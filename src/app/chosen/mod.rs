@@ -10,7 +10,7 @@ use crate::command::Command;
 use crate::panes::id::PaneId;
 use crate::shell::actions::ACTIONS;
 use crate::shell::app::SceneloomApp;
-use crate::shell::toasts::Level;
+use crate::shell::toasts::MessageLevel;
 use crate::tools::{Choose, ToolCommand, ToolState};
 use editor::Edit;
 use editor::arrange::{self, Added, Clipboard, Ties};
@@ -155,7 +155,7 @@ impl SceneloomApp {
 
     pub(crate) fn note(&mut self, text: &str) {
         let now_s = self.now_s();
-        self.toasts.push(Level::Info, text, now_s);
+        self.toasts.push(MessageLevel::Info, text, now_s);
     }
 
     fn has_voxels(&self) -> bool {
@@ -185,7 +185,7 @@ impl SceneloomApp {
                     all = added.ids.len()
                 );
                 let now_s = self.now_s();
-                self.toasts.push(Level::Info, text, now_s);
+                self.toasts.push(MessageLevel::Info, text, now_s);
             }
         }
     }

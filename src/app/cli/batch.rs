@@ -5,9 +5,9 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use super::progress::Progress;
-use super::{Common, Outcome, Stop, output};
-use app::batch::{self, Plan, Shard};
+use super::progress::ProgressLine;
+use super::{CommandResult, Common, Stop, output};
+use app::batch::{self, BatchPlan, Shard};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -28,8 +28,8 @@ pub struct Batch {
 }
 
 impl Batch {
-    pub(super) fn run(self) -> Outcome {
-        let plan = Plan::read(&self.plan)?;
+    pub(super) fn run(self) -> CommandResult {
+        let plan = BatchPlan::read(&self.plan)?;
         if self.dry {
             let count = plan.count();
             output::report(&self.common, &json!({ "variants": count }), || {
@@ -40,7 +40,7 @@ impl Batch {
         let start = Instant::now();
         let folder = self.plan.parent().unwrap_or(Path::new(""));
         let batch = batch::Batch::new(plan, folder, &self.output)?;
-        let progress = Progress::new(&self.common);
+        let progress = ProgressLine::new(&self.common);
         let report = batch.run(self.shard, &mut |p| {
             progress.at("variants", p.done, p.of);
             true

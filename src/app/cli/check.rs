@@ -7,18 +7,18 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use serde_json::{Value, json};
 
-use super::{Common, Moment, Outcome, Stop, output};
+use super::{CommandResult, Common, Moment, Stop, output};
 use app::findings;
 use app::open;
 use app::panes;
-use editor::checks::{self, Counts, Finding, waive};
+use editor::checks::{self, Finding, SeverityCounts, waive};
 use editor::fix::{self, Repair};
 use formats::loom;
 use scene::Scene;
 
 /// Arguments.
 #[derive(clap::Args)]
-pub struct Check {
+pub struct CheckArgs {
     /// Scene to check.
     scene: PathBuf,
     /// Leave out the two checks that need cameras and LiDAR.
@@ -60,7 +60,7 @@ fn repair_of(repair: &Repair) -> Value {
     })
 }
 
-impl Check {
+impl CheckArgs {
     fn findings(&self, scene: &Scene) -> Vec<Finding> {
         match self.no_sensors {
             true => checks::run_checks(scene, None),
@@ -68,7 +68,7 @@ impl Check {
         }
     }
 
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         if self.output.is_some() && !self.fix {
             return Err(anyhow!("-o is given without --fix: check alone writes no scene").into());
         }
@@ -86,7 +86,7 @@ impl Check {
         }
         let wall_s = start.elapsed().as_secs_f64();
         let open: Vec<Finding> = waive::open(scene.frame(), &findings).cloned().collect();
-        let counts = Counts::of(&open);
+        let counts = SeverityCounts::of(&open);
         let mut kinds = BTreeMap::<&str, usize>::new();
         open.iter().for_each(|f| *kinds.entry(f.check).or_default() += 1);
         let report = json!({

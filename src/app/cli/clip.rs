@@ -7,10 +7,10 @@ use anyhow::bail;
 use serde_json::json;
 
 use super::painting::Painting;
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use super::render::size;
 use super::viewpoint::Viewpoint;
-use super::{Common, Outcome, output};
+use super::{CommandResult, Common, output};
 use app::capture::{Turntable, turntable};
 use app::clip_export::{ClipOptions, ClipView, clip};
 use app::open;
@@ -62,13 +62,13 @@ pub struct ClipCommand {
 }
 
 impl ClipCommand {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let kind = VideoKind::of_path(&self.output).map_err(anyhow::Error::new)?;
         let paints = self.what == learned::VIEW.id.name();
         self.painting.is_for(paints, &self.what)?;
         let scene = open::scene(&self.scene)?;
         let start = Instant::now();
-        let progress = Progress::new(&self.common);
+        let progress = ProgressLine::new(&self.common);
         let go_on = |done, all| {
             progress.at("clip", done, all);
             true

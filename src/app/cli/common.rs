@@ -8,7 +8,7 @@ use clap::Args;
 use super::region_arg::RegionArg;
 use ::trade::Presets;
 use diffusion::solver::SolverKind;
-use job::{GenParams, Named, Precision, RegionMode};
+use job::{ChosenDensities, GenParams, Precision, RegionMode};
 use nets::OccModels;
 
 /// Options that every command has.
@@ -120,7 +120,7 @@ impl Gen {
             solver: self.solver.unwrap_or(default.solver),
             guidance: self.guidance.unwrap_or(default.guidance),
             guidance_rescale: self.guidance_rescale.unwrap_or(default.guidance_rescale),
-            named: Named {
+            named: ChosenDensities {
                 vegetation: self.vegetation,
                 building: self.buildings,
                 clutter: self.clutter,
@@ -166,7 +166,7 @@ impl<E: Into<anyhow::Error>> From<E> for Stop {
     }
 }
 
-pub(super) type Outcome = Result<(), Stop>;
+pub(super) type CommandResult = Result<(), Stop>;
 
 /// Which moment of a clip a command looks at.
 #[derive(clap::Args)]

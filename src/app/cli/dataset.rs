@@ -7,16 +7,16 @@ use std::time::Instant;
 use anyhow::{Context, bail};
 use serde_json::json;
 
-use super::dataset_recipe::{Made, Recipe};
+use super::dataset_recipe::{Recipe, SourceFolder};
 use super::dataset_recorded::Pairs;
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use super::render::size;
-use super::{Common, Outcome, output};
+use super::{CommandResult, Common, output};
 use super::{dataset_occ3d, dataset_recipe};
 use app::memory;
 use app::open;
 use authoring::drives::{drive_scene, frames_of};
-use authoring::roads::Roads;
+use authoring::roads::RoadNetworkPool;
 use dataset::layout::layout_frame;
 use dataset::lidar::lidar_frame;
 use dataset::pictures::picture_frame;
@@ -60,8 +60,8 @@ pub struct Dataset {
 }
 
 impl Dataset {
-    pub(super) fn run(self) -> Outcome {
-        let progress = Progress::new(&self.common);
+    pub(super) fn run(self) -> CommandResult {
+        let progress = ProgressLine::new(&self.common);
         let start = Instant::now();
         if let (Some(from), "pictures") = (&self.from, self.kind.as_str()) {
             let pairs = Pairs::open(from, (self.drives.clone(), self.frames), self.size_px())?;
@@ -89,8 +89,8 @@ impl Dataset {
             })()?;
         }
         let roads = match &self.roads {
-            Some(dir) => Roads::open(dir)?,
-            None => Roads::default(),
+            Some(dir) => RoadNetworkPool::open(dir)?,
+            None => RoadNetworkPool::default(),
         };
         if self.kind != "memory" {
             dataset_recipe::claim(&self.output, &self.recipe()?)?;
@@ -175,7 +175,9 @@ impl Dataset {
         let (tables, labels) = (("json", "nuScenes tables"), ("npz", "Occ3D frames"));
         let (extension, what) = if self.kind == "pictures" { tables } else { labels };
         let made = |dir: &Option<PathBuf>, extension, what| {
-            dir.as_ref().map(|dir| Made::of(dir, extension, what)).transpose()
+            dir.as_ref()
+                .map(|dir| SourceFolder::of(dir, extension, what))
+                .transpose()
         };
         Ok(Recipe {
             arguments: arguments
@@ -201,7 +203,7 @@ impl Dataset {
     }
 
     /// `incomplete`: key frames of a folder that were left out, since they lack pictures.
-    fn report(&self, report: &DatasetReport, incomplete: Option<usize>, start: Instant) -> Outcome {
+    fn report(&self, report: &DatasetReport, incomplete: Option<usize>, start: Instant) -> CommandResult {
         let mut json = serde_json::to_value(report)?;
         if let Some(n) = incomplete {
             json["key_frames_without_pictures"] = n.into();

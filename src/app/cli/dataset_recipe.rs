@@ -15,7 +15,7 @@ const FILE: &str = "recipe.json";
 
 /// A source folder as the recipe notes it: its own name, and a hash that tells its files from those of another folder.
 /// Its place on this machine stays private.
-pub(super) struct Made {
+pub(super) struct SourceFolder {
     /// Path without links and dots; recipes of older programs noted it.
     place: PathBuf,
     name: String,
@@ -24,7 +24,7 @@ pub(super) struct Made {
     sha256: String,
 }
 
-impl Made {
+impl SourceFolder {
     /// Reads the files of an extension below a folder, without recipes of data that were written into it. Errors if
     /// there is none.
     pub(super) fn of(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Self> {
@@ -70,15 +70,15 @@ pub(super) struct Recipe {
     /// Arguments by name.
     pub(super) arguments: Map<String, Value>,
     /// Source folders of the data, by the name of the argument.
-    pub(super) folders: Vec<(&'static str, Option<Made>)>,
+    pub(super) folders: Vec<(&'static str, Option<SourceFolder>)>,
 }
 
 impl Recipe {
     fn to_json(&self) -> Map<String, Value> {
-        let of = |(what, made): &(&str, Option<Made>)| {
+        let of = |(what, made): &(&str, Option<SourceFolder>)| {
             (
                 (*what).to_owned(),
-                made.as_ref().map_or(Value::Null, Made::to_json),
+                made.as_ref().map_or(Value::Null, SourceFolder::to_json),
             )
         };
         let folders = self.folders.iter().map(of);
@@ -131,7 +131,7 @@ mod tests {
 
     fn recipe(from: &Path) -> Recipe {
         let arguments = Map::from_iter([("seed".to_owned(), json!(3))]);
-        let made = Made::of(from, "npz", "labels").expect("files");
+        let made = SourceFolder::of(from, "npz", "labels").expect("files");
         Recipe {
             arguments,
             folders: vec![("from", Some(made)), ("roads", None)],

@@ -8,11 +8,11 @@ use glam::{DVec2, DVec3};
 use serde_json::json;
 
 use super::generate::run_and_adopt;
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use super::render::sense;
-use super::{Common, Outcome, Weights, output};
+use super::{CommandResult, Common, Weights, output};
 use app::open;
-use app::picture::{self, Picture, View3d};
+use app::picture::{self, RgbaPicture, View3d};
 use app::text::with_conditions;
 use editor::{Document, Edit, Shape};
 use formats::loom;
@@ -107,9 +107,9 @@ fn edits(scene: &Scene) -> Vec<(&'static str, Vec<Edit>)> {
 }
 
 /// Six semantic and six depth pictures as two rows.
-fn camera_sheet(scene: &Scene) -> Picture {
+fn camera_sheet(scene: &Scene) -> RgbaPicture {
     let (maps, _) = sense(scene, [320, 180]);
-    let picture = |rgba: Vec<u8>, m: &scene::CameraMaps| Picture {
+    let picture = |rgba: Vec<u8>, m: &scene::CameraMaps| RgbaPicture {
         width: m.width,
         height: m.height,
         rgba,
@@ -122,7 +122,7 @@ fn camera_sheet(scene: &Scene) -> Picture {
         .iter()
         .map(|m| picture(color::depth_rgba(&m.depth_m, 1.0, 60.0), m))
         .collect();
-    Picture::sheet(&[semantic, depth], 8)
+    RgbaPicture::sheet(&[semantic, depth], 8)
 }
 
 struct Sink<'a> {
@@ -132,14 +132,14 @@ struct Sink<'a> {
 }
 
 impl Sink<'_> {
-    fn png(&mut self, name: &str, picture: &Picture) -> anyhow::Result<()> {
+    fn png(&mut self, name: &str, picture: &RgbaPicture) -> anyhow::Result<()> {
         output::write_png(&self.dir.join(name), picture.width, picture.height, &picture.rgba)?;
         self.files.push(name.into());
         Ok(())
     }
 
     /// Layout, occupancy and LiDAR from above, and the 3D view where there is an adapter.
-    fn row(&mut self, scene: &Scene) -> anyhow::Result<Vec<Picture>> {
+    fn row(&mut self, scene: &Scene) -> anyhow::Result<Vec<RgbaPicture>> {
         let frame = scene.frame();
         let (_, sweep) = sense(scene, [1, 1]);
         let mut row = vec![
@@ -159,14 +159,14 @@ impl Sink<'_> {
 }
 
 impl Demo {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let dir = if self.output.as_os_str().is_empty() {
             PathBuf::from("sceneloom-demo")
         } else {
             self.output
         };
         std::fs::create_dir_all(&dir).with_context(|| format!("create {}", dir.display()))?;
-        let progress = Progress::new(&self.common);
+        let progress = ProgressLine::new(&self.common);
         let start = Instant::now();
         let mut pipeline = OccPipeline::new(OccModels::of(self.weights.folder.as_deref())?);
         let mut document = Document::new(open::bundled()?);
@@ -204,7 +204,7 @@ impl Demo {
             let after = sink.row(document.scene())?;
             sink.png(
                 &format!("{stem}_before_after.png"),
-                &Picture::sheet(&[before, after], 8),
+                &RgbaPicture::sheet(&[before, after], 8),
             )?;
             sink.png(&format!("{stem}_cameras.png"), &camera_sheet(document.scene()))?;
             loom::save(&dir.join(format!("{stem}.loom")), document.scene())?;

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
 
-use super::{Common, Outcome, output};
+use super::{CommandResult, Common, output};
 use anyhow::anyhow;
 use app::open;
-use app::picture::{Picture, layout_top, lidar_top, occupancy_top};
+use app::picture::{RgbaPicture, layout_top, lidar_top, occupancy_top};
 use assist::{changed_voxels, gained_and_lost};
 use editor::columns_between;
 use job::GenParams;
@@ -37,7 +37,7 @@ const SAME_RANGE_M: f32 = 1e-3;
 const SCALE: usize = 3;
 
 impl Diff {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let (a, b) = (open::scene(&self.a)?, open::scene(&self.b)?);
         let (before, after) = (a.frame(), b.frame());
         if before.extent() != after.extent() {
@@ -95,7 +95,7 @@ impl Diff {
         report.insert("rig_changed".into(), (a.rig != b.rig).into());
         report.insert("frames".into(), json!([a.clip().frames(), b.clip().frames()]));
         if let Some(path) = &self.output {
-            let sheet = Picture::sheet(
+            let sheet = RgbaPicture::sheet(
                 &[
                     vec![
                         layout_top(before, SCALE),
@@ -267,7 +267,7 @@ fn lidar_report(a: &Scene, b: &Scene, sweep_a: &LidarSweep, sweep_b: &LidarSweep
 }
 
 /// The later layout, dark; changed cells bright: orange where a layer went, blue where one came.
-fn layout_change(before: &Frame, after: &Frame) -> Picture {
+fn layout_change(before: &Frame, after: &Frame) -> RgbaPicture {
     let (a, b) = (before.bev_channels(), after.bev_channels());
     marked(layout_top(after, SCALE), |x, y| {
         let i = after.extent().index(x, y);
@@ -276,7 +276,7 @@ fn layout_change(before: &Frame, after: &Frame) -> Picture {
 }
 
 /// The later occupancy, dark; columns bright that gained (blue) or lost voxels (orange), or both (yellow).
-fn voxel_change(after: &Frame, changed: &[[usize; 3]]) -> Picture {
+fn voxel_change(after: &Frame, changed: &[[usize; 3]]) -> RgbaPicture {
     let extent = after.extent();
     let mut flags = vec![(false, false); extent.columns()];
     for &[x, y, z] in changed {
@@ -300,7 +300,7 @@ fn mark(came: bool, went: bool) -> Option<[u8; 3]> {
     }
 }
 
-fn marked(mut picture: Picture, of: impl Fn(usize, usize) -> Option<[u8; 3]>) -> Picture {
+fn marked(mut picture: RgbaPicture, of: impl Fn(usize, usize) -> Option<[u8; 3]>) -> RgbaPicture {
     let (width, height) = (picture.width, picture.height);
     for (at, pixel) in picture.rgba.chunks_exact_mut(4).enumerate() {
         let (column, row) = (at % width / SCALE, at / width / SCALE);

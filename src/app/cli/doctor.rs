@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::{Common, Outcome, Weights, output};
+use super::{CommandResult, Common, Weights, output};
 use nets::OccModels;
 use viewport::headless_device;
 
@@ -42,7 +42,7 @@ fn simd() -> Vec<&'static str> {
 }
 
 impl Doctor {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let adapter = match headless_device() {
             Ok((info, ..)) => {
                 json!({ "name": info.name, "kind": format!("{:?}", info.device_type), "backend": format!("{:?}", info.backend) })

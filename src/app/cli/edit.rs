@@ -6,8 +6,8 @@ use anyhow::Context;
 use serde_json::json;
 
 use super::generate::run_and_adopt;
-use super::progress::Progress;
-use super::{Common, Gen, Outcome, Stop, Weights, output};
+use super::progress::ProgressLine;
+use super::{CommandResult, Common, Gen, Stop, Weights, output};
 use app::open;
 use app::text::with_conditions;
 use authoring::new_ground::with_scenery;
@@ -48,10 +48,10 @@ pub fn read_edits(path: &std::path::Path) -> anyhow::Result<Vec<Edit>> {
 }
 
 impl EditCommand {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let scene = open::scene(&self.scene)?;
         let edits = read_edits(&self.edits)?;
-        let progress = Progress::new(&self.common);
+        let progress = ProgressLine::new(&self.common);
         let params = self.generation.params(GenParams::default())?;
         let seed = scene.conditions.seed;
         let mut document = Document::new(scene);

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use anyhow::Context;
 use serde_json::{Value, json};
 
-use crate::progress::Progress;
-use crate::{Common, Gen, Outcome, Stop, Weights, output};
+use crate::progress::ProgressLine;
+use crate::{CommandResult, Common, Gen, Stop, Weights, output};
 use job::GenParams;
-use judge::markdown::{Table, markdown, measure_all};
+use judge::markdown::{MeasuredSuite, markdown, measure_all};
 use judge::options::Options;
 use judge::options::Who;
 use judge::origin::Origin;
@@ -122,7 +122,7 @@ impl Eval {
         }
     }
 
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         if self.generation.fine_steps.is_some() {
             self.generation.models(&self.weights)?;
         }
@@ -131,7 +131,7 @@ impl Eval {
             self.generation.params(GenParams::default())?,
         ];
         let of = |suite: &Suite| self.options(suite, params.clone());
-        let progress = Progress::new(&self.common);
+        let progress = ProgressLine::new(&self.common);
         if self.suite == ALL || self.markdown {
             let chosen = SUITES
                 .iter()
@@ -148,7 +148,7 @@ impl Eval {
     }
 
     /// Prints the tables of all suites. Errors if one could not be measured.
-    fn tell(&self, tables: &[Table]) -> Outcome {
+    fn tell(&self, tables: &[MeasuredSuite]) -> CommandResult {
         let called: Vec<String> = std::env::args().skip(1).collect();
         let origin = Origin::now(format!("sceneloom {}", called.join(" ")));
         let suites: serde_json::Map<String, Value> =
@@ -167,7 +167,7 @@ impl Eval {
         self.against_bars(missed)
     }
 
-    fn against_bars(&self, missed: Vec<String>) -> Outcome {
+    fn against_bars(&self, missed: Vec<String>) -> CommandResult {
         if self.bar && !missed.is_empty() {
             return Err(Stop::Short(missed.join("; ")));
         }

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, anyhow};
 use serde_json::json;
 
-use super::progress::Progress;
+use super::progress::ProgressLine;
 use super::render::{size, source};
 use super::viewpoint::Viewpoint;
-use super::{Common, Moment, Outcome, output};
+use super::{CommandResult, Common, Moment, output};
 use app::camera_views::LidarModel;
 use app::export::{ExportOptions, ExportProgress, Format, export_all};
 use app::open;
@@ -78,7 +78,7 @@ impl Drop for Watched<'_> {
 
 /// Runs an export and shows meanwhile how far it is.
 fn watched<T>(common: &Common, export: &ExportProgress, run: impl FnOnce() -> T) -> T {
-    let shown = Progress::new(common);
+    let shown = ProgressLine::new(common);
     let ended = AtomicBool::new(false);
     let out = std::thread::scope(|threads| {
         let watch = threads.spawn(|| {
@@ -102,7 +102,7 @@ fn watched<T>(common: &Common, export: &ExportProgress, run: impl FnOnce() -> T)
 }
 
 impl Export {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         if self.format == "list" {
             let line = |f: &Format| json!({ "name": f.id, "holds": f.title, "read": !f.lost.is_empty() || formats::import::all().iter().any(|i| i.id == f.id), "lost": f.lost });
             let list: Vec<_> = formats::export::all().iter().map(line).collect();

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use super::progress::Progress;
-use super::{Common, Gen, Outcome, Weights, output};
+use super::progress::ProgressLine;
+use super::{CommandResult, Common, Gen, Weights, output};
 use app::open;
 use authoring::whole::scenery_first;
 use editor::Document;
@@ -20,7 +20,7 @@ use sensors::{lidar, splat};
 
 /// Arguments.
 #[derive(clap::Args)]
-pub struct Generate {
+pub struct GenerateArgs {
     /// Scene to read.
     scene: PathBuf,
     /// Scene to write.
@@ -43,7 +43,7 @@ pub fn run_and_adopt(
     document: &mut Document,
     pipeline: &mut OccPipeline,
     params: GenParams,
-    progress: &Progress,
+    progress: &ProgressLine,
 ) -> anyhow::Result<GenResult> {
     let job = Job {
         scene: document.scene().clone(),
@@ -74,11 +74,11 @@ fn draw_scenery(document: &mut Document, params: &GenParams) -> anyhow::Result<b
     Ok(!edits.is_empty())
 }
 
-impl Generate {
-    pub(super) fn run(self) -> Outcome {
+impl GenerateArgs {
+    pub(super) fn run(self) -> CommandResult {
         let scene = open::scene(&self.scene)?;
         let mut pipeline = OccPipeline::new(self.generation.models(&self.weights)?);
-        let progress = Progress::new(&self.common);
+        let progress = ProgressLine::new(&self.common);
         let params = self.generation.params(GenParams::whole_scene())?;
         let before = scene.frame().occupancy.clone();
         let mut document = Document::new(scene);

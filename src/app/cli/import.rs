@@ -7,9 +7,9 @@ use anyhow::{Context, anyhow};
 use glam::DVec2;
 use serde_json::json;
 
-use super::{Common, Outcome, output};
+use super::{CommandResult, Common, output};
 use app::open::{self, Imported, Placement};
-use formats::import::{self, Content, Importer, Loaded};
+use formats::import::{self, Content, ImportedScene, Importer};
 use formats::loom;
 use scene::{BevLayer, Scene};
 
@@ -86,7 +86,7 @@ fn map_size(text: &str) -> Result<MapSize, String> {
 }
 
 impl Import {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         if let Some(heading) = self.heading
             && !heading.is_finite()
         {
@@ -96,7 +96,7 @@ impl Import {
         match content {
             Content::Scene(loaded) => self.whole(importer, &loaded),
             Content::Recipe(recipe) => {
-                let loaded = Loaded {
+                let loaded = ImportedScene {
                     scene: app::again(&recipe)?,
                     inferred: &[],
                     skipped: Default::default(),
@@ -127,7 +127,7 @@ impl Import {
     }
 
     /// A place on roads.
-    fn roads(&self, importer: &Importer, imported: &Imported) -> Outcome {
+    fn roads(&self, importer: &Importer, imported: &Imported) -> CommandResult {
         let frame = imported.scene.frame();
         let (at, heading) = imported.pose;
         if frame.layout.count(BevLayer::DrivableArea) == 0 {
@@ -197,7 +197,7 @@ impl Import {
     }
 
     /// A scene as the file holds it, with a report of its inferred parts.
-    fn whole(&self, importer: &Importer, loaded: &Loaded) -> Outcome {
+    fn whole(&self, importer: &Importer, loaded: &ImportedScene) -> CommandResult {
         let scene = &loaded.scene;
         loom::save(&self.output, scene).context("write the scene")?;
         let frame = scene.frame();

@@ -2,14 +2,14 @@
 
 use std::io::Write;
 
-use super::Outcome;
+use super::CommandResult;
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Licences {}
 
 impl Licences {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         // (the reader may stop early)
         let _ = std::io::stdout().write_all(assets::licences::NOTICES.as_bytes());
         Ok(())

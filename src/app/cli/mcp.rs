@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 
 use anyhow::{Context as _, anyhow};
 
-use super::Outcome;
+use super::CommandResult;
 use super::session::On;
 use assist::{Desk, Service, http};
 
@@ -25,7 +25,7 @@ pub struct Mcp {
 }
 
 impl Mcp {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let desk = self.on.desk()?;
         let (service, thread) = Service::start(move || -> Desk { desk }).context("start the session")?;
         match self.listen {

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use anyhow::anyhow;
 use serde_json::json;
 
-use super::{Common, Outcome, output};
+use super::{CommandResult, Common, output};
 use app::open;
 use formats::loom;
 use scene::{Class, Scene};
-use world::scenery::Setting;
+use world::scenery::RoadsideKind;
 use world::template::TEMPLATES;
 use world::terrain::Terrain;
 
@@ -21,7 +21,7 @@ pub struct New {
     template: String,
     /// Kind of place; one that suits the road if left out.
     #[arg(long, value_enum, value_name = "NAME")]
-    setting: Option<Setting>,
+    setting: Option<RoadsideKind>,
     /// The lie of the land.
     #[arg(long, value_enum, value_name = "NAME", default_value = "flat")]
     terrain: Terrain,
@@ -47,7 +47,7 @@ pub fn class_counts(scene: &Scene) -> serde_json::Map<String, serde_json::Value>
 }
 
 impl New {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         if self.template == "list" {
             output::report(&self.common, &json!({ "templates": TEMPLATES }), || {
                 TEMPLATES.join("\n")

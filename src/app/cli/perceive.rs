@@ -7,14 +7,14 @@ use std::path::PathBuf;
 use anyhow::{Context, anyhow};
 use serde_json::json;
 
-use super::progress::Progress;
-use super::{Common, Moment, Outcome, Stop, output};
+use super::progress::ProgressLine;
+use super::{CommandResult, Common, Moment, Stop, output};
 use app::open;
-use authoring::corner_case::{self, Sensor, Vary};
+use authoring::corner_case::{self, NetworkSensors, Vary};
 use editor::Document;
 use formats::loom;
 use scene::{BoxId, Scene};
-use sensors::perceived_voxels::{self, Heard, Hears, VoxelReport};
+use sensors::perceived_voxels::{self, Hears, PerceptionInput, VoxelReport};
 use sensors::{perceived, perceived_sweep};
 
 /// Arguments.
@@ -30,7 +30,7 @@ pub struct Perceive {
     vary: Option<Vary>,
     /// Sensor whose network is to miss it: the cameras if left out. Without a search all networks look.
     #[arg(long)]
-    by: Option<Sensor>,
+    by: Option<NetworkSensors>,
     /// Scene to write in which it is missed.
     #[arg(short, long, value_name = "S.loom", requires = "vary")]
     output: Option<PathBuf>,
@@ -41,7 +41,7 @@ pub struct Perceive {
 }
 
 impl Perceive {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let scene = self.moment.of(open::scene(&self.scene)?)?;
         match (self.of, self.vary) {
             (Some(id), Some(vary)) => self.search(&scene, BoxId(id), vary, self.by.unwrap_or_default()),
@@ -53,11 +53,11 @@ impl Perceive {
         }
     }
 
-    fn look(&self, scene: &Scene) -> Outcome {
+    fn look(&self, scene: &Scene) -> CommandResult {
         let placed = scene.with_rig_in_world();
         let found = perceived::report(&placed)?;
         let swept = perceived_sweep::report(scene)?;
-        let heard = Heard::of(scene)?;
+        let heard = PerceptionInput::of(scene)?;
         let told = |hears| perceived_voxels::report_of(scene, &heard, hears);
         let (both, alone) = (told(Hears::Both)?, [told(Hears::Lidar)?, told(Hears::Cameras)?]);
         let name = |camera: usize| &placed.rig.cameras[camera].name;
@@ -145,17 +145,17 @@ impl Perceive {
         Ok(())
     }
 
-    fn search(&self, scene: &Scene, id: BoxId, vary: Vary, by: Sensor) -> Outcome {
+    fn search(&self, scene: &Scene, id: BoxId, vary: Vary, by: NetworkSensors) -> CommandResult {
         if !by.varies().contains(&vary) {
             let problem = match by {
-                Sensor::Cameras => {
+                NetworkSensors::Cameras => {
                     "speed means nothing to cameras that take pictures in a moment: vary distance, offset, fog, time or weather"
                 }
                 _ => "light and air mean nothing to the LiDAR: vary distance, offset or speed",
             };
             return Err(anyhow!(problem).into());
         }
-        let progress = Progress::new(&self.common);
+        let progress = ProgressLine::new(&self.common);
         let search = corner_case::search(scene, id, vary, by, |_, [k, most]| {
             progress.at("search", k, most);
             ControlFlow::Continue(())
@@ -187,11 +187,13 @@ impl Perceive {
             let lines = search.tried.iter().map(|t| {
                 let (n, percent) = (t.sight.visible, t.sight.share * 100.0);
                 match by {
-                    Sensor::Cameras => {
+                    NetworkSensors::Cameras => {
                         format!("{}: {n} px, {percent:.0} % of them taken for a thing", t.change)
                     }
-                    Sensor::Lidar => format!("{}: {n} returns, {percent:.0} % sure", t.change),
-                    Sensor::Both => format!("{}: {percent:.0} % of {n} voxels taken for a thing", t.change),
+                    NetworkSensors::Lidar => format!("{}: {n} returns, {percent:.0} % sure", t.change),
+                    NetworkSensors::Both => {
+                        format!("{}: {percent:.0} % of {n} voxels taken for a thing", t.change)
+                    }
                 }
             });
             let mut lines: Vec<String> = lines.collect();
@@ -273,11 +275,11 @@ fn of_voxels(scene: &Scene, both: &VoxelReport, [lidar, cameras]: &[VoxelReport;
 }
 
 /// The name in the report of the count that must be large enough for a sensor.
-fn visible(by: Sensor) -> &'static str {
+fn visible(by: NetworkSensors) -> &'static str {
     match by {
-        Sensor::Cameras => "visible_px",
-        Sensor::Lidar => "returns",
-        Sensor::Both => "voxels",
+        NetworkSensors::Cameras => "visible_px",
+        NetworkSensors::Lidar => "returns",
+        NetworkSensors::Both => "voxels",
     }
 }
 

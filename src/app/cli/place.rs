@@ -6,16 +6,16 @@ use anyhow::{Context, anyhow};
 use glam::DVec2;
 use serde_json::json;
 
-use super::{Common, Outcome, output};
+use super::{CommandResult, Common, output};
 use app::open;
-use editor::models::{self, Placed};
+use editor::models::{self, ModelPlacement};
 use editor::{Document, Edit};
 use formats::{loom, model};
 use scene::{BoxId, Scene};
 
 /// Arguments.
 #[derive(clap::Args)]
-pub struct Place {
+pub struct PlaceArgs {
     /// File that holds the object: .glb, .gltf, .vox, .loom or another that becomes a scene.
     model: PathBuf,
     /// Scene that gets it.
@@ -39,8 +39,8 @@ pub struct Place {
     common: Common,
 }
 
-impl Place {
-    pub(super) fn run(self) -> Outcome {
+impl PlaceArgs {
+    pub(super) fn run(self) -> CommandResult {
         if self.heading.is_some_and(|heading| !heading.is_finite()) {
             return Err(anyhow!("--heading is not a finite angle in degrees").into());
         }
@@ -78,12 +78,12 @@ impl Place {
         Ok(())
     }
 
-    fn placed(&self, scene: &Scene, model: &scene::Model) -> anyhow::Result<Placed> {
+    fn placed(&self, scene: &Scene, model: &scene::Model) -> anyhow::Result<ModelPlacement> {
         if let Some(id) = self.to.map(BoxId) {
             let b = scene.frame().boxes.get(&id);
             let b = b.ok_or(editor::EditError::UnknownBox { id })?;
             let edits: Vec<Edit> = models::give(model, b);
-            return Ok(Placed { edits, id });
+            return Ok(ModelPlacement { edits, id });
         }
         let at_m = self.at.unwrap_or_else(|| models::ahead_m(scene, model));
         models::place(scene, model, at_m, self.heading)

@@ -8,18 +8,18 @@ use super::Common;
 use job::{JobCtx, JobUpdate};
 
 /// Draws one line over itself.
-pub struct Progress {
+pub struct ProgressLine {
     shown: bool,
     state: Mutex<(String, Instant)>,
 }
 
-impl judge::Progress for Progress {
+impl judge::MeasurementProgress for ProgressLine {
     fn at(&self, stage: &str, step: usize, steps: usize) {
         Self::at(self, stage, step, steps);
     }
 }
 
-impl Progress {
+impl ProgressLine {
     /// Shown if stderr is a terminal or `--progress` was given.
     pub fn new(common: &Common) -> Self {
         let shown = common.progress || std::io::stderr().is_terminal();

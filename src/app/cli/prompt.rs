@@ -7,11 +7,11 @@ use serde_json::json;
 
 use super::generate::run_and_adopt;
 use super::new::class_counts;
-use super::progress::Progress;
-use super::{Common, Outcome, Stop, Weights, output};
+use super::progress::ProgressLine;
+use super::{CommandResult, Common, Stop, Weights, output};
 use crate::endpoint::{self, Endpoint};
 use app::open;
-use app::prompting::{How, Keep, Placer};
+use app::prompting::{How, Keep, PlacementMethod};
 use app::text::{self, Prompted, doubts};
 use app::wildcards;
 use authoring::new_ground::with_scenery;
@@ -21,14 +21,14 @@ use job::GenParams;
 use job::pipeline::OccPipeline;
 use nets::OccModels;
 use scene::Scene;
-use words::hear::{Heard, against};
+use words::hear::{CheckedReading, against};
 use words::notation;
 use words::reader::Mode;
 use words::stage::Candidate;
 
 /// Arguments.
 #[derive(clap::Args)]
-pub struct Prompt {
+pub struct PromptArgs {
     /// Content of the new scene, or changes of the given one. {car|bus} and {2-5} are wildcards: the seed draws one.
     #[arg(required_unless_present = "schema", default_value = "")]
     text: String,
@@ -52,7 +52,7 @@ pub struct Prompt {
     schema: bool,
     /// Placer of the objects.
     #[arg(long, value_enum, default_value_t)]
-    placer: Placer,
+    placer: PlacementMethod,
     /// Fill in what the prompt leaves open from remembered scenes.
     #[arg(long, overrides_with = "no_memory")]
     memory: bool,
@@ -80,14 +80,14 @@ pub struct Prompt {
     common: Common,
 }
 
-impl Prompt {
-    pub(super) fn run(mut self) -> Outcome {
+impl PromptArgs {
+    pub(super) fn run(mut self) -> CommandResult {
         self.text = wildcards::drawn(&self.text, self.seed);
         if self.schema {
             println!("{:#}", endpoint::schema());
             return Ok(());
         }
-        if self.weights.folder.is_some() && !self.generate && self.placer == Placer::Rules {
+        if self.weights.folder.is_some() && !self.generate && self.placer == PlacementMethod::Rules {
             let line = "--weights is of networks, but neither --generate nor --placer diffusion asks for one";
             return Err(anyhow!(line).into());
         }
@@ -100,10 +100,10 @@ impl Prompt {
     /// The language model's reading of the text, if one is named, with the program's own reading beside it.
     fn by_endpoint(
         &self,
-        heard: Option<&Heard>,
+        heard: Option<&CheckedReading>,
         mode: Mode,
         scene: Option<&Scene>,
-    ) -> anyhow::Result<Option<Heard>> {
+    ) -> anyhow::Result<Option<CheckedReading>> {
         let (Some(url), Some(model)) = (&self.endpoint, &self.model) else {
             return Ok(None);
         };
@@ -127,13 +127,18 @@ impl Prompt {
             seed: self.seed,
             ..params
         };
-        let result = run_and_adopt(&mut document, &mut pipeline, params, &Progress::new(&self.common))?;
+        let result = run_and_adopt(
+            &mut document,
+            &mut pipeline,
+            params,
+            &ProgressLine::new(&self.common),
+        )?;
         let report = json!({ "network_calls": result.report.network_calls, "wall_s": result.report.wall_s });
         Ok((Scene::clone(document.scene()), report))
     }
 
     /// Prints a reading.
-    fn print(&self, heard: &Heard) -> Outcome {
+    fn print(&self, heard: &CheckedReading) -> CommandResult {
         let report = json!({
             "reading": heard.reading,
             "notation": notation::write(&heard.reading),
@@ -152,7 +157,7 @@ impl Prompt {
         Ok(())
     }
 
-    fn make(self) -> Outcome {
+    fn make(self) -> CommandResult {
         let own = text::read(&self.text);
         let heard = own.as_ref().ok().map(|p| &p.heard);
         let mut prompted = match self.by_endpoint(heard, Mode::Prompt, None)? {
@@ -259,7 +264,7 @@ impl Prompt {
         })
     }
 
-    fn edit(self, base: &Path) -> Outcome {
+    fn edit(self, base: &Path) -> CommandResult {
         if self.text.trim().is_empty() {
             return Err(anyhow::anyhow!(
                 "the prompt is empty: say what should change, such as \"remove the parked car\""

@@ -6,13 +6,13 @@ use anyhow::bail;
 use serde_json::json;
 
 use super::region_arg::RegionArg;
-use super::{Common, Outcome, output};
+use super::{CommandResult, Common, output};
 use app::open;
-use app::scenery::{Drawer, SceneryWish};
+use app::scenery::{SceneryMethod, SceneryWish};
 use editor::Document;
 use formats::loom;
 use job::inpaint::InpaintMask;
-use world::scenery::Setting;
+use world::scenery::RoadsideKind;
 
 /// Generator of scenery.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -34,7 +34,7 @@ pub struct Scenery {
     by: By,
     /// Kind of place that the rules draw; one that suits the road if left out.
     #[arg(long, value_enum, value_name = "NAME")]
-    setting: Option<Setting>,
+    setting: Option<RoadsideKind>,
     /// Number of plants, 1 = usual there; 0 is none.
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     green: f64,
@@ -65,8 +65,8 @@ impl Scenery {
             Some(RegionArg::Auto) => bail!("--region is auto, expected full or four numbers X0,Y0,X1,Y1"),
         };
         let by = match (self.by, self.setting) {
-            (By::Rules, setting) => Drawer::Rules(setting),
-            (By::Network, None) => Drawer::Network,
+            (By::Rules, setting) => SceneryMethod::Rules(setting),
+            (By::Network, None) => SceneryMethod::Network,
             (By::Network, Some(_)) => {
                 bail!("--setting is for rules, the network chooses what suits the road")
             }
@@ -80,7 +80,7 @@ impl Scenery {
         })
     }
 
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let wish = self.wish()?;
         let scene = open::scene(&self.scene)?;
         let before = scene.frame().occupancy.clone();

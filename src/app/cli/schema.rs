@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::Outcome;
+use super::CommandResult;
 use assist::schema;
 
 /// Arguments.
@@ -14,7 +14,7 @@ pub struct SchemaCommand {
 }
 
 impl SchemaCommand {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let document = schema::document();
         // (the reader may stop early)
         let mut out = std::io::stdout();

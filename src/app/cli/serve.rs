@@ -3,8 +3,8 @@
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
-use super::Outcome;
-use ::serve::{LidarModel, Options, Server};
+use super::CommandResult;
+use ::serve::{Options, Server, ServerLidarModel};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -30,15 +30,15 @@ pub struct Serve {
 }
 
 impl Serve {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let server = Server::bind(Options {
             listen: self.listen,
             jobs: self.jobs.into(),
             waiting: self.waiting.into(),
             kept: self.keep.into(),
             lidar: match self.lidar.as_str() {
-                "exact" => LidarModel::Exact,
-                _ => LidarModel::Learned,
+                "exact" => ServerLidarModel::Exact,
+                _ => ServerLidarModel::Learned,
             },
             ..Options::new(self.scenes)
         })?;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 
-use super::Outcome;
+use super::CommandResult;
 use app::open;
 use assist::{Desk, Folder, Holder};
 use editor::Document;
@@ -49,7 +49,7 @@ impl On {
 }
 
 impl Session {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let mut desk = self.on.desk()?;
         let input = BufReader::new(stdin().lock());
         assist::session(&mut desk, input, stdout().lock()).context("standard input or output")?;

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::render::size;
 use super::viewpoint::Viewpoint;
-use super::{Common, Moment, Outcome, output};
+use super::{CommandResult, Common, Moment, output};
 use app::capture::{CaptureOptions, Subject, capture, to_png};
 use app::{open, picture};
 use scene::Scene;
@@ -53,7 +53,7 @@ pub struct Shot {
 }
 
 impl Shot {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let scene = self.moment.of(open::scene(&self.scene)?)?;
         let options = self.options(&scene)?;
         let start = Instant::now();

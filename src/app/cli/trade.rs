@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use anyhow::{Context, bail};
 use serde_json::json;
 
-use super::progress::Progress;
-use super::{Common, Outcome, Stop, Weights, output};
+use super::progress::ProgressLine;
+use super::{CommandResult, Common, Stop, Weights, output};
 use app::trade_plot;
 use judge::held_out::TEST_SEED;
 use judge::machine::{Load, machine};
 use judge::presets::measure::{Raw, add_times};
-use judge::presets::plan::{Plan, write_presets};
+use judge::presets::plan::{TradeoffPlan, write_presets};
 use judge::presets::report::table;
 use nets::OccModels;
 
@@ -75,9 +75,9 @@ pub struct Trade {
 }
 
 impl Trade {
-    fn plan(&self) -> Plan {
+    fn plan(&self) -> TradeoffPlan {
         let of = |quick, full| if self.suite == "full" { full } else { quick };
-        Plan {
+        TradeoffPlan {
             scene: self.scene.clone(),
             parts: self.parts.clone(),
             frames: self.frames.unwrap_or(of(3, 20)),
@@ -107,12 +107,12 @@ impl Trade {
         Ok(load)
     }
 
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let plan = self.plan();
         plan.check()?;
         let load = self.look_at_load()?;
         let models = OccModels::of(self.weights.folder.as_deref())?;
-        let progress = Progress::new(&self.common);
+        let progress = ProgressLine::new(&self.common);
         let processes = self.processes.unwrap_or(if self.suite == "full" { 3 } else { 1 });
         let raw = if processes > 1 && !self.raw {
             self.measure_in_processes(processes, &progress)?
@@ -157,7 +157,7 @@ impl Trade {
     }
 
     /// Measures in processes of their own, one after another, and puts their times together. Errors must not differ.
-    fn measure_in_processes(&self, processes: usize, progress: &Progress) -> anyhow::Result<Raw> {
+    fn measure_in_processes(&self, processes: usize, progress: &ProgressLine) -> anyhow::Result<Raw> {
         let dir = tempfile::tempdir().context("make a folder for the processes' reports")?;
         let plan = self.plan();
         let references = self

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use anyhow::{Context, anyhow, bail};
 use serde_json::json;
 
-use super::{Common, Outcome, output};
+use super::{CommandResult, Common, output};
 use app::open;
 use formats::loom;
-use scene::{Kept, KeptVersion, Scene};
+use scene::{KeptVersion, ProjectHistory, Scene};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -30,7 +30,7 @@ pub struct VersionsCommand {
 }
 
 impl VersionsCommand {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         let mut scene = open::scene(&self.scene)?;
         if self.output.is_some() && self.take.is_none() && self.keep.is_none() {
             return Err(anyhow!("-o is given without --take or --keep: a list writes no scene").into());
@@ -105,7 +105,7 @@ fn keep(scene: &mut Scene, name: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn find<'a>(kept: &'a Kept, wanted: &str) -> anyhow::Result<&'a KeptVersion> {
+fn find<'a>(kept: &'a ProjectHistory, wanted: &str) -> anyhow::Result<&'a KeptVersion> {
     let number = wanted.parse::<usize>().ok().and_then(|n| n.checked_sub(1));
     let by_name = kept.versions.iter().rev().find(|v| v.name == wanted);
     by_name

@@ -12,11 +12,11 @@ use formats::out_folder::OutFolder;
 use scene::plain_name::folded;
 
 /// Files that were written, with their sizes in bytes.
-type Written = Vec<(PathBuf, u64)>;
+type WrittenFiles = Vec<(PathBuf, u64)>;
 
 /// Writes the files of the formats: one file to `path`, or all of them into the folder `path`. Before the first is
 /// written, all names are checked.
-pub(super) fn write(formats: &[Format], ready: &[Vec<OutFile>], path: &Path) -> anyhow::Result<Written> {
+pub(super) fn write(formats: &[Format], ready: &[Vec<OutFile>], path: &Path) -> anyhow::Result<WrittenFiles> {
     if !fills_a_folder(formats, path) {
         return write_one(path, ready);
     }
@@ -38,7 +38,7 @@ fn fills_a_folder(formats: &[Format], path: &Path) -> bool {
 }
 
 /// Writes the file of a format. No folder is made.
-fn write_one(path: &Path, ready: &[Vec<OutFile>]) -> anyhow::Result<Written> {
+fn write_one(path: &Path, ready: &[Vec<OutFile>]) -> anyhow::Result<WrittenFiles> {
     let one = |file: &OutFile| {
         atomic::write(path, &file.bytes).with_context(|| format!("write {}", path.display()))?;
         Ok((path.to_path_buf(), file.bytes.len() as u64))

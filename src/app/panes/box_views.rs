@@ -28,24 +28,24 @@ const REACH: f32 = 7.0;
 const LIFT_M: f64 = -GROUND_TOP_M;
 
 /// A view: its name, and the box axes (0 along the heading, 1 left, 2 up) that run right and up on the screen.
-struct View {
+struct AxisView {
     name: &'static str,
     right: (usize, f64),
     up: (usize, f64),
 }
 
-const VIEWS: [View; 3] = [
-    View {
+const VIEWS: [AxisView; 3] = [
+    AxisView {
         name: "From above",
         right: (1, -1.0),
         up: (0, 1.0),
     },
-    View {
+    AxisView {
         name: "From its right",
         right: (0, 1.0),
         up: (2, 1.0),
     },
-    View {
+    AxisView {
         name: "From behind",
         right: (1, -1.0),
         up: (2, 1.0),
@@ -54,7 +54,7 @@ const VIEWS: [View; 3] = [
 
 /// A face that is being dragged.
 #[derive(Clone, Copy)]
-struct Held {
+struct FaceDrag {
     view: usize,
     axis: usize,
     sign: f64,
@@ -66,7 +66,7 @@ struct Held {
 /// The chosen box from three sides, and the face that is dragged.
 #[derive(Default)]
 pub struct BoxViews {
-    held: Option<Held>,
+    held: Option<FaceDrag>,
 }
 
 impl Pane for BoxViews {
@@ -127,7 +127,7 @@ impl BoxViews {
         ui: &mut Ui,
         rect: Rect,
         index: usize,
-        view: &View,
+        view: &AxisView,
         b: &SceneBox,
         scene: &Scene,
         sweep: Option<&LidarSweep>,
@@ -234,7 +234,7 @@ impl BoxViews {
         ui: &Ui,
         response: &egui::Response,
         index: usize,
-        view: &View,
+        view: &AxisView,
         b: &SceneBox,
         outline: Rect,
         scale: f64,
@@ -253,7 +253,7 @@ impl BoxViews {
             && let Some(from) = ui.input(|i| i.pointer.press_origin())
             && let Some((axis, sign)) = face_at(outline, from, view)
         {
-            self.held = Some(Held {
+            self.held = Some(FaceDrag {
                 view: index,
                 axis,
                 sign,
@@ -274,9 +274,9 @@ impl BoxViews {
     }
 }
 
-impl Held {
+impl FaceDrag {
     /// The box with the dragged face at the pointer; the opposite face stays.
-    fn edit(&self, view: &View, p: Pos2) -> Edit {
+    fn edit(&self, view: &AxisView, p: Pos2) -> Edit {
         let travel = p - self.from;
         let moved_m = if self.axis == view.right.0 {
             f64::from(travel.x) * view.right.1
@@ -302,7 +302,7 @@ fn resized(b: &SceneBox, axis: usize, sign: f64, moved_m: f64) -> Edit {
 }
 
 /// The face whose edge is under the pointer: axis of the box and sign.
-fn face_at(outline: Rect, p: Pos2, view: &View) -> Option<(usize, f64)> {
+fn face_at(outline: Rect, p: Pos2, view: &AxisView) -> Option<(usize, f64)> {
     let inside = outline.expand(REACH).contains(p);
     let near = |a: f32, b: f32| inside && (a - b).abs() <= REACH;
     if near(p.x, outline.right()) {

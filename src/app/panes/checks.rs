@@ -10,15 +10,15 @@ use egui::accesskit::Role;
 use egui::{Ui, WidgetInfo, vec2};
 
 use super::id::PaneId;
-use super::pane::{Pane, PaneContext, Place};
+use super::pane::{Pane, PaneContext, PanePlacement};
 use crate::command::{Command, RepairCommand};
 use crate::finding_marks::FindingMarks;
 use crate::state::called;
-use editor::checks::{Counts, Finding, Severity, waive};
+use editor::checks::{Finding, Severity, SeverityCounts, waive};
 use language::{t, tf};
 use row::{key, row, sign};
 use scene::{BoxId, Frame, Scene};
-use triage::{Grouping, Line, Triage};
+use triage::{Grouping, Triage, TriageRow};
 use waived::{reason_ui, waived_ui};
 use widgets::icons::{self, Icon};
 use widgets::theme;
@@ -39,8 +39,8 @@ impl Pane for Checks {
         Icon::Tick
     }
 
-    fn place(&self) -> Place {
-        Place::BelowViews
+    fn place(&self) -> PanePlacement {
+        PanePlacement::BelowViews
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
@@ -144,7 +144,7 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
     let (open, waived): (Vec<&Finding>, Vec<&Finding>) = findings
         .iter()
         .partition(|f| waive::of(input.frame(), f).is_none());
-    let counts = Counts::of(open.iter().copied());
+    let counts = SeverityCounts::of(open.iter().copied());
     if open.is_empty() {
         all_is_well(ui, counts, &waived);
         ui.weak(t(
@@ -176,8 +176,8 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
         .show_rows(ui, theme::ROW, lines.len(), |ui, range| {
             for (i, line) in range.clone().zip(&lines[range]) {
                 ui.push_id(i, |ui| match line {
-                    Line::Finding(i) => row(ui, open[*i], input, pointed, commands),
-                    Line::Group { .. } => group_row(ui, line, &open, input, &mut triage, commands),
+                    TriageRow::Finding(i) => row(ui, open[*i], input, pointed, commands),
+                    TriageRow::Group { .. } => group_row(ui, line, &open, input, &mut triage, commands),
                 });
             }
         });
@@ -185,7 +185,7 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
     waived_ui(ui, &waived, input, commands);
 }
 
-fn all_is_well(ui: &mut Ui, counts: Counts, waived: &[&Finding]) {
+fn all_is_well(ui: &mut Ui, counts: SeverityCounts, waived: &[&Finding]) {
     ui.horizontal(|ui| {
         let (dot, _) = ui.allocate_exact_size(vec2(12.0, 12.0), egui::Sense::hover());
         ui.painter().circle_filled(dot.center(), 4.0, theme::good());
@@ -205,7 +205,7 @@ fn bar(
     triage: &mut Triage,
     commands: &mut Vec<Command>,
 ) {
-    let counts = Counts::of(open.iter().copied());
+    let counts = SeverityCounts::of(open.iter().copied());
     ui.horizontal(|ui| {
         for (severity, hidden) in Severity::ALL.into_iter().zip(&mut triage.hidden) {
             let n = counts.count(severity);
@@ -266,13 +266,13 @@ fn severity_button(ui: &mut Ui, severity: Severity, n: usize, hidden: &mut bool)
 
 fn group_row(
     ui: &mut Ui,
-    line: &Line,
+    line: &TriageRow,
     open: &[&Finding],
     input: &ChecksInput<'_>,
     triage: &mut Triage,
     commands: &mut Vec<Command>,
 ) {
-    let Line::Group {
+    let TriageRow::Group {
         title,
         of,
         worst,
@@ -343,7 +343,7 @@ fn words(severity: Severity, n: usize) -> String {
 }
 
 /// Text such as `2 errors, 1 warning`.
-pub fn in_words(counts: Counts) -> String {
+pub fn in_words(counts: SeverityCounts) -> String {
     let some = Severity::ALL.into_iter().filter(|s| counts.count(*s) > 0);
     let all: Vec<String> = some.map(|s| words(s, counts.count(s))).collect();
     match all.is_empty() {
@@ -359,7 +359,7 @@ mod tests {
     #[test]
     fn summaries_count() {
         let of = |errors, warnings, infos| {
-            in_words(Counts {
+            in_words(SeverityCounts {
                 errors,
                 warnings,
                 infos,

@@ -12,7 +12,7 @@ pub use super::comparing::{CompareMode, Comparing};
 use super::sweep_picture::SweepPicture;
 use crate::bev_image::from_above;
 use crate::camera_views::Wanted;
-use crate::canvas::Canvas;
+use crate::canvas::BevCanvas;
 use crate::painting::PaintWish;
 use crate::sensing::Sensing;
 use crate::view3d::View3d;
@@ -22,7 +22,7 @@ use widgets::theme;
 
 /// Voxels that differ between two grids.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Difference {
+pub struct VoxelDifference {
     /// Voxels that are occupied only in the later grid, `[x, y, z]`.
     pub added: Vec<[usize; 3]>,
     /// Voxels that are occupied only in the earlier grid.
@@ -34,7 +34,7 @@ pub struct Difference {
 /// Colours of added voxels, removed voxels, and voxels of another class.
 pub(crate) const DIFFERENCE_COLORS: [[u8; 3]; 3] = [[70, 205, 110], [235, 70, 60], [240, 180, 60]];
 
-impl Difference {
+impl VoxelDifference {
     /// Compares two grids, on the map of the later one.
     pub fn between(before: &VoxelGrid, after: &VoxelGrid) -> Self {
         let (before, mut out) = (before.crop(after.extent()), Self::default());
@@ -109,14 +109,14 @@ pub struct Compare {
     pub chosen: Option<Arc<Scene>>,
     /// The state compared with, while there is a comparison.
     pub(crate) before: Option<Arc<Scene>>,
-    pub(crate) canvas: Canvas,
+    pub(crate) canvas: BevCanvas,
     pub(crate) view3d: Option<View3d>,
     pub(crate) strip: CameraStrip,
     pub(crate) sweep: SweepPicture,
     pub(crate) sensing: Option<Sensing>,
     /// The state whose sensors were requested last.
     sensed: Option<SceneRev>,
-    difference: Option<(SceneRev, SceneRev, Difference, egui::TextureHandle)>,
+    difference: Option<(SceneRev, SceneRev, VoxelDifference, egui::TextureHandle)>,
 }
 
 impl Compare {
@@ -166,16 +166,20 @@ impl Compare {
 
     /// The voxels that differ between the compared state and `after`, with a picture of them; `None` without a
     /// comparison.
-    pub(crate) fn difference(&mut self, ui: &Ui, after: &Scene) -> Option<(&Difference, egui::TextureId)> {
+    pub(crate) fn difference(
+        &mut self,
+        ui: &Ui,
+        after: &Scene,
+    ) -> Option<(&VoxelDifference, egui::TextureId)> {
         let before = self.before.as_ref()?;
         let known = |(a, b, ..): &(SceneRev, SceneRev, _, _)| *a == before.rev && *b == after.rev;
         if !self.difference.as_ref().is_some_and(known) {
             let (a, b) = (&before.frame().occupancy, &after.frame().occupancy);
-            let image = Difference::image(a, b);
+            let image = VoxelDifference::image(a, b);
             let texture = ui
                 .ctx()
                 .load_texture("difference", image, egui::TextureOptions::NEAREST);
-            let found = Difference::between(a, b);
+            let found = VoxelDifference::between(a, b);
             self.difference = Some((before.rev, after.rev, found, texture));
         }
         self.difference
@@ -329,11 +333,14 @@ mod tests {
         before.set(1, 2, 3, Class::Car.id());
         before.set(4, 5, 6, Class::Car.id());
         let mut after = before.clone();
-        assert_eq!(Difference::between(&before, &after), Difference::default());
+        assert_eq!(
+            VoxelDifference::between(&before, &after),
+            VoxelDifference::default()
+        );
         after.set(1, 2, 3, Class::FREE);
         after.set(4, 5, 6, Class::Bus.id());
         after.set(7, 8, 9, Class::Bus.id());
-        let found = Difference::between(&before, &after);
+        let found = VoxelDifference::between(&before, &after);
         assert_eq!(
             (&found.added[..], &found.removed[..]),
             (&[[7, 8, 9]][..], &[[1, 2, 3]][..])
@@ -342,7 +349,7 @@ mod tests {
         let legend: Vec<String> = found.legend().into_iter().map(|(_, text)| text).collect();
         assert_eq!(legend, ["1 added", "1 removed", "1 of another class"]);
         // The colour of a column matches that of its voxels in 3D.
-        let image = Difference::image(&before, &after);
+        let image = VoxelDifference::image(&before, &after);
         let drawn = |color: [u8; 3]| {
             let [r, g, b] = color;
             let color = Color32::from_rgba_unmultiplied(r, g, b, 200);

@@ -149,7 +149,8 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
 
 /// The style text with its phrases about time and weather replaced; other phrases stay as they are.
 fn with_conditions(prompt: &str, time: &str, weather: &str) -> String {
-    let speaks = |phrase: &&str| words::conditions::read(phrase) != words::conditions::Said::default();
+    let speaks =
+        |phrase: &&str| words::conditions::read(phrase) != words::conditions::StatedConditions::default();
     let phrases = prompt.split(',').map(str::trim).filter(|p| !p.is_empty());
     let mut kept: Vec<&str> = phrases.filter(|p| !speaks(p)).collect();
     kept.extend([time, weather]);

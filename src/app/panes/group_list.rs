@@ -11,14 +11,14 @@ use crate::arranging;
 use crate::command::{Command, ViewCommand};
 use crate::state::UiState;
 use crate::tools::{Choose, ToolCommand};
-use scene::{Arranged, Arrangement, Group, Members, Scene, SceneBox};
+use scene::{Arranged, Arrangement, Members, ObjectGroup, Scene, SceneBox};
 use widgets::icons;
 use widgets::theme;
 
 /// A row of the list.
-pub(super) enum Row<'a> {
+pub(super) enum ObjectListRow<'a> {
     /// A group with its index.
-    Group(usize, &'a Group),
+    Group(usize, &'a ObjectGroup),
     /// A box; true if it belongs to the group above.
     Box(&'a SceneBox, bool),
 }
@@ -28,7 +28,7 @@ fn folded_id() -> egui::Id {
 }
 
 /// Rows of the list: first the groups, each with its listed boxes, then the other boxes.
-pub(super) fn rows<'a>(ui: &Ui, arranged: &'a Arranged, boxes: &[&'a SceneBox]) -> Vec<Row<'a>> {
+pub(super) fn rows<'a>(ui: &Ui, arranged: &'a Arranged, boxes: &[&'a SceneBox]) -> Vec<ObjectListRow<'a>> {
     let folded: BTreeSet<usize> = ui.data(|d| d.get_temp(folded_id())).unwrap_or_default();
     let mut out = Vec::with_capacity(boxes.len() + arranged.groups.len());
     for (i, group) in arranged.groups.iter().enumerate() {
@@ -39,13 +39,13 @@ pub(super) fn rows<'a>(ui: &Ui, arranged: &'a Arranged, boxes: &[&'a SceneBox]) 
         if inside.is_empty() && !group.members.boxes.is_empty() {
             continue;
         }
-        out.push(Row::Group(i, group));
+        out.push(ObjectListRow::Group(i, group));
         if !folded.contains(&i) {
-            out.extend(inside.into_iter().map(|b| Row::Box(b, true)));
+            out.extend(inside.into_iter().map(|b| ObjectListRow::Box(b, true)));
         }
     }
     let free = boxes.iter().filter(|b| arranged.group_of_box(b.id).is_none());
-    out.extend(free.map(|b| Row::Box(b, false)));
+    out.extend(free.map(|b| ObjectListRow::Box(b, false)));
     out
 }
 
@@ -99,7 +99,7 @@ pub(super) fn switches(
 pub(super) const SWITCHES: f32 = 16.0 + theme::ROW;
 
 /// The name of a group: its own, or one with the number of its members.
-pub(super) fn title(group: &Group) -> String {
+pub(super) fn title(group: &ObjectGroup) -> String {
     match group.name.is_empty() {
         true => tf!("Group of {n}", n = group.members.len()),
         false => group.name.as_str().to_owned(),
@@ -109,7 +109,7 @@ pub(super) fn title(group: &Group) -> String {
 /// Draws the row of a group.
 pub(super) fn group_ui(
     ui: &mut Ui,
-    (i, group): (usize, &Group),
+    (i, group): (usize, &ObjectGroup),
     scene: &Scene,
     state: &UiState,
     commands: &mut Vec<Command>,
@@ -160,7 +160,7 @@ pub(super) fn group_ui(
 }
 
 /// Draws the menu of a right click on a group.
-fn menu(row: &egui::Response, group: &Group, commands: &mut Vec<Command>) {
+fn menu(row: &egui::Response, group: &ObjectGroup, commands: &mut Vec<Command>) {
     widgets::menu::on_right_click(row, |ui| {
         let memory = row.id.with("name of the group");
         let mut text: String = ui

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::id::PaneId;
-use super::pane::{Pane, PaneContext, Place};
+use super::pane::{Pane, PaneContext, PanePlacement};
 use crate::command::Command;
 use editor::Document;
 use language::{t, tf};
@@ -29,8 +29,8 @@ impl Pane for History {
         Icon::Undo
     }
 
-    fn place(&self) -> Place {
-        Place::ColumnAtOnce
+    fn place(&self) -> PanePlacement {
+        PanePlacement::ColumnAtOnce
     }
 
     fn column_points(&self) -> f32 {

@@ -57,7 +57,7 @@ pub fn all() -> Vec<Box<dyn Pane>> {
         Box::new(lidar::Lidar::default()),
         Box::new(splats::Splats::default()),
         Box::new(box_views::BoxViews::default()),
-        Box::new(prompt::Prompt),
+        Box::new(prompt::PromptPane),
         Box::new(versions::VersionsPane),
         Box::new(tools::Tools),
         Box::new(objects::Objects),

@@ -10,7 +10,7 @@ use widgets::theme;
 
 /// The order of the list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Order {
+enum ObjectOrder {
     /// By class, then by number.
     #[default]
     Class,
@@ -22,17 +22,17 @@ enum Order {
     Name,
 }
 
-const ORDERS: [(Order, &str); 4] = [
-    (Order::Class, "By class"),
-    (Order::Distance, "Nearest first"),
-    (Order::Number, "By number"),
-    (Order::Name, "By name"),
+const ORDERS: [(ObjectOrder, &str); 4] = [
+    (ObjectOrder::Class, "By class"),
+    (ObjectOrder::Distance, "Nearest first"),
+    (ObjectOrder::Number, "By number"),
+    (ObjectOrder::Name, "By name"),
 ];
 
 /// Order and filter of the list.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Listing {
-    order: Order,
+    order: ObjectOrder,
     words: String,
 }
 
@@ -96,10 +96,10 @@ impl Listing {
         let mut out: Vec<&SceneBox> = boxes.filter(holds).collect();
         let class = |b: &SceneBox| Class::OBJECTS.iter().position(|c| *c == b.class);
         match self.order {
-            Order::Class => out.sort_by_key(|b| (class(b), b.id)),
-            Order::Number => out.sort_by_key(|b| b.id),
-            Order::Name => out.sort_by_key(|b| (b.called().to_lowercase(), b.id)),
-            Order::Distance => {
+            ObjectOrder::Class => out.sort_by_key(|b| (class(b), b.id)),
+            ObjectOrder::Number => out.sort_by_key(|b| b.id),
+            ObjectOrder::Name => out.sort_by_key(|b| (b.called().to_lowercase(), b.id)),
+            ObjectOrder::Distance => {
                 let away_m = |b: &SceneBox| b.center_m.truncate().distance(ego_m);
                 out.sort_by(|a, b| away_m(a).total_cmp(&away_m(b)));
             }
@@ -147,12 +147,12 @@ mod tests {
                 .map(|b| b.id.0)
                 .collect()
         };
-        assert_eq!(ids(Order::Number, ""), [1, 2, 12]);
-        assert_eq!(ids(Order::Distance, ""), [12, 2, 1]);
-        assert_eq!(ids(Order::Name, ""), [1, 12, 2]);
-        assert_eq!(ids(Order::Class, "car"), [2, 12]);
-        assert_eq!(ids(Order::Class, "YELLOW taxi"), [2]);
-        assert_eq!(ids(Order::Class, "#12"), [12]);
-        assert_eq!(ids(Order::Class, "lorry"), [0; 0]);
+        assert_eq!(ids(ObjectOrder::Number, ""), [1, 2, 12]);
+        assert_eq!(ids(ObjectOrder::Distance, ""), [12, 2, 1]);
+        assert_eq!(ids(ObjectOrder::Name, ""), [1, 12, 2]);
+        assert_eq!(ids(ObjectOrder::Class, "car"), [2, 12]);
+        assert_eq!(ids(ObjectOrder::Class, "YELLOW taxi"), [2]);
+        assert_eq!(ids(ObjectOrder::Class, "#12"), [12]);
+        assert_eq!(ids(ObjectOrder::Class, "lorry"), [0; 0]);
     }
 }

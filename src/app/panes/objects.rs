@@ -6,10 +6,10 @@ use glam::DVec3;
 use language::{t, tf};
 
 use super::box_menu;
-use super::group_list::{self, Row};
+use super::group_list::{self, ObjectListRow};
 use super::id::PaneId;
 use super::object_order::listing_ui;
-use super::pane::{Pane, PaneContext, Place};
+use super::pane::{Pane, PaneContext, PanePlacement};
 use super::{thing_list, things};
 use crate::canvas_draw::box_color;
 use crate::command::{Command, ViewCommand};
@@ -42,8 +42,8 @@ impl Pane for Objects {
         Icon::List
     }
 
-    fn place(&self) -> Place {
-        Place::ColumnAtOnce
+    fn place(&self) -> PanePlacement {
+        PanePlacement::ColumnAtOnce
     }
 
     fn column_points(&self) -> f32 {
@@ -124,10 +124,10 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     list.show_rows(ui, theme::ROW, boxes.len() + rows.len(), |ui, range| {
         for i in range {
             match boxes.get(i) {
-                Some(Row::Group(at, group)) => {
+                Some(ObjectListRow::Group(at, group)) => {
                     group_list::group_ui(ui, (*at, group), scene, state, commands);
                 }
-                Some(Row::Box(b, inside)) => {
+                Some(ObjectListRow::Box(b, inside)) => {
                     ui.push_id(b.id.0, |ui| box_row(ui, b, *inside, (scene, state), commands));
                 }
                 None => thing_list::row_ui(ui, &rows[i - boxes.len()], scene, &mut state.tools, commands),
@@ -184,7 +184,7 @@ fn divide(ui: &mut Ui, title: &str, height: f32, most: f32) {
 fn reveal(
     ui: &Ui,
     list: egui::ScrollArea,
-    rows: &[Row<'_>],
+    rows: &[ObjectListRow<'_>],
     selected: Option<BoxId>,
     height: f32,
 ) -> egui::ScrollArea {
@@ -194,7 +194,7 @@ fn reveal(
         return list;
     }
     ui.data_mut(|d| d.insert_temp(memory, selected));
-    let is_it = |row: &Row<'_>| matches!(row, Row::Box(b, _) if Some(b.id) == selected);
+    let is_it = |row: &ObjectListRow<'_>| matches!(row, ObjectListRow::Box(b, _) if Some(b.id) == selected);
     match rows.iter().position(is_it) {
         Some(row) => {
             let at = row as f32 * (theme::ROW + 1.0) - height / 2.0;

@@ -12,7 +12,7 @@ use super::camera_strip::CameraStrip;
 use super::compare::Compare;
 use super::id::PaneId;
 use super::prompt::field::PromptField;
-use crate::canvas::Canvas;
+use crate::canvas::BevCanvas;
 use crate::command::Command;
 use crate::seen::SeenScene;
 use crate::sensing::Sensing;
@@ -27,7 +27,7 @@ use widgets::icons::Icon;
 
 /// Place where a pane opens that is not in the dock yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum PanePlacement {
     /// Below the largest view.
     BelowView,
     /// Below the row of large views, so that it hides no part of them.
@@ -38,10 +38,10 @@ pub enum Place {
     ColumnAtOnce,
 }
 
-impl Place {
+impl PanePlacement {
     /// True if the place is in the column of the panes with lists and numbers.
     pub fn is_column(self) -> bool {
-        matches!(self, Place::Column | Place::ColumnAtOnce)
+        matches!(self, PanePlacement::Column | PanePlacement::ColumnAtOnce)
     }
 }
 
@@ -55,7 +55,7 @@ pub struct PaneInfo {
     /// Icon beside its title in menus.
     pub icon: Icon,
     /// Place where it opens.
-    pub place: Place,
+    pub place: PanePlacement,
     /// Width that a column of such panes needs for its texts, points; 0 for views, which take any.
     pub column_points: f32,
 }
@@ -71,7 +71,7 @@ pub struct PaneContext<'a> {
     /// Tools, layers, options.
     pub state: &'a mut UiState,
     /// The bird's-eye view.
-    pub canvas: &'a mut Canvas,
+    pub canvas: &'a mut BevCanvas,
     /// The 3D view.
     pub view3d: &'a mut View3d,
     /// The strip of camera pictures.
@@ -116,8 +116,8 @@ pub trait Pane {
     fn icon(&self) -> Icon;
 
     /// Place where it opens.
-    fn place(&self) -> Place {
-        Place::BelowView
+    fn place(&self) -> PanePlacement {
+        PanePlacement::BelowView
     }
 
     /// Width that a column of such panes needs for its texts, points; 0 for views, which take any.

@@ -12,16 +12,16 @@ mod typed_text;
 use egui::Ui;
 
 use super::id::PaneId;
-use super::pane::{Pane, PaneContext, Place};
+use super::pane::{Pane, PaneContext, PanePlacement};
 use crate::command::Command;
 use language::t;
 use widgets::icons::Icon;
 use widgets::theme;
 
 /// The pane of the prompt.
-pub struct Prompt;
+pub struct PromptPane;
 
-impl Pane for Prompt {
+impl Pane for PromptPane {
     fn id(&self) -> PaneId {
         PaneId::PROMPT
     }
@@ -34,8 +34,8 @@ impl Pane for Prompt {
         Icon::Words
     }
 
-    fn place(&self) -> Place {
-        Place::ColumnAtOnce
+    fn place(&self) -> PanePlacement {
+        PanePlacement::ColumnAtOnce
     }
 
     fn column_points(&self) -> f32 {

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use editor::tools::saved::{Held, SavedBrush};
+use editor::tools::saved::{BrushSettings, SavedBrush};
 use editor::tools::{Hand, PaintShape, VoxelMode, VoxelVerb};
 use language::{t, tf};
 use widgets::icons::section;
@@ -12,14 +12,14 @@ use widgets::theme;
 const LONGEST: usize = 24;
 
 /// The default name of a brush: its settings in words.
-fn named(held: &Held) -> String {
+fn named(held: &BrushSettings) -> String {
     fn of<T: PartialEq>(all: &[(T, &'static str, &'static str)], value: &T) -> &'static str {
         all.iter()
             .find(|(v, ..)| v == value)
             .map_or("", |(_, name, _)| *name)
     }
     match held {
-        Held::Map {
+        BrushSettings::Map {
             layer,
             shape,
             size_m,
@@ -42,7 +42,7 @@ fn named(held: &Held) -> String {
                 ),
             }
         }
-        Held::Voxels {
+        BrushSettings::Voxels {
             mode, verb, class, ..
         } => {
             let (mode, verb) = (t(of(&VoxelMode::ALL, mode)), t(of(&VoxelVerb::ALL, verb)));
@@ -53,7 +53,7 @@ fn named(held: &Held) -> String {
                 mode = mode.to_lowercase()
             )
         }
-        Held::Stamp(stamp) => tf!("Stamp of {n} voxels", n = stamp.len()),
+        BrushSettings::Stamp(stamp) => tf!("Stamp of {n} voxels", n = stamp.len()),
     }
 }
 

@@ -11,13 +11,13 @@ use glam::{DVec2, DVec3};
 
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
-use crate::baking::{Baking, Seen};
+use crate::baking::{Baking, SplatViewpoint};
 use crate::command::Command;
 use crate::fly;
 use crate::place_marks;
 use crate::state::{UiState, called};
 use crate::tools::ToolCommand;
-use editor::pick::{self, Hit, Ray};
+use editor::pick::{self, PickHit, PickRay};
 use editor::tools::point_of;
 use language::{t, tf};
 use scene::Scene;
@@ -41,8 +41,8 @@ pub struct Splats {
     opened: u64,
     baking: Option<Baking>,
     texture: Option<TextureHandle>,
-    shown: Option<Seen>,
-    asked: Option<Seen>,
+    shown: Option<SplatViewpoint>,
+    asked: Option<SplatViewpoint>,
     moved_s: f64,
     camera: Option<ViewCamera>,
 }
@@ -211,7 +211,7 @@ impl Splats {
         let px = rect.size() * ui.ctx().pixels_per_point();
         let width = px.x.min(if moving { MOVING_PX } else { STILL_PX }).max(16.0);
         let size = [width, width * px.y / px.x.max(1.0)].map(|v| (v.round() as u32).max(9));
-        let seen = Seen {
+        let seen = SplatViewpoint {
             camera: *camera,
             size,
         };
@@ -289,7 +289,7 @@ impl Looks {
         let (from_m, way) = self
             .camera
             .ray_in_world(DVec2::new(at.x.into(), at.y.into()), self.size());
-        let Some(ray) = Ray::new(from_m, way) else {
+        let Some(ray) = PickRay::new(from_m, way) else {
             return;
         };
         let Some(hit) = pick::pick(cx.seen.scene.frame(), &ray) else {
@@ -297,7 +297,7 @@ impl Looks {
         };
         place_marks::point(cx.state, PaneId::SPLATS, point_of(&hit, &ray));
         let found = match hit {
-            Hit::Box { id, .. } => cx.scene.frame().boxes.get(&id),
+            PickHit::Box { id, .. } => cx.scene.frame().boxes.get(&id),
             _ => None,
         };
         if let Some(b) = found {

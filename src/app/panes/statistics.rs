@@ -10,7 +10,7 @@ use scene::{BevLayer, Class, Extent, Scene};
 
 use super::camera_strip::thousands;
 use super::id::PaneId;
-use super::pane::{Pane, PaneContext, Place};
+use super::pane::{Pane, PaneContext, PanePlacement};
 use crate::command::Command;
 use language::{t, tf};
 use widgets::icons::{Icon, section};
@@ -26,12 +26,12 @@ const ROW_POINTS: f32 = 17.0;
 /// The scene in numbers.
 #[derive(Default)]
 pub struct Statistics {
-    counted: Option<(Arc<Scene>, Counts)>,
+    counted: Option<(Arc<Scene>, SceneCounts)>,
 }
 
 /// Counts of one state of a scene.
 #[derive(Clone, Debug, PartialEq)]
-struct Counts {
+struct SceneCounts {
     /// Voxels of each class, the most frequent class first, without empty space.
     voxels: Vec<(Class, usize)>,
     /// Boxes of each class, in the order of the classes.
@@ -42,7 +42,7 @@ struct Counts {
     things: usize,
 }
 
-impl Counts {
+impl SceneCounts {
     fn of(scene: &Scene) -> Self {
         let frame = scene.frame();
         let counts = frame.occupancy.class_counts();
@@ -80,8 +80,8 @@ impl Pane for Statistics {
         Icon::Bars
     }
 
-    fn place(&self) -> Place {
-        Place::Column
+    fn place(&self) -> PanePlacement {
+        PanePlacement::Column
     }
 
     fn column_points(&self) -> f32 {
@@ -92,7 +92,7 @@ impl Pane for Statistics {
         let counts = match &self.counted {
             Some((of, counts)) if Arc::ptr_eq(of, cx.scene) => counts,
             _ => {
-                let counts = Counts::of(cx.scene);
+                let counts = SceneCounts::of(cx.scene);
                 &self.counted.insert((cx.scene.clone(), counts)).1
             }
         };
@@ -200,7 +200,7 @@ mod tests {
             label: Default::default(),
         };
         let frame = Frame::new(layout, [(BoxId(1), car)].into(), grid);
-        let counts = Counts::of(&Scene::single("test", frame, Arc::default(), 1));
+        let counts = SceneCounts::of(&Scene::single("test", frame, Arc::default(), 1));
         assert_eq!(counts.voxels, [(Class::Vegetation, 3), (Class::Car, 1)]);
         assert_eq!(counts.boxes, [(Class::Car, 1)].into());
         assert!((counts.drivable_m2 - 10.0 * 0.16).abs() < 1e-9);

@@ -79,11 +79,11 @@ fn column(azimuth_deg: f64) -> usize {
 pub struct SweepPicture {
     texture: Option<(Arc<LidarSweep>, LidarColorMode, usize, TextureHandle)>,
     /// Outlines of the chosen boxes, with the key that they were made from.
-    outlined: Option<(OutlinesOf, Vec<Outline>)>,
+    outlined: Option<(OutlinesOf, Vec<PictureRectangle>)>,
 }
 
 /// Opposite corners of a rectangle, as parts of the picture.
-type Outline = [[f64; 2]; 2];
+type PictureRectangle = [[f64; 2]; 2];
 /// Key of the outlines: the sweep, the state of the scene and the chosen boxes.
 type OutlinesOf = (Arc<LidarSweep>, SceneRev, Vec<BoxId>);
 
@@ -208,7 +208,7 @@ fn box_of<'a>(scene: &'a Scene, point: &LidarPoint) -> Option<&'a SceneBox> {
 
 /// Rectangles around the returns of a box, each with two opposite corners as parts of the picture: none without
 /// returns, two if the box crosses the edge of the picture.
-fn outlines(sweep: &LidarSweep, mount: &Mount, rings: usize, b: &SceneBox) -> Vec<Outline> {
+fn outlines(sweep: &LidarSweep, mount: &Mount, rings: usize, b: &SceneBox) -> Vec<PictureRectangle> {
     let middle_deg = mount.azimuth_deg(b.center_m);
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];

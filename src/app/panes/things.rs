@@ -377,7 +377,7 @@ mod tests {
     use super::*;
     use glam::DVec2;
     use scene::ThingId;
-    use scene::background::{Line, Tree};
+    use scene::background::{SceneryLine, Tree};
 
     #[test]
     fn what_is_alike_makes_no_edit() {
@@ -398,7 +398,7 @@ mod tests {
         );
         let hedge = thing(
             2,
-            Form::Line(Line::typical(LineKind::Hedge, vec![DVec2::ZERO, DVec2::X])),
+            Form::Line(SceneryLine::typical(LineKind::Hedge, vec![DVec2::ZERO, DVec2::X])),
         );
         let edits = changes(&[&tree, &hedge], |form| set_height(form, 5.0));
         assert_eq!(edits.len(), 1);

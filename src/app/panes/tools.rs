@@ -9,7 +9,7 @@ use super::saved_brushes::saved_brushes_ui;
 use crate::bev_image::DRAW_ORDER;
 use crate::command::{Command, GenerationCommand};
 use crate::pointer::carry_out;
-use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
+use crate::scenery::{SceneryMethod, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::seed_wish::SeedWish;
 use crate::state::UiState;
 use crate::tools::things::ThingCommand;
@@ -101,7 +101,7 @@ fn scenery_row(ui: &mut Ui, tools: &mut ToolState, commands: &mut Vec<Command>) 
             .width(92.0)
             .selected_text(t(chosen.label()))
             .show_ui(ui, |ui| {
-                for drawer in Drawer::all() {
+                for drawer in SceneryMethod::all() {
                     ui.selectable_value(chosen, drawer, t(drawer.label()));
                 }
             })

@@ -11,7 +11,7 @@ use crate::trade_plot::front_plot;
 use job::GenParams;
 use judge::machine::{Load, machine};
 use judge::presets::figures::{self, seconds};
-use judge::presets::plan::Mark;
+use judge::presets::plan::TradeoffPoint;
 use language::{t, tf};
 use trade::Preset;
 use widgets::icons::Icon;
@@ -80,9 +80,9 @@ fn edits(tuning: &Tuning) -> usize {
     tuning.presets.all.first().map_or(0, |s| s.error.n)
 }
 
-fn marks(tuning: &Tuning) -> Vec<Mark> {
+fn marks(tuning: &Tuning) -> Vec<TradeoffPoint> {
     let tokens = tuning.tokens_of_next();
-    let mark = |s: &Preset| Mark {
+    let mark = |s: &Preset| TradeoffPoint {
         name: s.name.clone(),
         wall_s: [tuning.predicted_s(s, tokens); 3],
         error: [s.error.median, s.error.low, s.error.high],

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Color32, Rect, Sense, TextureOptions, Ui, WidgetInfo, pos2, vec2};
 
 use super::id::PaneId;
-use super::pane::{Pane, PaneContext, Place};
+use super::pane::{Pane, PaneContext, PanePlacement};
 use crate::bev_image;
 use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::comparing::{CompareMode, Comparing};
@@ -31,8 +31,8 @@ impl Pane for VersionsPane {
         Icon::Stack
     }
 
-    fn place(&self) -> Place {
-        Place::ColumnAtOnce
+    fn place(&self) -> PanePlacement {
+        PanePlacement::ColumnAtOnce
     }
 
     fn column_points(&self) -> f32 {
@@ -81,7 +81,7 @@ pub fn versions_ui(
         .auto_shrink(false)
         .show(ui, |ui| {
             for i in (0..versions.list().len()).rev() {
-                let entry = Entry {
+                let entry = VersionEntry {
                     rev: versions.list()[i].scene.content(),
                     shown,
                     before,
@@ -100,13 +100,13 @@ fn title(version: &Version) -> &str {
 }
 
 /// One entry of the list.
-struct Entry {
+struct VersionEntry {
     rev: SceneRev,
     shown: SceneRev,
     before: Option<SceneRev>,
 }
 
-impl Entry {
+impl VersionEntry {
     fn ui(&self, ui: &mut Ui, versions: &mut Versions, i: usize, commands: &mut Vec<Command>) {
         let size = vec2(ui.available_width(), ENTRY);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());

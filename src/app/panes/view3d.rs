@@ -15,7 +15,7 @@ use crate::detection_marks::DetectionMarks;
 use crate::state::UiState;
 use crate::view3d::{View3d, View3dInput};
 use crate::views_shown::ViewsShown;
-use editor::pick::{self, Hit};
+use editor::pick::{self, PickHit};
 use language::t;
 use scene::Scene;
 use viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
@@ -156,15 +156,15 @@ fn under(view: &View3d, scene: &Scene, at: egui::Pos2) -> Under {
     let hit = ray.and_then(|ray| pick::pick(scene.frame(), &ray).map(|hit| (ray, hit)));
     match hit {
         None => Under::default(),
-        Some((_, Hit::Box { id, .. })) => Under {
+        Some((_, PickHit::Box { id, .. })) => Under {
             id: Some(id),
             at_m: None,
         },
-        Some((ray, Hit::Voxel(v))) => Under {
+        Some((ray, PickHit::Voxel(v))) => Under {
             id: None,
             at_m: Some(ray.at(v.distance_m).truncate()),
         },
-        Some((_, Hit::Ground { point_in_ego })) => Under {
+        Some((_, PickHit::Ground { point_in_ego })) => Under {
             id: None,
             at_m: Some(point_in_ego.truncate()),
         },

@@ -13,10 +13,10 @@ use language::tf;
 use scene::{Scene, SceneRev};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, learned};
-use sensors::painter::{Paint, PaintError, PaintModel, Progress};
+use sensors::painter::{CameraPainter, PaintError, PaintModel, PaintProgress};
 
 /// A request to paint a scene.
-pub(super) struct Request {
+pub(super) struct PaintingRequest {
     /// The scene, with its rig in the world.
     pub scene: Arc<Scene>,
     /// Settings of the painting.
@@ -38,7 +38,7 @@ pub enum PaintStage {
 }
 
 /// News from the thread.
-pub(super) enum News {
+pub(super) enum PaintingEvent {
     /// Progress, and a picture in its current state.
     Stage(PaintStage, Option<CameraView>),
     /// The pictures of all cameras.
@@ -60,7 +60,7 @@ impl Sensing {
         if let Some((rev, views)) = self.painted.clone() {
             self.show_painted(rev, &views, Some(wanted));
         }
-        self.painting.submit(Request {
+        self.painting.submit(PaintingRequest {
             scene,
             settings: self.paint.clone(),
             moving,
@@ -90,7 +90,7 @@ impl Sensing {
         for news in news.into_iter().map(|event| event.update) {
             let wanted = self.asked.map(|(_, wanted, _)| wanted);
             match news {
-                News::Stage(stage, view) => {
+                PaintingEvent::Stage(stage, view) => {
                     self.stage = Some(stage);
                     // A fresh revision matches no scene, so the pictures stay stale while one of them changes.
                     let shown = self.painted.as_ref().map(|(_, views)| views);
@@ -100,15 +100,15 @@ impl Sensing {
                         self.show_painted(SceneRev::fresh(), &views, wanted);
                     }
                 }
-                News::Painted(rev, views) => {
+                PaintingEvent::Painted(rev, views) => {
                     self.stage = None;
                     let views = Arc::new(views);
                     self.painted = Some((rev, views.clone()));
                     self.show_painted(rev, &views, wanted);
                 }
-                News::Stopped => (self.stage, self.stopped) = (None, true),
-                News::GivenUp => self.stage = None,
-                News::Problem(problem) => {
+                PaintingEvent::Stopped => (self.stage, self.stopped) = (None, true),
+                PaintingEvent::GivenUp => self.stage = None,
+                PaintingEvent::Problem(problem) => {
                     (self.stage, self.stopped) = (None, true);
                     self.problem = Some(tf!("No learned pictures: {problem}", problem = problem));
                 }
@@ -122,7 +122,7 @@ pub(super) struct Painting {
     settings: Arc<PaintWish>,
     /// The weights of the settings; they take long to open.
     model: Option<PaintModel>,
-    painter: Option<Box<dyn Paint>>,
+    painter: Option<Box<dyn CameraPainter>>,
     /// Set when the user stops the painting.
     stop: Arc<AtomicBool>,
 }
@@ -139,7 +139,11 @@ impl Painting {
     }
 
     /// The painter for some settings. Calls `opens` before weights are opened.
-    fn painter(&mut self, settings: &Arc<PaintWish>, opens: impl FnOnce()) -> Result<&mut dyn Paint, String> {
+    fn painter(
+        &mut self,
+        settings: &Arc<PaintWish>,
+        opens: impl FnOnce(),
+    ) -> Result<&mut dyn CameraPainter, String> {
         if self.settings.weights != settings.weights {
             self.model = None;
         }
@@ -168,20 +172,20 @@ impl Painting {
 }
 
 impl Product for Painting {
-    type Request = Request;
-    type Update = News;
+    type Request = PaintingRequest;
+    type Update = PaintingEvent;
 
-    fn make(&mut self, request: &Request, ctx: &Ctx<'_, News>) -> News {
+    fn make(&mut self, request: &PaintingRequest, ctx: &Ctx<'_, PaintingEvent>) -> PaintingEvent {
         let stop = self.stop.clone();
         let goes_on = request.moving && !request.settings.is_public();
-        let opens = || ctx.tell(News::Stage(PaintStage::Opening, None));
+        let opens = || ctx.tell(PaintingEvent::Stage(PaintStage::Opening, None));
         let painter = match self.painter(&request.settings, opens) {
             Ok(painter) => painter,
-            Err(problem) => return News::Problem(problem),
+            Err(problem) => return PaintingEvent::Problem(problem),
         };
         let painted = painter.paint(&paint_input(&request.scene), &mut |progress| {
-            let Progress { step, steps, news } = progress;
-            ctx.tell(News::Stage(
+            let PaintProgress { step, steps, news } = progress;
+            ctx.tell(PaintingEvent::Stage(
                 PaintStage::Step(step, steps),
                 news.map(|(camera, image)| view(camera, image)),
             ));
@@ -196,11 +200,11 @@ impl Product for Painting {
                     .iter()
                     .enumerate()
                     .map(|(camera, image)| view(camera, image));
-                News::Painted(request.scene.rev, views.collect())
+                PaintingEvent::Painted(request.scene.rev, views.collect())
             }
-            Err(PaintError::Stopped) if stop.load(Ordering::Relaxed) => News::Stopped,
-            Err(PaintError::Stopped) => News::GivenUp,
-            Err(error) => News::Problem(error.to_string()),
+            Err(PaintError::Stopped) if stop.load(Ordering::Relaxed) => PaintingEvent::Stopped,
+            Err(PaintError::Stopped) => PaintingEvent::GivenUp,
+            Err(error) => PaintingEvent::Problem(error.to_string()),
         }
     }
 
@@ -208,16 +212,16 @@ impl Product for Painting {
         (self.painter, self.model) = (None, None);
     }
 
-    fn given_up() -> News {
-        News::GivenUp
+    fn given_up() -> PaintingEvent {
+        PaintingEvent::GivenUp
     }
 
-    fn panicked(panic: Panicked) -> News {
-        News::Problem(panic.to_string())
+    fn panicked(panic: Panicked) -> PaintingEvent {
+        PaintingEvent::Problem(panic.to_string())
     }
 
-    fn is_terminal(news: &News) -> bool {
-        !matches!(news, News::Stage(..))
+    fn is_terminal(news: &PaintingEvent) -> bool {
+        !matches!(news, PaintingEvent::Stage(..))
     }
 }
 

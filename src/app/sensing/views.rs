@@ -3,9 +3,9 @@
 use job::product::Ctx;
 use scene::Scene;
 use sensors::appearance::Quality;
-use sensors::cameras::{CameraSource, Card, Detail, Ready, RenderContext, RenderOptions};
+use sensors::cameras::{CameraSource, Card, Detail, PreparedSource, RenderContext, RenderOptions};
 
-use super::News;
+use super::SensingEvent;
 use crate::camera_views::{CameraView, LARGE_SIZE, camera_input};
 use crate::graphics::Graphics;
 
@@ -14,7 +14,7 @@ pub(super) struct Views<'a> {
     source: &'static dyn CameraSource,
     scene: &'a Scene,
     graphics: &'a mut Option<Option<Graphics>>,
-    ready: Option<(Ready<'a>, bool)>,
+    ready: Option<(PreparedSource<'a>, bool)>,
 }
 
 impl<'a> Views<'a> {
@@ -36,7 +36,7 @@ impl<'a> Views<'a> {
         let (scene, source) = (self.scene, self.source);
         let graphics = &mut *self.graphics;
         let (ready, on_card) = self.ready.get_or_insert_with(|| {
-            let ready = Ready::new(source, &camera_input(scene, Detail::Live));
+            let ready = PreparedSource::new(source, &camera_input(scene, Detail::Live));
             let on_card = ready.upload_to(|| {
                 let card = graphics.get_or_insert_with(Graphics::find).as_mut();
                 card.map(|card| card as &mut dyn Card)
@@ -63,7 +63,7 @@ impl<'a> Views<'a> {
         &mut self,
         views: &[CameraView],
         camera: usize,
-        ctx: &Ctx<'_, News>,
+        ctx: &Ctx<'_, SensingEvent>,
     ) -> Option<Vec<CameraView>> {
         let place = views.iter().position(|v| v.camera == camera)?;
         if ctx.should_stop() {

@@ -3,7 +3,7 @@
 use tonic::Code::{self, InvalidArgument, NotFound, OutOfRange, Unimplemented};
 
 use crate::fixture::{self, own_picture};
-use crate::renderer::{LidarModel, Renderer};
+use crate::renderer::{Renderer, ServerLidarModel};
 use crate::wire::{
     CameraParam, DynamicObject, ImageFormat, LidarRenderRequest, LidarSpec, PosePair, Quat, RgbRenderRequest,
     Vec3,
@@ -39,7 +39,7 @@ fn ends_at(mut pair: Option<PosePair>, x: f32) -> Option<PosePair> {
 fn bad_requests_are_errors_of_one_line() {
     let folder = tempfile::tempdir().expect("a folder");
     fixture::write(folder.path());
-    let renderer = fixture::renderer(folder.path(), LidarModel::Exact);
+    let renderer = fixture::renderer(folder.path(), ServerLidarModel::Exact);
     let scene = renderer.scenes.get("clip").expect("a scene");
     let good = own_picture("clip", &scene);
     assert!(picture::render(&renderer, &good).is_ok());
@@ -132,7 +132,7 @@ fn bad_requests_are_errors_of_one_line() {
 fn objects_that_cannot_be_placed_are_errors_of_one_line() {
     let folder = tempfile::tempdir().expect("a folder");
     fixture::write(folder.path());
-    let renderer = fixture::renderer(folder.path(), LidarModel::Exact);
+    let renderer = fixture::renderer(folder.path(), ServerLidarModel::Exact);
     let scene = renderer.scenes.get("clip").expect("a scene");
     let good = own_picture("clip", &scene);
     let object = |track: &str, pair| DynamicObject {

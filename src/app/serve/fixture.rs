@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::lens::spec_of;
 use crate::poses;
-use crate::renderer::{LidarModel, Renderer};
+use crate::renderer::{Renderer, ServerLidarModel};
 use crate::wire::{ImageFormat, PosePair, RgbRenderRequest};
 use editor::{Apply, Edit};
 use scene::{Class, Frame, Pose, Scene, SensorRig, Template, draft};
@@ -54,7 +54,7 @@ pub fn write(folder: &Path) {
 }
 
 /// A renderer of a folder.
-pub fn renderer(folder: &Path, lidar: LidarModel) -> Renderer {
+pub fn renderer(folder: &Path, lidar: ServerLidarModel) -> Renderer {
     Renderer::new(&[folder.to_owned()], 2, 2, lidar).expect("scenes")
 }
 

@@ -12,7 +12,7 @@ use tonic_prost::ProstCodec;
 
 use crate::fixture::{self, own_picture};
 use crate::limits::MOST_ANSWER_BYTES;
-use crate::renderer::LidarModel;
+use crate::renderer::ServerLidarModel;
 use crate::server::{Options, Server};
 use crate::wire::{AvailableScenesReturn, Empty, RgbRenderRequest, RgbRenderReturn, SERVICE, VersionId};
 
@@ -29,7 +29,7 @@ impl Running {
             listen: SocketAddr::from(([127, 0, 0, 1], 0)),
             jobs,
             waiting,
-            lidar: LidarModel::Exact,
+            lidar: ServerLidarModel::Exact,
             ..Options::new(vec![folder.to_owned()])
         });
         let server = server.expect("a server");

@@ -33,5 +33,5 @@ mod several;
 mod tests;
 pub mod wire;
 
-pub use renderer::LidarModel;
+pub use renderer::ServerLidarModel;
 pub use server::{Options, Server};

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use tonic::Status;
 
-use crate::moment::{self, Placed, Span};
+use crate::moment::{self, PlacedObject, TimeSpan};
 use crate::poses::Pair;
 use crate::renderer::Renderer;
 use crate::wire::{LidarDeviceType, LidarRenderRequest, LidarRenderReturn};
@@ -64,7 +64,7 @@ pub fn render(renderer: &Renderer, request: &LidarRenderRequest) -> Result<Lidar
     let scene = renderer.scenes.get(&request.scene_id)?;
     let spin = Spin {
         scene: &scene,
-        span: Span::read(request.frame_start_us, request.frame_end_us, &scene)?,
+        span: TimeSpan::read(request.frame_start_us, request.frame_end_us, &scene)?,
         sensor: Pair::read(request.sensor_pose.as_ref(), "sensor_pose")?,
         placed: moment::placed(&scene, &request.dynamic_objects)?,
         pattern: pattern_of(device),
@@ -75,9 +75,9 @@ pub fn render(renderer: &Renderer, request: &LidarRenderRequest) -> Result<Lidar
 /// A request, read.
 struct Spin<'a> {
     scene: &'a Scene,
-    span: Span,
+    span: TimeSpan,
     sensor: Pair,
-    placed: Vec<Placed>,
+    placed: Vec<PlacedObject>,
     pattern: LidarPattern,
 }
 

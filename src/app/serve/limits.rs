@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use callers::{Limits, Wait};
+use callers::{CallerLimits, Wait};
 
 /// Pixels of a picture at most: 4096 x 4096.
 pub const MOST_PIXELS: u64 = 1 << 24;
@@ -20,7 +20,7 @@ pub const MOST_ANSWER_BYTES: usize = 64 << 20;
 pub const MOST_STREAMS: u32 = 64;
 /// Connections, bodies and answers: how many of each wait, and for how long. Clients that hold a channel open between two
 /// simulations are idle; others make a new one by themselves.
-pub const CALLERS: Limits = Limits {
+pub const CALLERS: CallerLimits = CallerLimits {
     strangers: Wait {
         most: 256,
         within: Duration::from_secs(10),

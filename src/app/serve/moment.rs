@@ -17,14 +17,14 @@ const NEAR: f64 = 1e-4;
 
 /// From when to when a frame or a spin lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
+pub struct TimeSpan {
     /// Its start, s.
     pub start_s: f64,
     /// How long it lasts, s.
     pub length_s: f64,
 }
 
-impl Span {
+impl TimeSpan {
     /// Reads the times of a request. Errors in one line if they are not in order, too far apart, or beyond the end of
     /// the clip; a scene that stands still has no end.
     pub fn read(start_us: u64, end_us: u64, scene: &Scene) -> Result<Self, Status> {
@@ -55,14 +55,14 @@ impl Span {
 
 /// An object and where it is in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
+pub struct PlacedObject {
     /// The box or track.
     pub id: BoxId,
     /// Pose of the middle of its box.
     pub at: Pair,
 }
 
-impl Placed {
+impl PlacedObject {
     /// Position on the ground at a share of the frame, m, and heading, rad.
     fn on_ground(&self, share: f64) -> (DVec2, f64) {
         let pose = self.at.at(share);
@@ -70,7 +70,7 @@ impl Placed {
     }
 
     /// How fast it is, m/s.
-    fn velocity_mps(&self, span: &Span) -> DVec2 {
+    fn velocity_mps(&self, span: &TimeSpan) -> DVec2 {
         let way_m = (self.at.end.translation_m - self.at.start.translation_m).truncate();
         if span.length_s > 0.0 {
             way_m / span.length_s
@@ -81,7 +81,7 @@ impl Placed {
 }
 
 /// The objects of a request. Errors in one line if one is not in the scene, is there twice, or has a bad pose.
-pub fn placed(scene: &Scene, objects: &[DynamicObject]) -> Result<Vec<Placed>, Status> {
+pub fn placed(scene: &Scene, objects: &[DynamicObject]) -> Result<Vec<PlacedObject>, Status> {
     if objects.len() > MOST_OBJECTS {
         return Err(Status::invalid_argument(format!(
             "{} dynamic_objects, expected at most {MOST_OBJECTS}",
@@ -108,16 +108,21 @@ pub fn placed(scene: &Scene, objects: &[DynamicObject]) -> Result<Vec<Placed>, S
             object.pose_pair.as_ref(),
             &format!("dynamic_objects {named}: pose_pair"),
         )?;
-        Ok(Placed { id, at })
+        Ok(PlacedObject { id, at })
     };
     objects.iter().map(read).collect()
 }
 
 /// The scene at a share of a span, objects where they are placed. Objects that stand there already stay as the scene has them;
 /// others stand on the scene's ground, upright. Errors in one line if an object cannot stand there.
-pub fn frame(scene: &Scene, span: &Span, share: f64, placed: &[Placed]) -> Result<Arc<Frame>, Status> {
+pub fn frame(
+    scene: &Scene,
+    span: &TimeSpan,
+    share: f64,
+    placed: &[PlacedObject],
+) -> Result<Arc<Frame>, Status> {
     let mut scene = scene.at(span.at(share));
-    let moved: Vec<&Placed> = placed.iter().filter(|p| !stands(&scene, p, share)).collect();
+    let moved: Vec<&PlacedObject> = placed.iter().filter(|p| !stands(&scene, p, share)).collect();
     if moved.is_empty() {
         return Ok(scene.frame().clone());
     }
@@ -153,7 +158,7 @@ pub fn frame(scene: &Scene, span: &Span, share: f64, placed: &[Placed]) -> Resul
 }
 
 /// True if the scene has an object where it is placed.
-fn stands(scene: &Scene, placed: &Placed, share: f64) -> bool {
+fn stands(scene: &Scene, placed: &PlacedObject, share: f64) -> bool {
     let (at_m, yaw_rad) = placed.on_ground(share);
     let there = |b: &SceneBox| {
         let turned = DVec2::from_angle(yaw_rad).distance(b.heading());
@@ -163,7 +168,7 @@ fn stands(scene: &Scene, placed: &Placed, share: f64) -> bool {
 }
 
 /// Moves a box of the canvas, with its voxels.
-fn move_box(scene: &mut Scene, placed: &Placed, share: f64) -> Result<(), Status> {
+fn move_box(scene: &mut Scene, placed: &PlacedObject, share: f64) -> Result<(), Status> {
     let Some(b) = scene.frame().boxes.get(&placed.id).copied() else {
         return Ok(());
     };

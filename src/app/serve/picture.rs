@@ -8,7 +8,7 @@ use tonic::Status;
 use crate::encode::{self, Packing};
 use crate::lens;
 use crate::limits::MOST_PIXELS;
-use crate::moment::{self, Placed, Span};
+use crate::moment::{self, PlacedObject, TimeSpan};
 use crate::poses::{self, Pair};
 use crate::renderer::Renderer;
 use crate::wire::{CameraSpec, RgbRenderRequest, RgbRenderReturn};
@@ -52,8 +52,8 @@ pub fn render(renderer: &Renderer, request: &RgbRenderRequest) -> Result<RgbRend
     let Some(spec) = &request.camera_intrinsics else {
         return Err(Status::invalid_argument("camera_intrinsics is missing"));
     };
-    let asked = Asked {
-        span: Span::read(request.frame_start_us, request.frame_end_us, &scene)?,
+    let asked = ParsedRequest {
+        span: TimeSpan::read(request.frame_start_us, request.frame_end_us, &scene)?,
         sensor: Pair::read(request.sensor_pose.as_ref(), "sensor_pose")?,
         ego: match &request.ego_pose {
             Some(pair) => Some(Pair::read(Some(pair), "ego_pose")?),
@@ -70,15 +70,15 @@ pub fn render(renderer: &Renderer, request: &RgbRenderRequest) -> Result<RgbRend
 }
 
 /// A parsed request.
-struct Asked {
-    span: Span,
+struct ParsedRequest {
+    span: TimeSpan,
     sensor: Pair,
     ego: Option<Pair>,
-    placed: Vec<Placed>,
+    placed: Vec<PlacedObject>,
 }
 
 /// Camera and moment of one picture.
-struct View {
+struct RequestedView {
     /// Camera in the world frame.
     camera: Camera,
     /// Rig by which the frame is prepared.
@@ -89,9 +89,9 @@ struct View {
     time_s: f64,
 }
 
-impl Asked {
+impl ParsedRequest {
     /// All numbers that decide the frame besides the scene.
-    fn moment(&self, view: &View) -> Vec<f64> {
+    fn moment(&self, view: &RequestedView) -> Vec<f64> {
         let mut numbers = vec![view.time_s];
         if !self.placed.is_empty() {
             numbers.extend([view.share, self.span.length_s]);
@@ -106,7 +106,7 @@ impl Asked {
         numbers
     }
 
-    fn view(&self, scene: &Scene, spec: &CameraSpec, size: [u32; 2]) -> Result<View, Status> {
+    fn view(&self, scene: &Scene, spec: &CameraSpec, size: [u32; 2]) -> Result<RequestedView, Status> {
         let direction = lens::direction_of(spec.shutter_type)?;
         let shutter = direction
             .filter(|_| self.span.length_s > 0.0)
@@ -129,7 +129,7 @@ impl Asked {
             && self.is_own(scene, &scene.rig.cameras[i], spec, shutter)
         {
             // The very camera of the rig: the numbers of the scene are finer than those of the protocol.
-            return Ok(View {
+            return Ok(RequestedView {
                 camera: shown.rig.cameras[i].clone(),
                 rig: shown.rig.clone(),
                 share,
@@ -158,7 +158,7 @@ impl Asked {
         };
         match rig.problem() {
             Some(problem) => Err(Status::invalid_argument(format!("camera_intrinsics: {problem}"))),
-            None => Ok(View {
+            None => Ok(RequestedView {
                 camera,
                 rig: Arc::new(rig),
                 share,

@@ -65,7 +65,7 @@ fn missing(what: &str) -> Status {
     ))
 }
 
-fn read(pose: &wire::Pose, what: &str) -> Result<Pose, Status> {
+fn read(pose: &wire::WirePose, what: &str) -> Result<Pose, Status> {
     let at = pose.vec.unwrap_or_default();
     let at = DVec3::new(at.x.into(), at.y.into(), at.z.into());
     // Written so that NaN fails too.
@@ -91,9 +91,9 @@ fn read(pose: &wire::Pose, what: &str) -> Result<Pose, Status> {
 }
 
 /// A pose as a message.
-pub fn write(pose: &Pose) -> wire::Pose {
+pub fn write(pose: &Pose) -> wire::WirePose {
     let (at, q) = (pose.translation_m, pose.rotation);
-    wire::Pose {
+    wire::WirePose {
         vec: Some(wire::Vec3 {
             x: at.x as f32,
             y: at.y as f32,
@@ -157,7 +157,7 @@ mod tests {
             );
         }
         assert!(Pair::read(None, "sensor_pose").is_err());
-        assert!(read(wire::Pose::default()).is_err());
+        assert!(read(wire::WirePose::default()).is_err());
     }
 
     #[test]

@@ -13,7 +13,7 @@ use sensors::appearance::Appearance;
 
 /// How sweeps come about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LidarModel {
+pub enum ServerLidarModel {
     /// By the network: ranges within voxels, intensities, lost echoes.
     #[default]
     Learned,
@@ -40,10 +40,15 @@ struct Prepared {
 impl Renderer {
     /// Lists scenes of files and folders; keeps at most so many scenes, and so many prepared moments. Errors in one
     /// line.
-    pub fn new(paths: &[PathBuf], scenes: usize, moments: usize, lidar: LidarModel) -> anyhow::Result<Self> {
+    pub fn new(
+        paths: &[PathBuf],
+        scenes: usize,
+        moments: usize,
+        lidar: ServerLidarModel,
+    ) -> anyhow::Result<Self> {
         let net = match lidar {
-            LidarModel::Learned => Some(LidarNet::bundled().context("the LiDAR network")?),
-            LidarModel::Exact => None,
+            ServerLidarModel::Learned => Some(LidarNet::bundled().context("the LiDAR network")?),
+            ServerLidarModel::Exact => None,
         };
         Ok(Self {
             scenes: Scenes::list(paths, scenes)?,

@@ -17,7 +17,7 @@ use tonic::transport::server::Connected;
 
 use crate::gate::Gate;
 use crate::limits::{CALLERS, MOST_STREAMS};
-use crate::renderer::{LidarModel, Renderer};
+use crate::renderer::{Renderer, ServerLidarModel};
 use crate::service::Service;
 
 /// A client that does not answer a ping for so long is gone.
@@ -40,7 +40,7 @@ pub struct Options {
     /// Scenes that are kept in memory.
     pub kept: usize,
     /// How sweeps come about.
-    pub lidar: LidarModel,
+    pub lidar: ServerLidarModel,
 }
 
 impl Options {
@@ -52,7 +52,7 @@ impl Options {
             jobs: 2,
             waiting: 64,
             kept: 4,
-            lidar: LidarModel::default(),
+            lidar: ServerLidarModel::default(),
         }
     }
 }

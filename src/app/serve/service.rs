@@ -6,7 +6,7 @@ use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
 
-use callers::{Asking, Caller, Place, Sending};
+use callers::{Asking, Caller, CallerPlace, Sending};
 use tonic::server::UnaryService;
 use tonic::{Request, Response, Status};
 use tonic_prost::ProstCodec;
@@ -25,8 +25,8 @@ const LATE: &str =
     "the request did not come whole in time, expected all of it within 30 s, or sooner where many others ask";
 
 type Later<T> = Pin<Box<dyn Future<Output = T> + Send>>;
-type Asked = http::Request<tonic::body::Body>;
-type Answer = http::Response<Sending<tonic::body::Body>>;
+type RpcRequest = http::Request<tonic::body::Body>;
+type RpcResponse = http::Response<Sending<tonic::body::Body>>;
 
 /// Answers requests.
 #[derive(Clone)]
@@ -36,20 +36,20 @@ pub struct Service {
 }
 
 /// Work of a method, on a thread that may block.
-type Work<Q, A> = fn(&Renderer, &Q) -> Result<A, Status>;
+type RpcHandler<Q, A> = fn(&Renderer, &Q) -> Result<A, Status>;
 
 /// A method with its resources.
-struct Method<Q, A> {
+struct RpcMethod<Q, A> {
     renderer: Arc<Renderer>,
     /// Place that is held until the request is read.
-    reading: Option<Place>,
+    reading: Option<CallerPlace>,
     asking: Arc<Asking>,
     /// Gate; `None` for methods that are answered at once.
     gate: Option<Gate>,
-    work: Work<Q, A>,
+    work: RpcHandler<Q, A>,
 }
 
-impl<Q: Send + Sync + 'static, A: Send + 'static> UnaryService<Q> for Method<Q, A> {
+impl<Q: Send + Sync + 'static, A: Send + 'static> UnaryService<Q> for RpcMethod<Q, A> {
     type Response = A;
     type Future = Later<Result<Response<A>, Status>>;
 
@@ -81,7 +81,7 @@ impl Service {
     }
 
     /// Answers at once.
-    fn told<Q, A>(&self, request: Asked, work: Work<Q, A>) -> Later<Answer>
+    fn told<Q, A>(&self, request: RpcRequest, work: RpcHandler<Q, A>) -> Later<RpcResponse>
     where
         Q: prost::Message + Default + 'static,
         A: prost::Message + Default + 'static,
@@ -96,7 +96,7 @@ impl Service {
     }
 
     /// Answers when it is its turn; refuses before the request is read where there is no place.
-    fn made<Q, A>(&self, request: Asked, longest: usize, work: Work<Q, A>) -> Later<Answer>
+    fn made<Q, A>(&self, request: RpcRequest, longest: usize, work: RpcHandler<Q, A>) -> Later<RpcResponse>
     where
         Q: prost::Message + Default + 'static,
         A: prost::Message + Default + 'static,
@@ -112,10 +112,10 @@ impl Service {
 async fn answer<Q, A>(
     renderer: Arc<Renderer>,
     gate: Option<Gate>,
-    work: Work<Q, A>,
-    request: Asked,
+    work: RpcHandler<Q, A>,
+    request: RpcRequest,
     longest: usize,
-) -> Answer
+) -> RpcResponse
 where
     Q: prost::Message + Default + 'static,
     A: prost::Message + Default + 'static,
@@ -127,7 +127,7 @@ where
     };
     let asking = Arc::new(caller.asks());
     let (late, reading) = caller.callers().reading();
-    let method = Method {
+    let method = RpcMethod {
         renderer,
         reading: Some(reading),
         asking: asking.clone(),
@@ -146,20 +146,20 @@ where
     response.map(|body| Sending::new(body, asking))
 }
 
-fn refused(status: Status) -> Answer {
+fn refused(status: Status) -> RpcResponse {
     status.into_http::<tonic::body::Body>().map(Sending::short)
 }
 
 impl tower_service::Service<http::Request<tonic::body::Body>> for Service {
-    type Response = Answer;
+    type Response = RpcResponse;
     type Error = Infallible;
-    type Future = Later<Result<Answer, Infallible>>;
+    type Future = Later<Result<RpcResponse, Infallible>>;
 
     fn poll_ready(&mut self, _: &mut Context<'_>) -> Poll<Result<(), Infallible>> {
         Poll::Ready(Ok(()))
     }
 
-    fn call(&mut self, request: Asked) -> Self::Future {
+    fn call(&mut self, request: RpcRequest) -> Self::Future {
         let path = request.uri().path();
         let method = path.strip_prefix('/').and_then(|p| p.strip_prefix(SERVICE));
         let answer = match method.unwrap_or_default() {

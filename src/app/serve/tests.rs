@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use tempfile::TempDir;
 
 use crate::fixture::{self, held, own_picture};
-use crate::renderer::{LidarModel, Renderer};
+use crate::renderer::{Renderer, ServerLidarModel};
 use crate::wire::{
     AggregatedRenderRequest, AvailableCamerasRequest, AvailableTrajectoriesRequest, BatchRgbRenderRequest,
     BatchRgbRenderRequestItem, CameraParam, DynamicObject, ImageFormat, LidarRenderRequest, LidarSpec,
@@ -14,13 +14,13 @@ use crate::wire::{
 };
 use crate::{lidar, offers, picture, poses, several};
 use scene::{BevLayout, Class, Conditions, Frame, Pose, Scene, SceneBox, SensorRig, VoxelGrid};
-use sensors::cameras::pictures::Pictures;
-use sensors::cameras::{CameraInput, CameraPicture, Detail, Ready, RenderContext, RenderOptions};
+use sensors::cameras::pictures::PictureSource;
+use sensors::cameras::{CameraInput, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions};
 
 fn scenes() -> (TempDir, Renderer) {
     let folder = tempfile::tempdir().expect("a folder");
     fixture::write(folder.path());
-    let renderer = fixture::renderer(folder.path(), LidarModel::Exact);
+    let renderer = fixture::renderer(folder.path(), ServerLidarModel::Exact);
     (folder, renderer)
 }
 
@@ -50,7 +50,7 @@ fn rendered(scene: &Scene, camera: usize, size: [u32; 2]) -> Vec<u8> {
         size,
         quality: Default::default(),
     };
-    let ready = Ready::new(&Pictures, &input);
+    let ready = PreparedSource::new(&PictureSource, &input);
     let drawn = ready.render(&scene.rig.cameras[camera], &options, RenderContext::processor());
     match drawn.expect("a picture") {
         CameraPicture::Picture(image) => image.rgba,
@@ -261,7 +261,7 @@ fn wall(folder: &std::path::Path) -> Renderer {
     let mut scene = Scene::single("wall", frame, Arc::new(SensorRig::default()), 1);
     scene.conditions = Conditions::default();
     formats::loom::save(&folder.join("wall.loom"), &scene).expect("saved");
-    fixture::renderer(folder, LidarModel::Exact)
+    fixture::renderer(folder, ServerLidarModel::Exact)
 }
 
 #[test]
@@ -320,7 +320,7 @@ fn points_are_in_the_frame_of_the_end_of_the_spin() {
 fn learned_sweeps_tell_intensities() {
     let folder = tempfile::tempdir().expect("a folder");
     fixture::write(folder.path());
-    let renderer = fixture::renderer(folder.path(), LidarModel::Learned);
+    let renderer = fixture::renderer(folder.path(), ServerLidarModel::Learned);
     let request = LidarRenderRequest {
         scene_id: "clip".into(),
         frame_end_us: 100_000,

@@ -25,9 +25,9 @@ use super::perf::Perf;
 use super::planning::Planning;
 use super::preferences::Preferences;
 use super::settings::{QUALITY, Settings};
-use super::toasts::{Level, Toasts};
+use super::toasts::{MessageLevel, Toasts};
 use super::tuning::Tuning;
-use super::versions::{Opened, Versions};
+use super::versions::{VersionedScene, Versions};
 use super::views::Views;
 use crate::sensing::Sensing;
 use crate::state::UiState;
@@ -151,11 +151,11 @@ impl SceneloomApp {
         }
         let mut toasts = Toasts::default();
         for text in strange {
-            toasts.push(Level::Error, text, 0.0);
+            toasts.push(MessageLevel::Error, text, 0.0);
         }
         if let Some(text) = complaint {
             let text = tf!("Standard settings are used: {error}", error = text);
-            toasts.push(Level::Error, text, 0.0);
+            toasts.push(MessageLevel::Error, text, 0.0);
         }
         let state = UiState {
             brushes: settings.brushes.clone(),
@@ -171,15 +171,15 @@ impl SceneloomApp {
         // On a software rasteriser a frame takes as long as a step of generation, so fewer frames are drawn during
         // generation.
         let view3d = View3d::new(render_state.clone());
-        let Opened {
+        let VersionedScene {
             scene,
             versions: kept,
             damaged,
             made,
             notes: _,
         } = match &config.picture {
-            Some(picture) => Opened::of(config.scene).told_by(picture),
-            None => Opened::of(config.scene),
+            Some(picture) => VersionedScene::of(config.scene).told_by(picture),
+            None => VersionedScene::of(config.scene),
         };
         let mut versions = Versions::default();
         versions.replace(kept);
@@ -346,7 +346,7 @@ impl SceneloomApp {
         settings.kept_words.clone_from(&self.views.prompt.favourites);
         let complaint = self.preferences.write(ctx.zoom_factor(), &self.views.dock, now_s);
         if let Some(text) = complaint {
-            self.toasts.push(Level::Error, text, now_s);
+            self.toasts.push(MessageLevel::Error, text, now_s);
         }
     }
 

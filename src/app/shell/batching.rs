@@ -6,12 +6,12 @@ use egui::Ui;
 
 use super::app::{SceneloomApp, one_line};
 use super::files::Next;
-use super::toasts::Level;
+use super::toasts::MessageLevel;
 use crate::batch::Queue;
-use crate::batch::plan::Plan;
-use crate::batch::queue::State;
+use crate::batch::plan::BatchPlan;
+use crate::batch::queue::BatchState;
 use crate::windows::batch_plan::BASE;
-use crate::windows::batches::{Asked, BatchesInput, BatchesWindow};
+use crate::windows::batches::{BatchAction, BatchesInput, BatchesWindow};
 use formats::loom;
 use language::tf;
 
@@ -62,16 +62,16 @@ impl SceneloomApp {
             };
             let name = item.name.clone();
             let (level, text) = match &item.state {
-                State::Done(report) if report.failed.is_empty() => (
-                    Level::Info,
+                BatchState::Done(report) if report.failed.is_empty() => (
+                    MessageLevel::Info,
                     tf!(
                         "Batch {name}: {n} variants are ready",
                         name = name,
                         n = report.variants
                     ),
                 ),
-                State::Done(report) => (
-                    Level::Error,
+                BatchState::Done(report) => (
+                    MessageLevel::Error,
                     tf!(
                         "Batch {name}: {n} of {all} variants failed",
                         name = name,
@@ -79,8 +79,8 @@ impl SceneloomApp {
                         all = report.variants,
                     ),
                 ),
-                State::Failed(why) => (
-                    Level::Error,
+                BatchState::Failed(why) => (
+                    MessageLevel::Error,
                     tf!("Batch {name}: {error}", name = name, error = why),
                 ),
                 _ => continue,
@@ -117,7 +117,7 @@ impl SceneloomApp {
         let asked = window.ui(ui, &mut self.files.batching.queue, &input, &mut open);
         let marked = match asked {
             None => Ok(()),
-            Some(Asked::Add) => {
+            Some(BatchAction::Add) => {
                 let added = self.add_batch(&window, chosen);
                 window.form.problem = added.as_ref().err().map(one_line);
                 if let Ok(id) = added {
@@ -127,9 +127,11 @@ impl SceneloomApp {
                 }
                 Ok(())
             }
-            Some(Asked::Star(id, variant)) => self.files.batching.queue.mark(id, |m| m.star(variant)),
-            Some(Asked::Discard(id, variant)) => self.files.batching.queue.mark(id, |m| m.discard(variant)),
-            Some(Asked::Open(id, variant)) => {
+            Some(BatchAction::Star(id, variant)) => self.files.batching.queue.mark(id, |m| m.star(variant)),
+            Some(BatchAction::Discard(id, variant)) => {
+                self.files.batching.queue.mark(id, |m| m.discard(variant))
+            }
+            Some(BatchAction::Open(id, variant)) => {
                 self.guarded(Next::Variant(id, variant), ui.ctx());
                 Ok(())
             }
@@ -150,7 +152,7 @@ impl SceneloomApp {
         if form.from_file {
             let file = PathBuf::from(form.plan_file.trim());
             let folder = file.parent().unwrap_or(Path::new("")).to_path_buf();
-            return queue.add(Plan::read(&file)?, &folder, &output);
+            return queue.add(BatchPlan::read(&file)?, &folder, &output);
         }
         let scene = self.document.settled_scene();
         let base = output.join(BASE);

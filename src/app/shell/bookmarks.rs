@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::app::SceneloomApp;
-use super::toasts::Level;
-use crate::canvas::Canvas;
+use super::toasts::MessageLevel;
+use crate::canvas::BevCanvas;
 use language::tf;
 use viewport::ViewCamera;
 
@@ -31,7 +31,7 @@ pub struct Bookmark {
 
 impl Bookmark {
     /// The present viewpoints.
-    pub fn of(camera: &ViewCamera, canvas: &Canvas) -> Self {
+    pub fn of(camera: &ViewCamera, canvas: &BevCanvas) -> Self {
         let (bev_center_m, bev_scale) = canvas.place();
         Self {
             target_m: camera.target_m,
@@ -82,7 +82,7 @@ impl SceneloomApp {
 
     fn tell(&mut self, text: String) {
         let now_s = self.now_s();
-        self.toasts.push(Level::Info, text, now_s);
+        self.toasts.push(MessageLevel::Info, text, now_s);
     }
 }
 
@@ -99,7 +99,7 @@ mod tests {
             pitch_rad: -0.3,
             ..ViewCamera::default()
         };
-        let bookmark = Bookmark::of(&camera, &Canvas::default());
+        let bookmark = Bookmark::of(&camera, &BevCanvas::default());
         let text = serde_json::to_string(&bookmark).expect("JSON");
         let again: Bookmark = serde_json::from_str(&text).expect("read");
         assert_eq!(again, bookmark);

@@ -3,7 +3,7 @@
 use egui::Context;
 
 use super::app::SceneloomApp;
-use super::toasts::Level;
+use super::toasts::MessageLevel;
 use crate::command::step_name;
 use crate::prompting::Ask;
 use crate::tools::Choose;
@@ -34,7 +34,7 @@ impl SceneloomApp {
                 ),
             };
             let now_s = self.now_s();
-            self.toasts.push(Level::Info, text, now_s);
+            self.toasts.push(MessageLevel::Info, text, now_s);
         }
         edits.push(Edit::KeepWords {
             words: words.to_owned(),
@@ -52,7 +52,7 @@ impl SceneloomApp {
             self.state.cameras.view = pictures::VIEW.id;
             let now_s = self.now_s();
             let text = t("Time and weather changed: the cameras show pictures now").to_owned();
-            self.toasts.push(Level::Info, text, now_s);
+            self.toasts.push(MessageLevel::Info, text, now_s);
         }
     }
 

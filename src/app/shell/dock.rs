@@ -7,7 +7,7 @@ use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 pub use super::workspace::Workspace;
 use crate::panes;
 use crate::panes::id::PaneId;
-use crate::panes::pane::Place;
+use crate::panes::pane::PanePlacement;
 
 /// Direction in which a pane is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -309,9 +309,9 @@ impl Dock {
             return;
         }
         let opened = match panes::info(pane).map(|p| p.place) {
-            Some(Place::BelowViews) => self.open_below_views(pane),
-            Some(Place::Column | Place::ColumnAtOnce) => self.open_in_column(pane),
-            Some(Place::BelowView) | None => false,
+            Some(PanePlacement::BelowViews) => self.open_below_views(pane),
+            Some(PanePlacement::Column | PanePlacement::ColumnAtOnce) => self.open_in_column(pane),
+            Some(PanePlacement::BelowView) | None => false,
         };
         if opened {
             return;
@@ -338,7 +338,7 @@ impl Dock {
         // Docks of the first versions do not say which panes they knew.
         let known = if known.is_empty() { &FIRST } else { known };
         for pane in panes::infos() {
-            let is_new = pane.place == Place::ColumnAtOnce && !known.contains(&pane.id);
+            let is_new = pane.place == PanePlacement::ColumnAtOnce && !known.contains(&pane.id);
             if is_new && self.find(pane.id).is_none() {
                 self.open_in_column(pane.id);
             }

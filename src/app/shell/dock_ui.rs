@@ -41,7 +41,7 @@ enum DockAction {
 }
 
 /// Draws the panes of the tree.
-struct Drawer<'a> {
+struct DockPainter<'a> {
     panes: &'a mut [Box<dyn Pane>],
     cx: PaneContext<'a>,
     commands: &'a mut Vec<Command>,
@@ -52,7 +52,7 @@ struct Drawer<'a> {
     below_tabs: HashSet<PaneId>,
 }
 
-impl Behavior<PaneId> for Drawer<'_> {
+impl Behavior<PaneId> for DockPainter<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, tile: TileId, pane: &mut PaneId) -> UiResponse {
         let rect = ui.max_rect();
         ui.set_clip_rect(ui.clip_rect().intersect(rect));
@@ -121,7 +121,7 @@ impl Behavior<PaneId> for Drawer<'_> {
     }
 }
 
-impl Drawer<'_> {
+impl DockPainter<'_> {
     /// Title of a pane; for cameras with the names from the rig.
     fn title(&self, id: PaneId) -> String {
         let pane = self.panes.iter().find(|p| p.id() == id);
@@ -300,7 +300,7 @@ impl SceneloomApp {
         dock.fit(ui.available_width());
         let maximized = dock.maximized;
         let generation = &mut self.generation;
-        let mut drawer = Drawer {
+        let mut drawer = DockPainter {
             panes: &mut views.panes,
             cx: PaneContext {
                 scene,

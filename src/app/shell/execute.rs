@@ -10,7 +10,7 @@ use language::{t, tf};
 use scene::SceneBox;
 
 use super::app::SceneloomApp;
-use super::toasts::Level;
+use super::toasts::MessageLevel;
 use crate::command::Command;
 use crate::panes::objects::neighbour;
 use crate::tools::{Choose, ToolState};
@@ -92,7 +92,7 @@ impl SceneloomApp {
 
     pub(crate) fn fail(&mut self, text: String) {
         let now_s = self.now_s();
-        self.toasts.push(Level::Error, text, now_s);
+        self.toasts.push(MessageLevel::Error, text, now_s);
     }
 
     pub(crate) fn apply(&mut self, label: impl Into<Label>, edits: &[Edit]) {
@@ -121,7 +121,7 @@ impl SceneloomApp {
             Ok(()) => {
                 let now_s = self.now_s();
                 said.into_iter()
-                    .for_each(|line| self.toasts.push(Level::Info, line, now_s));
+                    .for_each(|line| self.toasts.push(MessageLevel::Info, line, now_s));
             }
         }
         self.note_correction();

@@ -7,11 +7,11 @@ use crossbeam_channel::{Receiver, TryRecvError, bounded};
 
 use super::app::{SceneloomApp, one_line};
 use super::file_dialogs::Purpose;
-use super::toasts::Level;
+use super::toasts::MessageLevel;
 use crate::capture::{self, Subject, Turntable};
 use crate::clip_export::{ClipOptions, ClipView, clip};
 use crate::export::{ExportOptions, ExportProgress, Format, export_all};
-use crate::windows::export::{Asked, ExportDialog, ExportInput, export_window};
+use crate::windows::export::{ExportAction, ExportDialog, ExportInput, export_window};
 use editor::checks::{Severity, waive};
 use formats::video::VideoKind;
 use language::{t, tf};
@@ -19,20 +19,20 @@ use language::{t, tf};
 /// Frames per second of a turntable.
 const TURN_HZ: f64 = 15.0;
 
-type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
+type ExportResult = anyhow::Result<Vec<(PathBuf, u64)>>;
 
 /// The export dialog, and the export that is running.
 #[derive(Default)]
 pub struct Exporting {
     /// State of the dialog; `None` while it is closed.
     pub dialog: Option<ExportDialog>,
-    running: Option<Running>,
+    running: Option<RunningExport>,
 }
 
-struct Running {
+struct RunningExport {
     name: &'static str,
     progress: Arc<ExportProgress>,
-    written: Receiver<Written>,
+    written: Receiver<ExportResult>,
 }
 
 impl Exporting {
@@ -69,21 +69,21 @@ impl SceneloomApp {
         let wanted = export_window(ui, &input, &mut dialog, &mut open);
         let path = PathBuf::from(dialog.path.trim());
         match wanted {
-            Some(Asked::Write(formats)) => {
+            Some(ExportAction::Write(formats)) => {
                 let mut options = dialog.options.clone();
                 options.shot.camera = self.views.view3d.camera;
                 options.parameters = self.parameters();
                 dialog.written.clone_from(&dialog.path);
                 self.start_export(formats, options, path, ui.ctx());
             }
-            Some(Asked::Browse) => {
+            Some(ExportAction::Browse) => {
                 let purpose = match dialog.fills_a_folder() {
                     true => Purpose::ExportFolder,
                     false => Purpose::ExportFile,
                 };
                 self.files.dialogs.ask(purpose, &path, ui.ctx());
             }
-            Some(Asked::Checks) => self.views.dock.open(crate::panes::id::PaneId::CHECKS),
+            Some(ExportAction::Checks) => self.views.dock.open(crate::panes::id::PaneId::CHECKS),
             None => {}
         }
         self.files.exporting.dialog = open.then_some(dialog);
@@ -204,7 +204,7 @@ impl SceneloomApp {
         &mut self,
         name: &'static str,
         ctx: &egui::Context,
-        write: impl FnOnce(&ExportProgress) -> Written + Send + 'static,
+        write: impl FnOnce(&ExportProgress) -> ExportResult + Send + 'static,
     ) {
         if self.files.exporting.running.is_some() {
             return self.fail(t("An export is on its way; one at a time").to_owned());
@@ -221,7 +221,7 @@ impl SceneloomApp {
         });
         match thread {
             Ok(_) => {
-                self.files.exporting.running = Some(Running {
+                self.files.exporting.running = Some(RunningExport {
                     name,
                     progress,
                     written,
@@ -230,7 +230,7 @@ impl SceneloomApp {
             Err(error) => {
                 let now_s = self.now_s();
                 let text = tf!("Not exported: {error}", error = error);
-                self.toasts.push(Level::Error, text, now_s);
+                self.toasts.push(MessageLevel::Error, text, now_s);
             }
         }
     }
@@ -264,15 +264,15 @@ impl SceneloomApp {
                     files = what,
                     size = format!("{:.1}", bytes as f64 / 1e6),
                 );
-                self.toasts.push(Level::Info, text, now_s);
+                self.toasts.push(MessageLevel::Info, text, now_s);
             }
             Err(_) if cancelled => {
                 let text = t("Export cancelled: nothing was written").to_owned();
-                self.toasts.push(Level::Info, text, now_s);
+                self.toasts.push(MessageLevel::Info, text, now_s);
             }
             Err(error) => {
                 let text = tf!("Not exported: {error}", error = one_line(&error));
-                self.toasts.push(Level::Error, text, now_s);
+                self.toasts.push(MessageLevel::Error, text, now_s);
             }
         }
     }

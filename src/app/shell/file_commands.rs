@@ -9,15 +9,15 @@ use egui::Context;
 use super::app::{SceneloomApp, one_line};
 use super::file_dialogs::Purpose;
 use super::files::{Next, Opening};
-use super::toasts::Level;
-use super::versions::Opened;
+use super::toasts::MessageLevel;
+use super::versions::VersionedScene;
 use crate::capture;
 use crate::command::FileCommand;
 use crate::open;
-use crate::picture::Picture;
+use crate::picture::RgbaPicture;
 use editor::Edit;
 use language::{t, tf};
-use scene::{Kept, Scene};
+use scene::{ProjectHistory, Scene};
 use sensors::cameras::{self, ViewId};
 
 impl SceneloomApp {
@@ -139,14 +139,14 @@ impl SceneloomApp {
                 let own_file = path.extension().is_some_and(|e| e == "loom").then_some(path);
                 let is_picture = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
                 let is_import = own_file.is_none() && !is_picture;
-                let opened = move || open(&file).map(|found| Opened::from(found).told_by(&file));
+                let opened = move || open(&file).map(|found| VersionedScene::from(found).told_by(&file));
                 self.load(what, own_file, is_import, ctx, opened);
             }
         }
     }
 
     /// Makes a scene on a thread of its own, while the window goes on.
-    pub(crate) fn load<Read: Into<Opened>>(
+    pub(crate) fn load<Read: Into<VersionedScene>>(
         &mut self,
         what: String,
         path: Option<PathBuf>,
@@ -221,7 +221,7 @@ impl SceneloomApp {
         match saved {
             Ok(()) => {
                 let text = tf!("Saved {file}", file = path.display());
-                self.toasts.push(Level::Info, text, now_s);
+                self.toasts.push(MessageLevel::Info, text, now_s);
             }
             Err(error) => self.fail(tf!("Not saved: {error}", error = one_line(&error))),
         }
@@ -237,7 +237,7 @@ impl SceneloomApp {
                 self.generation.versions.changed = false;
                 let now_s = self.now_s();
                 let text = tf!("Saved {file}", file = path.display());
-                self.toasts.push(Level::Info, text, now_s);
+                self.toasts.push(MessageLevel::Info, text, now_s);
                 self.preferences.settings.remember(&path);
                 self.files.path = Some(path);
                 if let Some(next) = next {
@@ -251,7 +251,7 @@ impl SceneloomApp {
     /// A scene with the data that its file keeps beside it: versions, and typed prompts.
     pub(crate) fn with_kept(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
-        scene.kept = Arc::new(Kept {
+        scene.kept = Arc::new(ProjectHistory {
             versions: self.generation.versions.kept(scene.content()),
             typed: self.views.prompt.typed().to_vec(),
         });
@@ -297,7 +297,7 @@ impl SceneloomApp {
         let scene = self.document.scene().clone();
         // A picture of the state before an edit must not carry the scene after it.
         let is_of_it = !self.threads.sensing.is_stale(source, scene.rev);
-        let picture = Picture { width, height, rgba };
+        let picture = RgbaPicture { width, height, rgba };
         match save_png(is_of_it.then(|| (&*scene, self.parameters())), &picture, &path) {
             Ok(()) => {
                 let text = tf!(
@@ -306,7 +306,7 @@ impl SceneloomApp {
                     width = width,
                     height = height,
                 );
-                self.toasts.push(Level::Info, text, self.now_s());
+                self.toasts.push(MessageLevel::Info, text, self.now_s());
             }
             Err(error) => self.fail(tf!("No picture saved: {error}", error = one_line(&error))),
         }
@@ -318,7 +318,7 @@ impl SceneloomApp {
         let shot = self.views.view3d.screenshot(&scene, &self.state.shown, None);
         let saved = shot.and_then(|([width, height], rgba)| {
             let [w, h] = [width, height].map(|side| side as usize);
-            let picture = Picture {
+            let picture = RgbaPicture {
                 width: w,
                 height: h,
                 rgba,
@@ -335,7 +335,7 @@ impl SceneloomApp {
                     width = width,
                     height = height,
                 );
-                self.toasts.push(Level::Info, text, now_s);
+                self.toasts.push(MessageLevel::Info, text, now_s);
             }
             Err(error) => self.fail(tf!("No screenshot: {error}", error = one_line(&error))),
         }
@@ -345,7 +345,7 @@ impl SceneloomApp {
 /// Writes a picture, with the scene inside if it is known. The file is written whole or not at all.
 fn save_png(
     scene: Option<(&Scene, serde_json::Value)>,
-    picture: &Picture,
+    picture: &RgbaPicture,
     path: &Path,
 ) -> anyhow::Result<()> {
     let bytes = match scene {
@@ -384,7 +384,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("shot.png");
         let scene = open::from_template("straight", 3).expect("a template");
-        let picture = Picture::filled(4, 3, [9, 8, 7]);
+        let picture = RgbaPicture::filled(4, 3, [9, 8, 7]);
         let made = serde_json::json!({"params": {"seed": 7}});
         save_png(Some((&scene, made)), &picture, &path).expect("written");
         let back = crate::scene_of(&path).expect("a scene inside");

@@ -86,14 +86,14 @@ impl Purpose {
 /// Shortest time in which a user can dismiss a dialog. An earlier dismissal means that no dialog was shown.
 const NO_DIALOG_AFTER: Duration = Duration::from_millis(350);
 
-struct Waiting {
+struct PendingDialog {
     purpose: Purpose,
     answer: Receiver<Option<PathBuf>>,
     since: Instant,
     suggestion: PathBuf,
 }
 
-struct Field {
+struct PathField {
     purpose: Purpose,
     text: String,
     /// Frames in which the field still requests the focus: a dialog that closes may take the first request.
@@ -105,8 +105,8 @@ struct Field {
 /// The file dialog that is open, if any.
 pub struct FileDialogs {
     native: bool,
-    waiting: Option<Waiting>,
-    field: Option<Field>,
+    waiting: Option<PendingDialog>,
+    field: Option<PathField>,
 }
 
 impl FileDialogs {
@@ -183,7 +183,7 @@ impl FileDialogs {
             self.open_field(purpose, suggestion);
             return;
         }
-        self.waiting = Some(Waiting {
+        self.waiting = Some(PendingDialog {
             purpose,
             answer,
             since: Instant::now(),
@@ -192,7 +192,7 @@ impl FileDialogs {
     }
 
     fn open_field(&mut self, purpose: Purpose, suggestion: &Path) {
-        self.field = Some(Field {
+        self.field = Some(PathField {
             purpose,
             text: suggestion.display().to_string(),
             focus: 3,
@@ -248,7 +248,7 @@ enum Choice {
     Done,
 }
 
-fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
+fn field_ui(ui: &mut Ui, field: &mut PathField) -> Choice {
     ui.set_width(520.0);
     ui.heading(t(field.purpose.title()));
     ui.add_space(theme::GAP);
@@ -294,7 +294,7 @@ fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
     choice
 }
 
-fn problem(path: &Path, field: &mut Field) -> Option<String> {
+fn problem(path: &Path, field: &mut PathField) -> Option<String> {
     if field.purpose == Purpose::PictureWeights {
         return (!path.is_dir()).then(|| tf!("There is no folder {folder}", folder = path.display()));
     }
@@ -366,7 +366,7 @@ mod tests {
     fn bad_paths_are_named_and_replacing_is_asked_for() {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("a.loom");
-        let mut field = Field {
+        let mut field = PathField {
             purpose: Purpose::Open,
             text: String::new(),
             focus: 0,

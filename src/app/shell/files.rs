@@ -11,11 +11,11 @@ use super::batching::Batching;
 use super::exporting::Exporting;
 use super::file_dialogs::FileDialogs;
 use super::recovery::Recovery;
-use super::versions::Opened;
+use super::versions::VersionedScene;
 use crate::windows::place_picker::PlacePicker;
 
 /// Reads a scene from a file of any kind that can be opened.
-pub type OpenScene = Arc<dyn Fn(&Path) -> anyhow::Result<authoring::open::Opened> + Send + Sync>;
+pub type OpenScene = Arc<dyn Fn(&Path) -> anyhow::Result<authoring::open::OpenedScene> + Send + Sync>;
 /// Writes a scene to a `.loom` file.
 pub type SaveScene = Arc<dyn Fn(&Scene, &Path) -> anyhow::Result<()> + Send + Sync>;
 /// Makes a new scene.
@@ -65,13 +65,13 @@ pub(crate) struct Opening {
     pub step: Option<&'static str>,
     /// The state that it replaces. Later edits of that state are asked about.
     pub leaves: Left,
-    pub scene: Receiver<anyhow::Result<Opened>>,
+    pub scene: Receiver<anyhow::Result<VersionedScene>>,
 }
 
 /// A scene that was read while the one in the window was edited.
 pub(crate) struct Arrived {
     pub opening: Opening,
-    pub opened: Opened,
+    pub opened: VersionedScene,
 }
 
 /// Roads from a file, on which a scene will stand.

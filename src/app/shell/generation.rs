@@ -6,8 +6,8 @@ use job::worker::GenWorker;
 use job::{GenParams, GenResult, Job, JobEvent, UpdateGate};
 use scene::{Scene, SceneRev};
 
-use super::live::{Bounds, Live, Purpose, Running};
-use super::scenery_thread::Drawing;
+use super::live::{Bounds, Live, Purpose, RunningJob};
+use super::scenery_thread::SceneryJob;
 use super::staged::Staged;
 use super::status::Receipt;
 use super::tuning::Tuning;
@@ -33,7 +33,7 @@ pub struct Generation {
     pub(crate) words: Option<(SceneRev, Arc<Scene>)>,
     /// Scenery that was drawn for a generation that still runs, as the state with it and the state before.
     pub(crate) drawn_first: Option<(SceneRev, Arc<Scene>)>,
-    pub(crate) drawing: Option<Drawing>,
+    pub(crate) drawing: Option<SceneryJob>,
     /// A result that waits for the user's decision.
     pub(crate) staged: Option<Staged>,
     /// Regions that are still to be generated.
@@ -105,7 +105,7 @@ impl Generation {
     /// True while a generation of the whole scene shows a preview for that state, which the user may keep as the
     /// result.
     pub(crate) fn shows_what_comes(&self, rev: SceneRev) -> bool {
-        let whole = |r: &Running| r.purpose == Purpose::Full && r.key.rev == rev && !r.cancelled;
+        let whole = |r: &RunningJob| r.purpose == Purpose::Full && r.key.rev == rev && !r.cancelled;
         self.live.running.as_ref().is_some_and(whole)
             && self.preview.as_ref().is_some_and(|(of, _)| *of == rev)
     }

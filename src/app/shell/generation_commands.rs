@@ -3,8 +3,8 @@
 use egui::Context;
 
 use super::app::SceneloomApp;
-use super::live::Running;
-use super::toasts::Level;
+use super::live::RunningJob;
+use super::toasts::MessageLevel;
 use crate::command::GenerationCommand;
 use job::pipeline::windows_over;
 use language::t;
@@ -29,7 +29,7 @@ impl SceneloomApp {
                         true => t("Generation cancelled. Generate goes on where it stopped"),
                         false => t("Generation cancelled"),
                     };
-                    self.toasts.push(Level::Info, text, now_s);
+                    self.toasts.push(MessageLevel::Info, text, now_s);
                 }
             }
             GenerationCommand::RestoreVersion(rev) => {
@@ -83,7 +83,7 @@ impl SceneloomApp {
         let inpaints = !full && !self.state.tools.region.is_empty();
         if !full && !inpaints && self.generation.live.touched_by(&scene, now_s).is_empty {
             let text = t("Nothing was edited since the last generation");
-            self.toasts.push(Level::Info, text, now_s);
+            self.toasts.push(MessageLevel::Info, text, now_s);
             return;
         }
         if (full || inpaints) && self.state.seed.another {
@@ -98,7 +98,7 @@ impl SceneloomApp {
         if full && self.draws_scenery_first() {
             return self.generate_on_scenery(params);
         }
-        let same = |r: &Running| r.key.rev == scene.content() && r.key.params == params;
+        let same = |r: &RunningJob| r.key.rev == scene.content() && r.key.params == params;
         if !self.generation.live.running.as_ref().is_some_and(same) {
             self.generation.live.touched_by(&scene, now_s);
             self.submit(scene, params);

@@ -9,13 +9,13 @@ use tempfile::tempdir;
 use crate::command::ViewCommand;
 use crate::export::ExportOptions;
 use crate::panes::id::PaneId;
-use crate::scenery::{Drawer, SceneryWish};
+use crate::scenery::{SceneryMethod, SceneryWish};
 use crate::shell::workspace::Workspace;
 use crate::{AppConfig, SceneloomApp, open};
 use editor::Edit;
 use job::guard::panic_next;
 use job::{GenError, GenParams};
-use judge::presets::calibrate::{Measurement, News, Task};
+use judge::presets::calibrate::{CalibrationEvent, Measurement, MeasurementTask};
 
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -90,7 +90,7 @@ fn exports() {
 fn scenery() {
     let mut app = app();
     let wish = SceneryWish {
-        by: Drawer::Network,
+        by: SceneryMethod::Network,
         ..SceneryWish::of_seed(5)
     };
     let before = app.document.settled_scene().content();
@@ -150,13 +150,15 @@ fn measuring() {
             std::thread::sleep(Duration::from_millis(2));
         }
     };
-    let start = || Measurement::start(Task::Calibrate(trade::Presets::bundled()), || {}).expect("a thread");
+    let start = || {
+        Measurement::start(MeasurementTask::Calibrate(trade::Presets::bundled()), || {}).expect("a thread")
+    };
     panic_next("measure");
-    let News::Failed(line) = next(&start()) else {
+    let CalibrationEvent::Failed(line) = next(&start()) else {
         panic!("it goes on");
     };
     assert_eq!(line, "measure panicked: asked for by a test");
-    assert!(matches!(next(&start()), News::Progress(..)));
+    assert!(matches!(next(&start()), CalibrationEvent::Progress(..)));
 }
 
 #[test]

@@ -13,13 +13,13 @@ use job::guard::guarded;
 use language::tf;
 
 /// A task on the document, to be done by the window's thread.
-pub type Task = Box<dyn FnOnce(&mut Document) + Send>;
+pub type DocumentTask = Box<dyn FnOnce(&mut Document) + Send>;
 
 /// Requests a frame of the window, in which it does the tasks.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// Lets assistants in. The command line gives one to the window, which has no server code.
-pub trait Door {
+pub trait AssistantListener {
     /// Begins to listen. The sender of a task calls `wake` after it. Errors in one line.
     fn open(&mut self, wake: Wake) -> anyhow::Result<OpenDoor>;
 }
@@ -33,7 +33,7 @@ pub struct OpenDoor {
     /// The one folder whose files they may read and write.
     pub folder: PathBuf,
     /// Tasks from the assistants.
-    pub tasks: Receiver<Task>,
+    pub tasks: Receiver<DocumentTask>,
     /// The listening server.
     pub listening: Box<dyn Any>,
 }
@@ -41,7 +41,7 @@ pub struct OpenDoor {
 /// The door of a window, and whether it is open.
 #[derive(Default)]
 pub struct Guests {
-    door: Option<Box<dyn Door>>,
+    door: Option<Box<dyn AssistantListener>>,
     open: Option<OpenDoor>,
     /// The reason why it could not be opened. It is tried again when the user allows assistants again.
     problem: Option<String>,
@@ -52,7 +52,7 @@ const MOST_TASKS: usize = 64;
 
 impl Guests {
     /// Guests with a closed door.
-    pub fn new(door: Box<dyn Door>) -> Self {
+    pub fn new(door: Box<dyn AssistantListener>) -> Self {
         Self {
             door: Some(door),
             ..Self::default()
@@ -96,7 +96,7 @@ impl Guests {
 
 impl SceneloomApp {
     /// Gives the window a door for assistants.
-    pub fn with_door(mut self, door: Box<dyn Door>) -> Self {
+    pub fn with_door(mut self, door: Box<dyn AssistantListener>) -> Self {
         self.guests = Guests::new(door);
         self
     }
@@ -113,7 +113,7 @@ impl SceneloomApp {
             self.fail(tf!("Assistants cannot come in: {error}", error = why));
         }
         let Some(open) = &self.guests.open else { return };
-        let tasks: Vec<Task> = open.tasks.try_iter().take(MOST_TASKS).collect();
+        let tasks: Vec<DocumentTask> = open.tasks.try_iter().take(MOST_TASKS).collect();
         if tasks.is_empty() {
             return;
         }
@@ -136,9 +136,9 @@ mod tests {
     use crossbeam_channel::{bounded, unbounded};
 
     /// A door that opens once.
-    struct OneTime(Option<Receiver<Task>>);
+    struct OneTime(Option<Receiver<DocumentTask>>);
 
-    impl Door for OneTime {
+    impl AssistantListener for OneTime {
         fn open(&mut self, _: Wake) -> anyhow::Result<OpenDoor> {
             let tasks = self.0.take();
             Ok(OpenDoor {

@@ -9,7 +9,7 @@ use job::inpaint::InpaintMask;
 pub use job::pipeline::Bounds;
 use job::pipeline::parts;
 use job::region::{CELLS, COLUMNS_PER_CELL, edited_columns};
-use job::{GenParams, JobId, JobKey, Named, RegionMode, Stage};
+use job::{ChosenDensities, GenParams, JobId, JobKey, RegionMode, Stage};
 use scene::{Extent, Scene, SceneRev};
 
 /// Edge of a latent cell, m.
@@ -64,7 +64,7 @@ pub enum Purpose {
 
 /// A running job.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Running {
+pub struct RunningJob {
     /// Its id at the worker.
     pub id: JobId,
     /// Its key: the scene's revision and the parameters.
@@ -85,7 +85,7 @@ pub struct Running {
     pub cancelled: bool,
 }
 
-impl Running {
+impl RunningJob {
     /// Label of the undo step of its result; `None` if the result goes into the step of an edit.
     pub fn own_step(&self) -> Option<&'static str> {
         match (self.purpose, self.key.params.inpaint.is_empty()) {
@@ -106,13 +106,13 @@ pub struct Live {
     /// Parameters of generation of the whole scene.
     pub full_params: GenParams,
     /// Densities that the user chose; they override those of the parameters.
-    pub named: Named,
+    pub named: ChosenDensities,
     /// The seed for generation on request; the scene's seed if `None`.
     pub seed: Option<u64>,
     /// Predicted time of the present preset, s; 0 if unknown.
     pub predicted_s: f64,
     /// The running job.
-    pub running: Option<Running>,
+    pub running: Option<RunningJob>,
     /// The reason why the last edit is not generated automatically.
     pub paused: Option<Pause>,
     pace: Pace,
@@ -134,7 +134,7 @@ impl Live {
             on: true,
             params,
             full_params,
-            named: Named::default(),
+            named: ChosenDensities::default(),
             seed: None,
             cold: warm_up,
             warm_up,
@@ -278,7 +278,7 @@ impl Live {
         self.asked = Some(key.clone());
         self.paused = None;
         self.oldest_edit_s = None;
-        self.running = Some(Running {
+        self.running = Some(RunningJob {
             id,
             key,
             purpose,
@@ -292,7 +292,7 @@ impl Live {
     }
 
     /// Notes that a job ended, and returns it if it was the running one.
-    pub fn ended(&mut self, id: JobId) -> Option<Running> {
+    pub fn ended(&mut self, id: JobId) -> Option<RunningJob> {
         self.running.take_if(|r| r.id == id)
     }
 

@@ -62,7 +62,7 @@ impl MadeWith {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use job::Named;
+    use job::ChosenDensities;
 
     #[test]
     fn what_a_result_was_made_with_comes_back_from_text() {
@@ -70,9 +70,9 @@ mod tests {
             seed: u64::MAX,
             steps: 7,
             guidance: 2.5,
-            named: Named {
+            named: ChosenDensities {
                 vegetation: Some(0.25),
-                ..Named::default()
+                ..ChosenDensities::default()
             },
             ..GenParams::default()
         };

@@ -6,11 +6,11 @@ use egui::Context;
 
 use super::app::{SceneloomApp, one_line};
 use super::files::{Arrived, Left, Next, Opening};
-use super::toasts::Level;
-use super::versions::Opened;
+use super::toasts::MessageLevel;
+use super::versions::VersionedScene;
 use crate::panes::compare::CompareMode;
 use editor::Document;
-use job::Named;
+use job::ChosenDensities;
 use job::inpaint::InpaintMask;
 use language::tf;
 
@@ -85,13 +85,13 @@ impl SceneloomApp {
                 name = arrived.opened.scene.name
             );
             let now_s = self.now_s();
-            self.toasts.push(Level::Info, text, now_s);
+            self.toasts.push(MessageLevel::Info, text, now_s);
         }
     }
 
-    fn show_opened(&mut self, opening: Opening, opened: Opened, ctx: &Context) {
+    fn show_opened(&mut self, opening: Opening, opened: VersionedScene, ctx: &Context) {
         let now_s = self.now_s();
-        let Opened {
+        let VersionedScene {
             scene,
             versions,
             damaged,
@@ -105,12 +105,12 @@ impl SceneloomApp {
                 "Imported {name} as a draft. Ctrl+Enter generates it.",
                 name = scene.name
             );
-            self.toasts.push(Level::Info, text, now_s);
+            self.toasts.push(MessageLevel::Info, text, now_s);
         } else {
             self.toasts.log(tf!("Opened {name}", name = scene.name), now_s);
         }
         for note in notes {
-            self.toasts.push(Level::Info, note, now_s);
+            self.toasts.push(MessageLevel::Info, note, now_s);
         }
         let version = match opening.step {
             Some(label) => {
@@ -143,7 +143,7 @@ impl SceneloomApp {
         // Unfinished work of the tools belongs to the old map.
         self.state.tools.toolbox = Default::default();
         self.state.tools.hand.road = Default::default();
-        self.state.named = Named::default();
+        self.state.named = ChosenDensities::default();
         self.state.seed.value = None;
         if let Some(made) = made {
             self.take_knobs(&made);

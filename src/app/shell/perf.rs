@@ -106,7 +106,7 @@ enum Pending {
 
 /// A frame being drawn.
 #[derive(Clone, Copy, Debug)]
-struct Open {
+struct OngoingFrame {
     began_s: f64,
     /// Time spent waiting for the graphics card, only to measure; not counted as work, s.
     waited_s: f64,
@@ -136,7 +136,7 @@ pub struct Perf {
     /// Time in each stage of the running job, or of the last one, s.
     pub stages: BTreeMap<&'static str, f64>,
     pub(crate) trace: Option<Trace>,
-    frame: Option<Open>,
+    frame: Option<OngoingFrame>,
     pending: Option<Pending>,
     stage: Option<(Stage, f64)>,
     cpu: Option<(f64, f64)>, // wall and processor time, s
@@ -162,7 +162,7 @@ impl Perf {
                 self.edit_visible(began_s, at_s);
             }
         }
-        self.frame = Some(Open {
+        self.frame = Some(OngoingFrame {
             began_s,
             waited_s: began_s - now_s,
             logic_s: 0.0,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use editor::Edit;
 use editor::checks::{self, Finding};
-use editor::fix::{Plan, Progress, plan_all, plan_these};
+use editor::fix::{RepairPlan, RepairProgress, plan_all, plan_these};
 use job::JobId;
 use job::guard::Panicked;
 use job::product::{Ctx, Event, Product, Wake, Worker};
@@ -15,7 +15,7 @@ use scene::Scene;
 pub(crate) type Meaning = Box<dyn Fn(Vec<Edit>) -> Vec<Edit> + Send>;
 
 /// A request for a plan.
-pub(crate) struct Request {
+pub(crate) struct RepairRequest {
     pub(crate) scene: Arc<Scene>,
     pub(crate) findings: Vec<Finding>,
     /// True if the findings are of an earlier state; the checks run first to see which remain.
@@ -25,9 +25,9 @@ pub(crate) struct Request {
     pub(crate) meaning: Meaning,
 }
 
-enum News {
-    Tried(Progress),
-    Planned(Box<Plan>),
+enum PlanningEvent {
+    Tried(RepairProgress),
+    Planned(Box<RepairPlan>),
     GivenUp,
     Failed(Panicked),
 }
@@ -35,12 +35,12 @@ enum News {
 struct Planner;
 
 impl Product for Planner {
-    type Request = Request;
-    type Update = News;
+    type Request = RepairRequest;
+    type Update = PlanningEvent;
 
-    fn make(&mut self, request: &Request, ctx: &Ctx<'_, News>) -> News {
-        let mut watch = |progress: Progress| {
-            ctx.tell(News::Tried(progress));
+    fn make(&mut self, request: &RepairRequest, ctx: &Ctx<'_, PlanningEvent>) -> PlanningEvent {
+        let mut watch = |progress: RepairProgress| {
+            ctx.tell(PlanningEvent::Tried(progress));
             match ctx.should_stop() {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
@@ -61,7 +61,7 @@ impl Product for Planner {
                 .collect(),
             false => request.findings.clone(),
         };
-        News::Planned(Box::new(plan(
+        PlanningEvent::Planned(Box::new(plan(
             &request.scene,
             &findings,
             &*request.meaning,
@@ -71,48 +71,48 @@ impl Product for Planner {
 
     fn reset(&mut self) {}
 
-    fn given_up() -> News {
-        News::GivenUp
+    fn given_up() -> PlanningEvent {
+        PlanningEvent::GivenUp
     }
 
-    fn panicked(panic: Panicked) -> News {
-        News::Failed(panic)
+    fn panicked(panic: Panicked) -> PlanningEvent {
+        PlanningEvent::Failed(panic)
     }
 
-    fn is_terminal(news: &News) -> bool {
-        !matches!(news, News::Tried(_))
+    fn is_terminal(news: &PlanningEvent) -> bool {
+        !matches!(news, PlanningEvent::Tried(_))
     }
 }
 
 /// Content of the window of repairs.
 #[derive(Clone, Debug)]
-pub enum Shown {
+pub enum RepairPlanState {
     /// A plan is being made; with its progress, once that is known.
-    Planning(Option<Progress>),
+    Planning(Option<RepairProgress>),
     /// The finished plan.
-    Planned(Arc<Plan>),
+    Planned(Arc<RepairPlan>),
 }
 
 /// The plan that is being made or shown, and the thread that makes plans.
 #[derive(Default)]
 pub struct Planning {
-    worker: Option<Worker<Request, News>>,
+    worker: Option<Worker<RepairRequest, PlanningEvent>>,
     job: Option<JobId>,
-    shown: Option<Shown>,
+    shown: Option<RepairPlanState>,
     /// Findings of the last request and its `all` flag, to plan again.
     pub(crate) about: Option<(Vec<Finding>, bool)>,
 }
 
 impl Planning {
     /// Starts a plan that replaces the one before. Errors if the system gives no thread.
-    pub(crate) fn begin(&mut self, request: Request, wake: Wake) -> std::io::Result<()> {
+    pub(crate) fn begin(&mut self, request: RepairRequest, wake: Wake) -> std::io::Result<()> {
         let worker = match &mut self.worker {
             Some(worker) => worker,
             none => none.insert(Worker::start("repairs", || Planner, wake)?),
         };
         self.about = Some((request.findings.clone(), request.all));
         self.job = Some(worker.submit(request));
-        self.shown = Some(Shown::Planning(None));
+        self.shown = Some(RepairPlanState::Planning(None));
         Ok(())
     }
 
@@ -125,10 +125,12 @@ impl Planning {
                 continue;
             }
             match update {
-                News::Tried(progress) => self.shown = Some(Shown::Planning(Some(progress))),
-                News::Planned(plan) => self.shown = Some(Shown::Planned(Arc::new(*plan))),
-                News::GivenUp => self.close(),
-                News::Failed(panic) => {
+                PlanningEvent::Tried(progress) => {
+                    self.shown = Some(RepairPlanState::Planning(Some(progress)))
+                }
+                PlanningEvent::Planned(plan) => self.shown = Some(RepairPlanState::Planned(Arc::new(*plan))),
+                PlanningEvent::GivenUp => self.close(),
+                PlanningEvent::Failed(panic) => {
                     self.close();
                     problem = Some(panic);
                 }
@@ -138,7 +140,7 @@ impl Planning {
     }
 
     /// Content of the window; `None` if no repairs were requested.
-    pub fn shown(&self) -> Option<&Shown> {
+    pub fn shown(&self) -> Option<&RepairPlanState> {
         self.shown.as_ref()
     }
 

@@ -2,9 +2,9 @@
 
 use super::app::SceneloomApp;
 use super::made_with::MadeWith;
-use super::toasts::Level;
+use super::toasts::MessageLevel;
 use crate::seed_wish::SeedWish;
-use job::{GenParams, Named, RegionMode};
+use job::{ChosenDensities, GenParams, RegionMode};
 use language::tf;
 use scene::SceneRev;
 
@@ -36,7 +36,7 @@ impl SceneloomApp {
     /// Sets the knobs to those that a result was made with.
     pub(crate) fn take_knobs(&mut self, made: &MadeWith) {
         let params = GenParams {
-            named: Named::default(),
+            named: ChosenDensities::default(),
             strength: 0.0,
             ..made.params.clone()
         };
@@ -65,6 +65,6 @@ impl SceneloomApp {
         };
         let text = tf!("Set: {what}", what = made.in_words());
         let now_s = self.now_s();
-        self.toasts.push(Level::Info, text, now_s);
+        self.toasts.push(MessageLevel::Info, text, now_s);
     }
 }

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use super::app::SceneloomApp;
 use super::recovery::Recovery;
-use super::toasts::Level;
-use crate::windows::recovery::{Answer, recovery_ui};
+use super::toasts::MessageLevel;
+use crate::windows::recovery::{RecoveryChoice, recovery_ui};
 use language::tf;
 use scene::Scene;
 
@@ -18,7 +18,7 @@ impl SceneloomApp {
             Err(error) => {
                 let now_s = self.now_s();
                 let text = tf!("No recovery copies of unsaved work: {error}", error = error);
-                self.toasts.push(Level::Error, text, now_s);
+                self.toasts.push(MessageLevel::Error, text, now_s);
             }
         }
     }
@@ -40,7 +40,7 @@ impl SceneloomApp {
         }
         if let Some(problem) = problem {
             let text = tf!("No recovery copy can be written: {problem}", problem = problem);
-            self.toasts.push(Level::Error, text, now_s);
+            self.toasts.push(MessageLevel::Error, text, now_s);
         }
     }
 
@@ -64,9 +64,9 @@ impl SceneloomApp {
             return;
         };
         match answer {
-            Answer::Later => recovery.offers.clear(),
-            Answer::Discard => recovery.offers.remove(0).discard(),
-            Answer::Recover => {
+            RecoveryChoice::Later => recovery.offers.clear(),
+            RecoveryChoice::Discard => recovery.offers.remove(0).discard(),
+            RecoveryChoice::Recover => {
                 let offer = recovery.offers.remove(0);
                 let (file, original) = (offer.file(), offer.original.clone());
                 let what = tf!("Recovering {name}", name = offer.name);

@@ -34,7 +34,7 @@ const LOCK: &str = "lock";
 
 /// Metadata kept beside the scene.
 #[derive(Serialize, Deserialize)]
-struct About {
+struct RecoveryRecord {
     /// The file that the scene came from or was saved to.
     original: Option<PathBuf>,
     /// Name of the scene.
@@ -244,7 +244,7 @@ impl Drop for Recovery {
 fn write(folder: &Path, scene: &Scene, original: Option<PathBuf>) -> anyhow::Result<()> {
     loom::save(&folder.join(SCENE), scene)?;
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let about = About {
+    let about = RecoveryRecord {
         original,
         name: scene.name.to_string(),
         saved_unix_s: since.as_secs(),
@@ -325,7 +325,7 @@ fn dead_session(folder: PathBuf) -> Option<Stale> {
         }
         return None;
     };
-    let about: Option<About> = input::read(&folder.join(ABOUT), input::LARGEST_TEXT)
+    let about: Option<RecoveryRecord> = input::read(&folder.join(ABOUT), input::LARGEST_TEXT)
         .ok()
         .and_then(|bytes| serde_json::from_slice(&bytes).ok());
     let (original, name) = about.map_or((None, t("a scene").into()), |a| (a.original, a.name));

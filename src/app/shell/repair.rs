@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::app::SceneloomApp;
-use super::planning::{Request, Shown};
+use super::planning::{RepairPlanState, RepairRequest};
 use crate::command::RepairCommand;
 use editor::checks::Finding;
 use language::tf;
@@ -55,7 +55,7 @@ impl SceneloomApp {
 
     fn plan_repairs(&mut self, findings: Vec<Finding>, [all, again]: [bool; 2], ctx: &egui::Context) {
         let wake = ctx.clone();
-        let request = Request {
+        let request = RepairRequest {
             scene: self.document.settled_scene().clone(),
             findings,
             again,
@@ -74,7 +74,7 @@ impl SceneloomApp {
     /// Applies the listed repairs, if they were planned for the present state.
     fn do_repairs(&mut self) {
         let now = self.document.settled_scene().rev;
-        let Some(Shown::Planned(plan)) = self.threads.planning.shown() else {
+        let Some(RepairPlanState::Planned(plan)) = self.threads.planning.shown() else {
             return;
         };
         let plan = plan.clone();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::app::{AppConfig, SceneloomApp};
-use super::guests::Door;
+use super::guests::AssistantListener;
 use super::{gone, priority, settings};
 use crate::{open, pipeline};
 use formats::loom;
@@ -18,7 +18,7 @@ pub fn run_window(
     scene: Scene,
     path: Option<PathBuf>,
     trace: Option<PathBuf>,
-    door: Option<Box<dyn Door>>,
+    door: Option<Box<dyn AssistantListener>>,
 ) -> anyhow::Result<()> {
     super::logging::start();
     if let Some(line) = priority::start_workers(true) {
@@ -64,7 +64,7 @@ fn new_scene() -> anyhow::Result<Scene> {
 pub fn run_window_with(
     config: AppConfig,
     trace: Option<PathBuf>,
-    door: Option<Box<dyn Door>>,
+    door: Option<Box<dyn AssistantListener>>,
 ) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_app_id("sceneloom")

@@ -7,8 +7,8 @@ use crossbeam_channel::{Receiver, TryRecvError, bounded};
 
 use super::app::SceneloomApp;
 use super::staged::Again;
-use super::toasts::Level;
-use crate::scenery::{Drawer, SceneryWish};
+use super::toasts::MessageLevel;
+use crate::scenery::{SceneryMethod, SceneryWish};
 use editor::Edit;
 use job::GenError;
 use language::{t, tf};
@@ -18,7 +18,7 @@ use scene::{Scene, SceneRev};
 const LOOK_AGAIN: Duration = Duration::from_millis(40);
 
 /// Scenery that is being drawn.
-pub(crate) struct Drawing {
+pub(crate) struct SceneryJob {
     wish: SceneryWish,
     before: Arc<Scene>,
     /// True if the result waits for the user's decision.
@@ -26,7 +26,7 @@ pub(crate) struct Drawing {
     edits: Receiver<Result<Vec<Edit>, GenError>>,
 }
 
-impl Drawing {
+impl SceneryJob {
     /// True if it is drawn for this state.
     pub(crate) fn is_of(&self, content: SceneRev) -> bool {
         self.before.content() == content
@@ -37,7 +37,7 @@ impl SceneloomApp {
     /// Draws scenery for the present scene. With `staged` the result waits for the user's decision.
     pub(crate) fn put_scenery(&mut self, wish: SceneryWish, staged: bool) {
         let before = self.document.settled_scene().clone();
-        if wish.by != Drawer::Network {
+        if wish.by != SceneryMethod::Network {
             let edits = wish.edits(&before);
             return self.take_scenery(wish, &before, edits, staged);
         }
@@ -52,8 +52,8 @@ impl SceneloomApp {
             Ok(_) => {
                 let now_s = self.now_s();
                 self.toasts
-                    .push(Level::Info, t("The network draws scenery"), now_s);
-                self.generation.drawing = Some(Drawing {
+                    .push(MessageLevel::Info, t("The network draws scenery"), now_s);
+                self.generation.drawing = Some(SceneryJob {
                     wish,
                     before,
                     staged,
@@ -74,7 +74,7 @@ impl SceneloomApp {
             Ok(edits) => edits,
             Err(TryRecvError::Disconnected) => Err(GenError::failed("drawing it ended unexpectedly")),
         };
-        let Some(Drawing {
+        let Some(SceneryJob {
             wish, before, staged, ..
         }) = self.generation.drawing.take()
         else {
@@ -83,7 +83,7 @@ impl SceneloomApp {
         if self.document.is_dragging() || self.document.settled_scene().content() != before.content() {
             let now_s = self.now_s();
             let text = t("The scene changed meanwhile: no scenery was drawn");
-            return self.toasts.push(Level::Info, text, now_s);
+            return self.toasts.push(MessageLevel::Info, text, now_s);
         }
         self.take_scenery(wish, &before, edits, staged);
     }
@@ -104,7 +104,7 @@ impl SceneloomApp {
         if after.frame().occupancy == before.frame().occupancy {
             let now_s = self.now_s();
             let text = t("Generated: no voxel differs from before");
-            self.toasts.push(Level::Info, text, now_s);
+            self.toasts.push(MessageLevel::Info, text, now_s);
         }
         if after.content() != before.content() {
             let note = tf!("Seed {n}", n = wish.seed);

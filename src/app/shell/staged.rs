@@ -6,15 +6,15 @@ use std::sync::Arc;
 use egui::{Align2, Order, Rect, RichText, Ui};
 
 use super::app::SceneloomApp;
-use super::toasts::Level;
-use crate::command::{Command, GenerationCommand, Taken, Verdict};
+use super::toasts::MessageLevel;
+use crate::command::{Command, GenerationCommand, StagedPart, Verdict};
 use crate::panes::camera_strip::thousands;
 use crate::panes::compare::CompareMode;
 use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::tools::{Hand, ToolState};
 use authoring::whole::{leaves_place_open, scenery_first};
 use editor::checks::{Finding, Severity};
-use editor::part::{Part, changed_by_class};
+use editor::part::{AcceptedPart, changed_by_class};
 use job::inpaint::InpaintMask;
 use job::{GenParams, RegionMode};
 use language::{t, tf};
@@ -235,7 +235,7 @@ impl SceneloomApp {
         Some(staged.before)
     }
 
-    fn take_part(&mut self, taken: Taken) {
+    fn take_part(&mut self, taken: StagedPart) {
         if let Some(Again::Scenery(wish)) = self.staged().and_then(|s| s.again.clone()) {
             // A thing is accepted whole or not at all.
             let region = self.state.tools.region.clone();
@@ -246,9 +246,11 @@ impl SceneloomApp {
         }
         let after = self.document.settled_scene().clone();
         let part = match taken {
-            Taken::Class(class) => Part::Class(class),
-            Taken::Region => Part::Columns(self.state.tools.region.columns(after.frame().extent())),
-            Taken::Chosen => Part::Columns(columns_chosen(&self.state.tools, &after)),
+            StagedPart::Class(class) => AcceptedPart::Class(class),
+            StagedPart::Region => {
+                AcceptedPart::Columns(self.state.tools.region.columns(after.frame().extent()))
+            }
+            StagedPart::Chosen => AcceptedPart::Columns(columns_chosen(&self.state.tools, &after)),
         };
         let Some(staged) = self.staged() else { return };
         let old = &staged.before.frame().occupancy;
@@ -256,7 +258,7 @@ impl SceneloomApp {
         if old.count_different(&mixed) == 0 {
             let now_s = self.now_s();
             let text = t("Nothing of the new result lies there");
-            return self.toasts.push(Level::Info, text, now_s);
+            return self.toasts.push(MessageLevel::Info, text, now_s);
         }
         let things = part_of_things(&staged.before, &after, &part);
         if let Some(before) = self.step_back()
@@ -360,7 +362,7 @@ fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Comma
                 decide(clicked, Verdict::Take(taken));
             };
             let marked = !tools.region.is_empty();
-            entry(ui, marked, t("In the marked region"), Taken::Region);
+            entry(ui, marked, t("In the marked region"), StagedPart::Region);
             mark = ui
                 .button(t("Mark a region…"))
                 .on_hover_text(t("Rectangle, lasso or brush in the bird's-eye view"))
@@ -372,7 +374,7 @@ fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Comma
                 ui,
                 tools.any_chosen(),
                 t("Where chosen boxes and things stand"),
-                Taken::Chosen,
+                StagedPart::Chosen,
             );
             ui.separator();
             for (class, n) in staged.changed.iter().take(MOST_CLASSES) {
@@ -381,7 +383,7 @@ fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Comma
                     class = t(&class.label().to_lowercase()),
                     n = thousands(*n),
                 );
-                entry(ui, true, &text, Taken::Class(*class));
+                entry(ui, true, &text, StagedPart::Class(*class));
             }
         })
         .response
@@ -393,10 +395,10 @@ fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Comma
 }
 
 /// The things of `before`, and the new things that lie completely in the part.
-fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
+fn part_of_things(before: &Scene, after: &Scene, part: &AcceptedPart) -> Background {
     let taken = |thing: &&Thing| match part {
-        Part::Class(class) => thing.form.class() == *class,
-        Part::Columns(columns) => {
+        AcceptedPart::Class(class) => thing.form.class() == *class,
+        AcceptedPart::Columns(columns) => {
             let extent = after.frame().extent();
             let mut inside = true;
             authoring::scenery_around::columns(extent, &thing.form, 0.0, |x, y| {

@@ -9,8 +9,8 @@ use crate::export::ExportProgress;
 use crate::panes::id::PaneId;
 use crate::panes::pointed::Pointed;
 use crate::shell::guard::Pause;
-use crate::shell::live::{Purpose, Running};
-use editor::checks::Counts;
+use crate::shell::live::{Purpose, RunningJob};
+use editor::checks::SeverityCounts;
 use job::{GenReport, Stage};
 use language::{t, tf};
 use widgets::theme;
@@ -69,7 +69,7 @@ impl Receipt {
 /// Input of the bar.
 pub struct StatusInput<'a> {
     /// The running job.
-    pub running: Option<&'a Running>,
+    pub running: Option<&'a RunningJob>,
     /// True if a generation of the whole scene shows a preview.
     pub shows_what_comes: bool,
     /// Present time, on the clock of `running`, s.
@@ -93,7 +93,7 @@ pub struct StatusInput<'a> {
     /// True during a drag.
     pub dragging: bool,
     /// Errors and warnings that are not waived; `None` before the first check.
-    pub findings: Option<Counts>,
+    pub findings: Option<SeverityCounts>,
     /// Hint about the pointer with the tool in hand.
     pub hint: &'a str,
 }
@@ -146,7 +146,7 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, pointed: &Pointed, comman
 }
 
 /// The number of errors and warnings; a click opens or closes their list.
-fn found(ui: &mut Ui, counts: Counts, commands: &mut Vec<Command>) {
+fn found(ui: &mut Ui, counts: SeverityCounts, commands: &mut Vec<Command>) {
     let (text, color) = match (counts.errors, counts.errors + counts.warnings) {
         (_, 0) => (t("Checks").to_owned(), theme::text_weak()),
         (errors, 1) => (
@@ -257,7 +257,7 @@ fn cancel_export(ui: &mut Ui, progress: &ExportProgress) {
     }
 }
 
-fn progress(ui: &mut Ui, running: &Running, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
+fn progress(ui: &mut Ui, running: &RunningJob, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
     let seconds = (input.now_s - running.submitted_s).max(0.0);
     let (stage, step, steps) = running
         .progress

@@ -8,7 +8,7 @@ use widgets::theme;
 
 /// How serious a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
+pub enum MessageLevel {
     /// For information.
     Info,
     /// For a failure.
@@ -16,8 +16,8 @@ pub enum Level {
 }
 
 #[derive(Clone, Debug)]
-struct Entry {
-    level: Level,
+struct ToastMessage {
+    level: MessageLevel,
     text: String,
     at_s: f64,
     dismissed: bool,
@@ -26,7 +26,7 @@ struct Entry {
 /// All messages of this session.
 #[derive(Debug, Default)]
 pub struct Toasts {
-    entries: Vec<Entry>,
+    entries: Vec<ToastMessage>,
     read: usize,
 }
 
@@ -38,13 +38,13 @@ const KEPT: usize = 500;
 
 impl Toasts {
     /// Shows a message as a card and writes it into the log.
-    pub fn push(&mut self, level: Level, text: impl Into<String>, now_s: f64) {
+    pub fn push(&mut self, level: MessageLevel, text: impl Into<String>, now_s: f64) {
         let text = text.into();
         match level {
-            Level::Error => tracing::error!("{text}"),
+            MessageLevel::Error => tracing::error!("{text}"),
             _ => tracing::info!("{text}"),
         }
-        let entry = Entry {
+        let entry = ToastMessage {
             level,
             text,
             at_s: now_s,
@@ -59,7 +59,7 @@ impl Toasts {
 
     /// Writes a line into the log without a card.
     pub fn log(&mut self, text: impl Into<String>, now_s: f64) {
-        self.push(Level::Info, text, now_s);
+        self.push(MessageLevel::Info, text, now_s);
         if let Some(last) = self.entries.last_mut() {
             last.dismissed = true;
         }
@@ -69,7 +69,7 @@ impl Toasts {
     pub fn unread(&self) -> usize {
         self.entries[self.read..]
             .iter()
-            .filter(|e| e.level == Level::Error)
+            .filter(|e| e.level == MessageLevel::Error)
             .count()
     }
 
@@ -80,7 +80,13 @@ impl Toasts {
 
     /// Draws the cards over the lower right corner of `over`.
     pub fn show(&mut self, ui: &Ui, over: Rect, now_s: f64) {
-        let stays = |e: &Entry| if e.level == Level::Error { ERROR_S } else { INFO_S };
+        let stays = |e: &ToastMessage| {
+            if e.level == MessageLevel::Error {
+                ERROR_S
+            } else {
+                INFO_S
+            }
+        };
         let mut next_s = f64::INFINITY;
         let mut bottom = over.bottom() - 14.0;
         for (i, entry) in self.entries.iter_mut().enumerate().rev().take(40) {
@@ -124,7 +130,7 @@ impl Toasts {
                 ui.horizontal(|ui| {
                     let at = format!("{:02}:{:02}", entry.at_s as u64 / 60, entry.at_s as u64 % 60);
                     ui.label(egui::RichText::new(at).monospace().color(theme::text_weak()));
-                    let color = if entry.level == Level::Error {
+                    let color = if entry.level == MessageLevel::Error {
                         theme::bad()
                     } else {
                         theme::text()
@@ -136,8 +142,8 @@ impl Toasts {
     }
 }
 
-fn card(ui: &mut Ui, entry: &mut Entry) {
-    let edge = if entry.level == Level::Error {
+fn card(ui: &mut Ui, entry: &mut ToastMessage) {
+    let edge = if entry.level == MessageLevel::Error {
         theme::bad()
     } else {
         theme::accent()
@@ -176,7 +182,7 @@ mod tests {
         let mut toasts = Toasts::default();
         toasts.log("opened", 0.0);
         assert_eq!(toasts.unread(), 0);
-        toasts.push(Level::Error, "no weights", 1.0);
+        toasts.push(MessageLevel::Error, "no weights", 1.0);
         assert_eq!((toasts.unread(), toasts.last()), (1, Some("no weights")));
         let ctx = egui::Context::default();
         let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
@@ -184,7 +190,7 @@ mod tests {
         });
         assert_eq!(toasts.unread(), 0);
         for i in 0..2 * KEPT {
-            toasts.push(Level::Info, format!("{i}"), 2.0);
+            toasts.push(MessageLevel::Info, format!("{i}"), 2.0);
         }
         assert_eq!(toasts.entries.len(), KEPT);
     }

@@ -12,7 +12,7 @@ use crate::shell::workspace::Workspace;
 use crate::tools::Hand;
 use crate::tools::ToolId;
 use editor::tools::beside::building;
-use editor::tools::{Group, ToolDef, all};
+use editor::tools::{ToolDef, ToolGroup, all};
 use language::{t, tf};
 use widgets::icons::{self, Icon};
 use widgets::theme;
@@ -173,14 +173,14 @@ fn tools(ui: &mut Ui, fold: Fold, in_hand: ToolId, commands: &mut Vec<Command>) 
         return tool_list(ui, tool, (t(tool.title), hint), true, list, commands);
     }
     for tool in all() {
-        let folded = fold >= Fold::Things && tool.group == Group::Beside;
+        let folded = fold >= Fold::Things && tool.group == ToolGroup::Beside;
         let (icon, chosen) = (Icon::named(tool.icon), in_hand == tool.id);
         if !folded && icons::button(ui, icon, t(tool.title), t(tool.key), chosen, true).clicked() {
             commands.push(Command::Tool(tool.id));
         }
     }
     if fold >= Fold::Things {
-        let selected = in_hand.def().group == Group::Beside;
+        let selected = in_hand.def().group == ToolGroup::Beside;
         let shown = if selected { in_hand } else { building::ID };
         let hint = t("buildings, trees, hedges, shrubs, posts");
         tool_list(
@@ -255,7 +255,7 @@ fn workspaces(ui: &mut Ui, current: Workspace, fold: Fold, commands: &mut Vec<Co
 
 /// The tools for things beside the road.
 pub(super) fn beside() -> impl Iterator<Item = &'static ToolDef> {
-    all().iter().copied().filter(|t| t.group == Group::Beside)
+    all().iter().copied().filter(|t| t.group == ToolGroup::Beside)
 }
 
 /// The chord of a hint, without the rest of the hint.

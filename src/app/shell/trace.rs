@@ -18,14 +18,14 @@ use super::perf::IDLE_AFTER_S;
 /// Time between two samples of the processor time.
 const EVERY: Duration = Duration::from_secs(1);
 
-enum Order {
+enum TraceMessage {
     Line(String),
     Finish(Value),
 }
 
 /// A trace that is being written.
 pub struct Trace {
-    orders: Sender<Order>,
+    orders: Sender<TraceMessage>,
     active_ms: Arc<AtomicU64>,
     thread: Option<JoinHandle<()>>,
 }
@@ -52,7 +52,7 @@ impl Trace {
     /// Adds a line.
     pub fn line(&self, value: &Value) {
         // The thread ends early only if the disk is full; the editor goes on without a trace.
-        let _ = self.orders.send(Order::Line(value.to_string()));
+        let _ = self.orders.send(TraceMessage::Line(value.to_string()));
     }
 
     /// Notes the time at which the window was last active, s.
@@ -62,7 +62,7 @@ impl Trace {
 
     /// Adds the summary, with the processor time, and closes the file.
     pub fn finish(mut self, summary: Value) {
-        let _ = self.orders.send(Order::Finish(summary));
+        let _ = self.orders.send(TraceMessage::Finish(summary));
         if let Some(thread) = self.thread.take() {
             // An error would be a panic in the thread, and the trace is ending.
             let _ = thread.join();
@@ -83,7 +83,7 @@ impl Used {
     }
 }
 
-fn write(mut out: BufWriter<File>, orders: &Receiver<Order>, active_ms: &AtomicU64, clock: Instant) {
+fn write(mut out: BufWriter<File>, orders: &Receiver<TraceMessage>, active_ms: &AtomicU64, clock: Instant) {
     let now_s = || clock.elapsed().as_secs_f64();
     let mut before = cpu_time_s().map(|cpu_s| (now_s(), cpu_s));
     let (mut all, mut idle) = (Used::default(), Used::default());
@@ -91,8 +91,8 @@ fn write(mut out: BufWriter<File>, orders: &Receiver<Order>, active_ms: &AtomicU
     loop {
         let order = orders.recv_timeout(due.saturating_duration_since(Instant::now()));
         let done = match order {
-            Ok(Order::Line(line)) => writeln!(out, "{line}"),
-            Ok(Order::Finish(mut summary)) => {
+            Ok(TraceMessage::Line(line)) => writeln!(out, "{line}"),
+            Ok(TraceMessage::Finish(mut summary)) => {
                 summary["cpu_share"] = json!(all.share());
                 summary["idle_s"] = json!((idle.wall_s * 10.0).round() / 10.0);
                 summary["idle_cpu_share"] = json!(idle.share());

@@ -10,7 +10,7 @@ use job::inpaint;
 use job::region::Region;
 use job::{GenParams, GenReport, GenResult};
 use judge::machine::machine;
-use judge::presets::calibrate::{Measurement, News, Refine, Task, build};
+use judge::presets::calibrate::{CalibrationEvent, Measurement, MeasurementTask, Refine, build};
 use judge::presets::figures::{percent, seconds};
 use language::{t, tf};
 use nets::{OccModels, tokens_of};
@@ -183,7 +183,11 @@ impl Tuning {
 
     /// Starts timing the presets.
     pub fn calibrate(&mut self, wake: impl Fn() + Send + Sync + 'static) {
-        self.start(Measuring::Presets, Task::Calibrate(self.presets.clone()), wake);
+        self.start(
+            Measuring::Presets,
+            MeasurementTask::Calibrate(self.presets.clone()),
+            wake,
+        );
     }
 
     /// Starts to measure the distance of the last edit from the reference.
@@ -191,7 +195,7 @@ impl Tuning {
         let (Some(last), Some(reference)) = (&self.last, self.presets.named("reference")) else {
             return;
         };
-        let task = Task::Refine(Box::new(Refine {
+        let task = MeasurementTask::Refine(Box::new(Refine {
             edited: last.edited.clone(),
             params: last.params.clone(),
             result: last.result.occupancy.clone(),
@@ -200,7 +204,7 @@ impl Tuning {
         self.start(Measuring::Error, task, wake);
     }
 
-    fn start(&mut self, what: Measuring, task: Task, wake: impl Fn() + Send + Sync + 'static) {
+    fn start(&mut self, what: Measuring, task: MeasurementTask, wake: impl Fn() + Send + Sync + 'static) {
         self.message = None;
         match Measurement::start(task, wake) {
             Ok(background) => self.running = Some((what, background, (0, 0))),
@@ -217,12 +221,12 @@ impl Tuning {
     pub fn update(&mut self) {
         while let Some(news) = self.running.as_ref().and_then(|(_, b, _)| b.next()) {
             match news {
-                News::Progress(done, all) => {
+                CalibrationEvent::Progress(done, all) => {
                     if let Some((_, _, progress)) = &mut self.running {
                         *progress = (done, all);
                     }
                 }
-                News::Calibrated(presets, same) => {
+                CalibrationEvent::Calibrated(presets, same) => {
                     self.running = None;
                     (self.presets, self.calibrated) = (presets, true);
                     let errors = if same {
@@ -241,13 +245,13 @@ impl Tuning {
                         ),
                     });
                 }
-                News::Refined(error) => {
+                CalibrationEvent::Refined(error) => {
                     self.running = None;
                     if let Some(last) = &mut self.last {
                         last.measured_error = Some(error);
                     }
                 }
-                News::Failed(line) => {
+                CalibrationEvent::Failed(line) => {
                     self.running = None;
                     self.message = Some(line);
                 }

@@ -1,7 +1,7 @@
 //! Undo while a requested operation runs: undo cancels that operation, and changes no other step.
 
 use super::app::SceneloomApp;
-use super::toasts::Level;
+use super::toasts::MessageLevel;
 use language::t;
 
 impl SceneloomApp {
@@ -18,7 +18,8 @@ impl SceneloomApp {
             self.take_scenery_back();
             self.generation.cancel();
         }
-        self.toasts.push(Level::Info, t("Generation cancelled"), now_s);
+        self.toasts
+            .push(MessageLevel::Info, t("Generation cancelled"), now_s);
     }
 
     /// Label of the step that undo reverts, in English.

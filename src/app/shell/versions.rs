@@ -8,7 +8,7 @@ use egui::TextureHandle;
 use rayon::prelude::*;
 
 use super::made_with::MadeWith;
-use editor::checks::Counts;
+use editor::checks::SeverityCounts;
 use formats::loom;
 use formats::recipe::{self, Recipe};
 use job::guard::Handed;
@@ -40,7 +40,7 @@ pub struct Version {
     /// Settings that it was made with, if it was generated and they are known.
     pub made: Option<MadeWith>,
     /// Counts of its findings, once it was on screen long enough to be checked.
-    pub findings: Option<Counts>,
+    pub findings: Option<SeverityCounts>,
     packed: Arc<Packed>,
 }
 
@@ -85,7 +85,7 @@ fn pack(scene: Handed<Arc<Scene>>) -> Option<Arc<Vec<u8>>> {
 }
 
 /// A scene that was read, with the versions that its file keeps.
-pub struct Opened {
+pub struct VersionedScene {
     /// The scene.
     pub scene: Scene,
     /// The versions, the oldest first.
@@ -98,8 +98,8 @@ pub struct Opened {
     pub notes: Vec<String>,
 }
 
-impl From<authoring::open::Opened> for Opened {
-    fn from(found: authoring::open::Opened) -> Self {
+impl From<authoring::open::OpenedScene> for VersionedScene {
+    fn from(found: authoring::open::OpenedScene) -> Self {
         Self {
             notes: found.notes,
             ..Self::of(found.scene)
@@ -107,13 +107,13 @@ impl From<authoring::open::Opened> for Opened {
     }
 }
 
-impl From<Scene> for Opened {
+impl From<Scene> for VersionedScene {
     fn from(scene: Scene) -> Self {
         Self::of(scene)
     }
 }
 
-impl Opened {
+impl VersionedScene {
     /// Opens all versions; takes about 10 ms for each.
     pub fn of(scene: Scene) -> Self {
         let own = match scene.kept.versions.is_empty() {
@@ -178,7 +178,7 @@ impl Versions {
     pub const MAX: usize = 64;
 
     /// Notes the findings of a state, if it is a version.
-    pub fn note_findings(&mut self, rev: SceneRev, counts: Counts) {
+    pub fn note_findings(&mut self, rev: SceneRev, counts: SeverityCounts) {
         if let Some(i) = self.of(rev) {
             self.list[i].findings = Some(counts);
         }
@@ -204,7 +204,7 @@ impl Versions {
         } else {
             parts.join(", ")
         };
-        let all = |c: Counts| c.errors + c.warnings;
+        let all = |c: SeverityCounts| c.errors + c.warnings;
         let before = self.list[..i].iter().rev().find_map(|v| v.findings);
         Some(match before.map(|b| (all(now), all(b))) {
             Some((now, before)) if now > before => {
@@ -362,7 +362,7 @@ mod tests {
     #[test]
     fn findings_are_kept_with_each_version() {
         let mut versions = Versions::default();
-        let counts = |errors, warnings| Counts {
+        let counts = |errors, warnings| SeverityCounts {
             errors,
             warnings,
             infos: 9,
@@ -481,11 +481,11 @@ mod tests {
             loom: Arc::new(vec![1, 2, 3]),
             ..kept[0].clone()
         });
-        saved.kept = Arc::new(scene::Kept {
+        saved.kept = Arc::new(scene::ProjectHistory {
             versions: kept,
             typed: Vec::new(),
         });
-        let opened = Opened::of(saved);
+        let opened = VersionedScene::of(saved);
         let found: Vec<_> = opened
             .versions
             .iter()

@@ -6,7 +6,7 @@ use egui::Rect;
 
 use super::dock::Dock;
 use super::workspace::Workspace;
-use crate::canvas::Canvas;
+use crate::canvas::BevCanvas;
 use crate::panes;
 use crate::panes::camera_strip::CameraStrip;
 use crate::panes::compare::Compare;
@@ -21,7 +21,7 @@ use viewport::ViewOptions;
 /// Owner of all views of the scene.
 pub struct Views {
     /// The bird's-eye view.
-    pub canvas: Canvas,
+    pub canvas: BevCanvas,
     /// The 3D view.
     pub view3d: View3d,
     pub(crate) strip: CameraStrip,
@@ -64,7 +64,7 @@ impl Views {
     /// Views with the panes of a dock.
     pub fn new(view3d: View3d, dock: Dock, render_state: Option<egui_wgpu::RenderState>) -> Self {
         Self {
-            canvas: Canvas::default(),
+            canvas: BevCanvas::default(),
             view3d,
             strip: CameraStrip::default(),
             prompt: PromptField::default(),

@@ -27,7 +27,7 @@ use crate::windows::settings::{Choices, settings_ui};
 use crate::windows::start::start_ui;
 use crate::windows::tour::tour_ui;
 use crate::windows::unsaved::{self, Unsaved};
-use editor::checks::{Counts, waive};
+use editor::checks::{SeverityCounts, waive};
 use language::t;
 use scene::Scene;
 use widgets::theme;
@@ -147,7 +147,7 @@ impl SceneloomApp {
             .threads
             .checking
             .findings()
-            .map(|all| Counts::of(waive::open(settled.frame(), all)));
+            .map(|all| SeverityCounts::of(waive::open(settled.frame(), all)));
         if let Some(counts) = findings.filter(|_| !self.threads.checking.is_stale(settled.rev)) {
             self.generation.versions.note_findings(settled.content(), counts);
         }

@@ -6,10 +6,10 @@ use std::time::Duration;
 use super::app::SceneloomApp;
 use crate::camera_views::Wanted;
 use crate::panes::camera_strip::thousands;
-use crate::shell::live::{Advice, Purpose, Running};
+use crate::shell::live::{Advice, Purpose, RunningJob};
 use crate::shell::staged::Again;
 use crate::shell::status::Receipt;
-use crate::shell::toasts::Level;
+use crate::shell::toasts::MessageLevel;
 use job::{GenParams, GenResult, JobEvent, JobUpdate};
 use language::{t, tf};
 use scene::{Frame, Scene};
@@ -136,7 +136,7 @@ impl SceneloomApp {
                 } else {
                     tf!("Generation failed: {error}.", error = error)
                 };
-                self.toasts.push(Level::Error, text, now_s);
+                self.toasts.push(MessageLevel::Error, text, now_s);
             }
             JobUpdate::Superseded => {
                 if let Some(running) = self.generation.live.ended(event.id) {
@@ -226,13 +226,13 @@ impl SceneloomApp {
             ),
         };
         let now_s = self.now_s();
-        self.toasts.push(Level::Info, text, now_s);
+        self.toasts.push(MessageLevel::Info, text, now_s);
     }
 
     /// Ends a generation of the whole scene and adopts its last preview.
     pub(crate) fn stop_here(&mut self) {
         let before = self.document.settled_scene().clone();
-        let whole = |r: &&mut Running| r.purpose == Purpose::Full && r.key.rev == before.content();
+        let whole = |r: &&mut RunningJob| r.purpose == Purpose::Full && r.key.rev == before.content();
         let Some(running) = self.generation.live.running.as_mut().filter(whole) else {
             return;
         };

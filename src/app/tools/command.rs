@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use editor::rows::Row;
+use editor::rows::CopyRows;
 use editor::tools::{Act, Choose};
 use scene::{Arrangement, BoxId};
 
@@ -44,7 +44,7 @@ pub enum ToolCommand {
     /// Opens the dialog of rows.
     AskRow,
     /// Adds rows of copies of the chosen boxes.
-    Row(Row),
+    Row(CopyRows),
     /// Mirrors the chosen boxes about the ego x axis; true adds mirrored copies instead.
     Mirror(bool),
     /// Puts the chosen boxes on the ground.

@@ -4,8 +4,8 @@ use egui::Ui;
 use egui::accesskit::Role;
 
 use crate::fields::label;
-use editor::tools::setting::{Control, Number};
-use editor::tools::{Setting, Value};
+use editor::tools::setting::{Control, NumberSlider};
+use editor::tools::{ToolOption, Value};
 use language::{t, tf};
 use scene::Class;
 use widgets::hint::caption;
@@ -13,7 +13,7 @@ use widgets::icons::{self, section};
 use widgets::theme;
 
 /// Draws options with their English texts translated. Returns the values that the user set, by id.
-pub fn show(ui: &mut Ui, settings: &[Setting]) -> Vec<(&'static str, Value)> {
+pub fn show(ui: &mut Ui, settings: &[ToolOption]) -> Vec<(&'static str, Value)> {
     let mut set = Vec::new();
     for setting in settings {
         if let Some(value) = draw(ui, setting, &mut set) {
@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, settings: &[Setting]) -> Vec<(&'static str, Value)> {
     set
 }
 
-fn draw(ui: &mut Ui, setting: &Setting, set: &mut Vec<(&'static str, Value)>) -> Option<Value> {
+fn draw(ui: &mut Ui, setting: &ToolOption, set: &mut Vec<(&'static str, Value)>) -> Option<Value> {
     match &setting.control {
         Control::Title(title) => section(ui, t(title)),
         Control::Text(text) => caption(ui, t(text)),
@@ -96,11 +96,11 @@ fn draw(ui: &mut Ui, setting: &Setting, set: &mut Vec<(&'static str, Value)>) ->
     None
 }
 
-fn changed(number: &Number, now: f64, response: &egui::Response) -> Option<Value> {
+fn changed(number: &NumberSlider, now: f64, response: &egui::Response) -> Option<Value> {
     (response.changed() && now != number.value).then_some(Value::Number(now))
 }
 
-fn slider(ui: &mut Ui, number: &Number) -> Option<Value> {
+fn slider(ui: &mut Ui, number: &NumberSlider) -> Option<Value> {
     let row = ui.horizontal(|ui| {
         label(ui, t(number.title), 80.0);
         ui.spacing_mut().slider_width = 60.0;
@@ -118,7 +118,7 @@ fn slider(ui: &mut Ui, number: &Number) -> Option<Value> {
     row.inner
 }
 
-fn wide_slider(ui: &mut Ui, number: &Number) -> Option<Value> {
+fn wide_slider(ui: &mut Ui, number: &NumberSlider) -> Option<Value> {
     let row = ui.horizontal(|ui| {
         ui.label(egui::RichText::new(t(number.title)).color(theme::text_weak()));
         let mut now = number.value;

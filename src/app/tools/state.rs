@@ -2,14 +2,14 @@
 
 use std::ops::{Deref, DerefMut};
 
-use editor::tools::{Area, DRAW_ORDER, Hand, Toolbox};
+use editor::tools::{DRAW_ORDER, Hand, InpaintArea, Toolbox};
 use editor::{Edit, Shape};
 use glam::DVec2;
 use job::GenParams;
 use job::inpaint::InpaintMask;
 use scene::Scene;
 
-use crate::scenery::Drawer;
+use crate::scenery::SceneryMethod;
 
 /// Least steps of an inpainting: it starts from fresh noise, without the inverted noise that already holds most of the
 /// result.
@@ -29,7 +29,7 @@ pub struct ToolState {
     /// Number of inpaintings so far; each one uses other noise.
     pub times_inpainted: u64,
     /// The method that draws scenery.
-    pub drawer: Drawer,
+    pub drawer: SceneryMethod,
     /// Number of times that scenery was drawn.
     pub scenery_draws: u64,
     /// Opacity of each map layer over the layers below it, in draw order, 0 to 1.
@@ -50,7 +50,7 @@ impl Default for ToolState {
             region: InpaintMask::default(),
             words_within: false,
             times_inpainted: 0,
-            drawer: Drawer::Rules(None),
+            drawer: SceneryMethod::Rules(None),
             scenery_draws: 0,
             layer_opacity: [1.0; DRAW_ORDER.len()],
             layers_opacity: 0.5,
@@ -105,11 +105,11 @@ impl ToolState {
     }
 
     /// Marks an area of the map to be inpainted, or removes the mark.
-    pub fn mark(&mut self, extent: scene::Extent, area: &Area, on: bool) {
+    pub fn mark(&mut self, extent: scene::Extent, area: &InpaintArea, on: bool) {
         let cells = match area {
-            Area::Rect(a_m, b_m) => InpaintMask::of_rect(extent, *a_m, *b_m),
-            Area::Outline(points_m) => InpaintMask::of_outline(extent, points_m),
-            Area::Stroke(a_m, b_m, width_m) => {
+            InpaintArea::Rect(a_m, b_m) => InpaintMask::of_rect(extent, *a_m, *b_m),
+            InpaintArea::Outline(points_m) => InpaintMask::of_outline(extent, points_m),
+            InpaintArea::Stroke(a_m, b_m, width_m) => {
                 let stroke = Shape::Line {
                     points_m: vec![*a_m, *b_m],
                     width_m: *width_m,
@@ -119,7 +119,7 @@ impl ToolState {
                     .set_columns(extent, &stroke.cells(extent).unwrap_or_default(), on);
                 return;
             }
-            Area::All => {
+            InpaintArea::All => {
                 let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
                 InpaintMask::of_rect(extent, low, high)
             }

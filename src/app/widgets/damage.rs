@@ -44,13 +44,13 @@ impl Frame {
         out
     }
 
-    fn part(&self, i: usize) -> Part<'_> {
+    fn part(&self, i: usize) -> TexturedTriangles<'_> {
         let (clip, texture, mesh) = &self.parts[i];
         let end = self
             .parts
             .get(i + 1)
             .map_or(self.vertices.len(), |(_, _, next)| next.base_vertex as usize);
-        Part {
+        TexturedTriangles {
             clip: *clip,
             texture: *texture,
             vertices: &self.vertices[mesh.base_vertex as usize..end],
@@ -93,14 +93,14 @@ impl Frame {
 
 /// Triangles of one texture.
 #[derive(PartialEq)]
-struct Part<'a> {
+struct TexturedTriangles<'a> {
     clip: Rect,
     texture: TextureId,
     vertices: &'a [UiVertex],
     indices: &'a [u32],
 }
 
-impl Part<'_> {
+impl TexturedTriangles<'_> {
     fn at(&self, index: u32) -> Pos2 {
         self.vertices
             .get(index as usize)
@@ -124,7 +124,7 @@ impl Part<'_> {
     }
 
     /// Rectangles in which two parts differ.
-    fn differs_from(&self, before: &Part<'_>) -> Vec<Rect> {
+    fn differs_from(&self, before: &TexturedTriangles<'_>) -> Vec<Rect> {
         if self == before {
             return Vec::new();
         }

@@ -2,7 +2,7 @@
 
 use egui::{Color32, Rect, Shape, Stroke, Ui, Vec2, vec2};
 
-use super::icon_shapes::{self as shapes, Part, Point};
+use super::icon_shapes::{self as shapes, IconStroke, Point};
 
 /// An icon on a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +118,7 @@ impl Icon {
         }
     }
 
-    fn parts(self) -> &'static [Part] {
+    fn parts(self) -> &'static [IconStroke] {
         match self {
             Icon::Cursor => shapes::CURSOR,
             Icon::Brush => shapes::BRUSH,
@@ -176,10 +176,10 @@ impl Icon {
         let stroke = Stroke::new(1.4, color);
         for part in self.parts() {
             ui.painter().add(match *part {
-                Part::Line(points) => Shape::line(all(points), stroke),
-                Part::Closed(points) => Shape::closed_line(all(points), stroke),
-                Part::Solid(points) => Shape::convex_polygon(all(points), color, Stroke::NONE),
-                Part::Arc((x, y), radius, from, to) => {
+                IconStroke::Line(points) => Shape::line(all(points), stroke),
+                IconStroke::Closed(points) => Shape::closed_line(all(points), stroke),
+                IconStroke::Solid(points) => Shape::convex_polygon(all(points), color, Stroke::NONE),
+                IconStroke::Arc((x, y), radius, from, to) => {
                     let steps = 14;
                     let points = (0..=steps).map(|i| {
                         let a = (from + (to - from) * i as f32 / steps as f32).to_radians();
@@ -187,7 +187,7 @@ impl Icon {
                     });
                     Shape::line(points.collect(), stroke)
                 }
-                Part::Lid(sign) => {
+                IconStroke::Lid(sign) => {
                     let points = (0..=10).map(|i| {
                         let t = i as f32 / 10.0;
                         let bow = (std::f32::consts::PI * t).sin();
@@ -195,8 +195,10 @@ impl Icon {
                     });
                     Shape::line(points.collect(), stroke)
                 }
-                Part::Circle(center, radius) => Shape::circle_stroke(at(center), radius * scale, stroke),
-                Part::Dot(center, radius) => Shape::circle_filled(at(center), radius * scale, color),
+                IconStroke::Circle(center, radius) => {
+                    Shape::circle_stroke(at(center), radius * scale, stroke)
+                }
+                IconStroke::Dot(center, radius) => Shape::circle_filled(at(center), radius * scale, color),
             });
         }
     }

@@ -4,7 +4,7 @@
 pub(crate) type Point = (f32, f32);
 
 /// One stroke of an icon.
-pub(crate) enum Part {
+pub(crate) enum IconStroke {
     /// A line from point to point.
     Line(&'static [Point]),
     /// A closed line through points.
@@ -21,15 +21,15 @@ pub(crate) enum Part {
     Dot(Point, f32),
 }
 
-pub(crate) const CURSOR: &[Part] = &[Part::Closed(&[
+pub(crate) const CURSOR: &[IconStroke] = &[IconStroke::Closed(&[
     (4.0, 2.0),
     (4.0, 13.0),
     (7.0, 10.3),
     (11.5, 10.3),
 ])];
-pub(crate) const BRUSH: &[Part] = &[
-    Part::Line(&[(13.5, 2.5), (7.5, 8.5)]),
-    Part::Closed(&[
+pub(crate) const BRUSH: &[IconStroke] = &[
+    IconStroke::Line(&[(13.5, 2.5), (7.5, 8.5)]),
+    IconStroke::Closed(&[
         (7.6, 8.4),
         (5.0, 9.2),
         (3.8, 11.2),
@@ -39,14 +39,14 @@ pub(crate) const BRUSH: &[Part] = &[
         (8.6, 9.5),
     ]),
 ];
-pub(crate) const ADD_BOX: &[Part] = &[
-    Part::Closed(&[(2.5, 5.0), (10.5, 5.0), (10.5, 13.0), (2.5, 13.0)]),
-    Part::Line(&[(6.5, 7.0), (6.5, 11.0)]),
-    Part::Line(&[(4.5, 9.0), (8.5, 9.0)]),
-    Part::Line(&[(6.0, 2.5), (13.0, 2.5), (13.0, 9.5)]),
+pub(crate) const ADD_BOX: &[IconStroke] = &[
+    IconStroke::Closed(&[(2.5, 5.0), (10.5, 5.0), (10.5, 13.0), (2.5, 13.0)]),
+    IconStroke::Line(&[(6.5, 7.0), (6.5, 11.0)]),
+    IconStroke::Line(&[(4.5, 9.0), (8.5, 9.0)]),
+    IconStroke::Line(&[(6.0, 2.5), (13.0, 2.5), (13.0, 9.5)]),
 ];
-pub(crate) const VOXEL: &[Part] = &[
-    Part::Closed(&[
+pub(crate) const VOXEL: &[IconStroke] = &[
+    IconStroke::Closed(&[
         (8.0, 1.8),
         (13.5, 4.8),
         (13.5, 11.2),
@@ -54,58 +54,63 @@ pub(crate) const VOXEL: &[Part] = &[
         (2.5, 11.2),
         (2.5, 4.8),
     ]),
-    Part::Line(&[(2.5, 4.8), (8.0, 7.9), (13.5, 4.8)]),
-    Part::Line(&[(8.0, 7.9), (8.0, 14.2)]),
+    IconStroke::Line(&[(2.5, 4.8), (8.0, 7.9), (13.5, 4.8)]),
+    IconStroke::Line(&[(8.0, 7.9), (8.0, 14.2)]),
 ];
-pub(crate) const UNDO: &[Part] = &[
-    Part::Line(&[(6.2, 2.6), (3.0, 5.8), (6.2, 9.0)]),
-    Part::Line(&[(3.0, 5.8), (9.5, 5.8)]),
-    Part::Arc((9.5, 9.5), 3.7, -90.0, 90.0),
-    Part::Line(&[(9.5, 13.2), (6.0, 13.2)]),
+pub(crate) const UNDO: &[IconStroke] = &[
+    IconStroke::Line(&[(6.2, 2.6), (3.0, 5.8), (6.2, 9.0)]),
+    IconStroke::Line(&[(3.0, 5.8), (9.5, 5.8)]),
+    IconStroke::Arc((9.5, 9.5), 3.7, -90.0, 90.0),
+    IconStroke::Line(&[(9.5, 13.2), (6.0, 13.2)]),
 ];
-pub(crate) const REDO: &[Part] = &[
-    Part::Line(&[(9.8, 2.6), (13.0, 5.8), (9.8, 9.0)]),
-    Part::Line(&[(13.0, 5.8), (6.5, 5.8)]),
-    Part::Arc((6.5, 9.5), 3.7, 90.0, 270.0),
-    Part::Line(&[(6.5, 13.2), (10.0, 13.2)]),
+pub(crate) const REDO: &[IconStroke] = &[
+    IconStroke::Line(&[(9.8, 2.6), (13.0, 5.8), (9.8, 9.0)]),
+    IconStroke::Line(&[(13.0, 5.8), (6.5, 5.8)]),
+    IconStroke::Arc((6.5, 9.5), 3.7, 90.0, 270.0),
+    IconStroke::Line(&[(6.5, 13.2), (10.0, 13.2)]),
 ];
-pub(crate) const PLAY: &[Part] = &[Part::Solid(&[(4.5, 2.5), (13.5, 8.0), (4.5, 13.5)])];
-pub(crate) const STOP: &[Part] = &[Part::Solid(&[(3.5, 3.5), (12.5, 3.5), (12.5, 12.5), (3.5, 12.5)])];
-pub(crate) const PAUSE: &[Part] = &[
-    Part::Solid(&[(4.0, 3.0), (6.8, 3.0), (6.8, 13.0), (4.0, 13.0)]),
-    Part::Solid(&[(9.2, 3.0), (12.0, 3.0), (12.0, 13.0), (9.2, 13.0)]),
+pub(crate) const PLAY: &[IconStroke] = &[IconStroke::Solid(&[(4.5, 2.5), (13.5, 8.0), (4.5, 13.5)])];
+pub(crate) const STOP: &[IconStroke] = &[IconStroke::Solid(&[
+    (3.5, 3.5),
+    (12.5, 3.5),
+    (12.5, 12.5),
+    (3.5, 12.5),
+])];
+pub(crate) const PAUSE: &[IconStroke] = &[
+    IconStroke::Solid(&[(4.0, 3.0), (6.8, 3.0), (6.8, 13.0), (4.0, 13.0)]),
+    IconStroke::Solid(&[(9.2, 3.0), (12.0, 3.0), (12.0, 13.0), (9.2, 13.0)]),
 ];
-pub(crate) const STEP_BACK: &[Part] = &[
-    Part::Solid(&[(9.5, 3.5), (9.5, 12.5), (3.0, 8.0)]),
-    Part::Line(&[(12.5, 3.5), (12.5, 12.5)]),
+pub(crate) const STEP_BACK: &[IconStroke] = &[
+    IconStroke::Solid(&[(9.5, 3.5), (9.5, 12.5), (3.0, 8.0)]),
+    IconStroke::Line(&[(12.5, 3.5), (12.5, 12.5)]),
 ];
-pub(crate) const STEP_FORWARD: &[Part] = &[
-    Part::Solid(&[(6.5, 3.5), (13.0, 8.0), (6.5, 12.5)]),
-    Part::Line(&[(3.5, 3.5), (3.5, 12.5)]),
+pub(crate) const STEP_FORWARD: &[IconStroke] = &[
+    IconStroke::Solid(&[(6.5, 3.5), (13.0, 8.0), (6.5, 12.5)]),
+    IconStroke::Line(&[(3.5, 3.5), (3.5, 12.5)]),
 ];
-pub(crate) const TO_START: &[Part] = &[
-    Part::Line(&[(3.0, 3.0), (3.0, 13.0)]),
-    Part::Solid(&[(8.5, 3.5), (8.5, 12.5), (3.8, 8.0)]),
-    Part::Solid(&[(13.5, 3.5), (13.5, 12.5), (8.8, 8.0)]),
+pub(crate) const TO_START: &[IconStroke] = &[
+    IconStroke::Line(&[(3.0, 3.0), (3.0, 13.0)]),
+    IconStroke::Solid(&[(8.5, 3.5), (8.5, 12.5), (3.8, 8.0)]),
+    IconStroke::Solid(&[(13.5, 3.5), (13.5, 12.5), (8.8, 8.0)]),
 ];
-pub(crate) const TO_END: &[Part] = &[
-    Part::Line(&[(13.0, 3.0), (13.0, 13.0)]),
-    Part::Solid(&[(7.5, 3.5), (12.2, 8.0), (7.5, 12.5)]),
-    Part::Solid(&[(2.5, 3.5), (7.2, 8.0), (2.5, 12.5)]),
+pub(crate) const TO_END: &[IconStroke] = &[
+    IconStroke::Line(&[(13.0, 3.0), (13.0, 13.0)]),
+    IconStroke::Solid(&[(7.5, 3.5), (12.2, 8.0), (7.5, 12.5)]),
+    IconStroke::Solid(&[(2.5, 3.5), (7.2, 8.0), (2.5, 12.5)]),
 ];
-pub(crate) const KEY_BACK: &[Part] = &[
-    Part::Closed(&[(11.0, 4.8), (14.2, 8.0), (11.0, 11.2), (7.8, 8.0)]),
-    Part::Line(&[(5.5, 4.5), (2.0, 8.0), (5.5, 11.5)]),
+pub(crate) const KEY_BACK: &[IconStroke] = &[
+    IconStroke::Closed(&[(11.0, 4.8), (14.2, 8.0), (11.0, 11.2), (7.8, 8.0)]),
+    IconStroke::Line(&[(5.5, 4.5), (2.0, 8.0), (5.5, 11.5)]),
 ];
-pub(crate) const KEY_FORWARD: &[Part] = &[
-    Part::Closed(&[(5.0, 4.8), (8.2, 8.0), (5.0, 11.2), (1.8, 8.0)]),
-    Part::Line(&[(10.5, 4.5), (14.0, 8.0), (10.5, 11.5)]),
+pub(crate) const KEY_FORWARD: &[IconStroke] = &[
+    IconStroke::Closed(&[(5.0, 4.8), (8.2, 8.0), (5.0, 11.2), (1.8, 8.0)]),
+    IconStroke::Line(&[(10.5, 4.5), (14.0, 8.0), (10.5, 11.5)]),
 ];
-pub(crate) const CLOCK: &[Part] = &[
-    Part::Circle((8.0, 8.0), 5.8),
-    Part::Line(&[(8.0, 4.4), (8.0, 8.0), (10.6, 9.6)]),
+pub(crate) const CLOCK: &[IconStroke] = &[
+    IconStroke::Circle((8.0, 8.0), 5.8),
+    IconStroke::Line(&[(8.0, 4.4), (8.0, 8.0), (10.6, 9.6)]),
 ];
-pub(crate) const LIVE: &[Part] = &[Part::Closed(&[
+pub(crate) const LIVE: &[IconStroke] = &[IconStroke::Closed(&[
     (9.2, 1.8),
     (3.6, 9.0),
     (7.4, 9.0),
@@ -113,36 +118,40 @@ pub(crate) const LIVE: &[Part] = &[Part::Closed(&[
     (12.4, 6.8),
     (8.4, 6.8),
 ])];
-pub(crate) const EYE: &[Part] = &[Part::Lid(1.0), Part::Lid(-1.0), Part::Dot((8.0, 8.0), 2.2)];
-pub(crate) const EYE_OFF: &[Part] = &[
-    Part::Lid(1.0),
-    Part::Lid(-1.0),
-    Part::Line(&[(3.0, 13.2), (13.0, 2.8)]),
+pub(crate) const EYE: &[IconStroke] = &[
+    IconStroke::Lid(1.0),
+    IconStroke::Lid(-1.0),
+    IconStroke::Dot((8.0, 8.0), 2.2),
 ];
-pub(crate) const TRASH: &[Part] = &[
-    Part::Line(&[(2.8, 4.4), (13.2, 4.4)]),
-    Part::Line(&[(6.0, 4.2), (6.4, 2.4), (9.6, 2.4), (10.0, 4.2)]),
-    Part::Line(&[(4.0, 4.6), (4.8, 13.6), (11.2, 13.6), (12.0, 4.6)]),
-    Part::Line(&[(6.8, 7.0), (6.9, 11.2)]),
-    Part::Line(&[(9.2, 7.0), (9.1, 11.2)]),
+pub(crate) const EYE_OFF: &[IconStroke] = &[
+    IconStroke::Lid(1.0),
+    IconStroke::Lid(-1.0),
+    IconStroke::Line(&[(3.0, 13.2), (13.0, 2.8)]),
 ];
-pub(crate) const COPY: &[Part] = &[
-    Part::Closed(&[(2.5, 5.5), (9.5, 5.5), (9.5, 13.5), (2.5, 13.5)]),
-    Part::Line(&[(6.0, 3.6), (6.0, 2.5), (13.5, 2.5), (13.5, 10.5), (11.4, 10.5)]),
+pub(crate) const TRASH: &[IconStroke] = &[
+    IconStroke::Line(&[(2.8, 4.4), (13.2, 4.4)]),
+    IconStroke::Line(&[(6.0, 4.2), (6.4, 2.4), (9.6, 2.4), (10.0, 4.2)]),
+    IconStroke::Line(&[(4.0, 4.6), (4.8, 13.6), (11.2, 13.6), (12.0, 4.6)]),
+    IconStroke::Line(&[(6.8, 7.0), (6.9, 11.2)]),
+    IconStroke::Line(&[(9.2, 7.0), (9.1, 11.2)]),
 ];
-pub(crate) const FOCUS: &[Part] = &[
-    Part::Line(&[(10.6, 13.6), (13.6, 13.6), (13.6, 10.6)]),
-    Part::Line(&[(5.4, 13.6), (2.4, 13.6), (2.4, 10.6)]),
-    Part::Line(&[(10.6, 2.4), (13.6, 2.4), (13.6, 5.4)]),
-    Part::Line(&[(5.4, 2.4), (2.4, 2.4), (2.4, 5.4)]),
-    Part::Dot((8.0, 8.0), 1.6),
+pub(crate) const COPY: &[IconStroke] = &[
+    IconStroke::Closed(&[(2.5, 5.5), (9.5, 5.5), (9.5, 13.5), (2.5, 13.5)]),
+    IconStroke::Line(&[(6.0, 3.6), (6.0, 2.5), (13.5, 2.5), (13.5, 10.5), (11.4, 10.5)]),
 ];
-pub(crate) const CLOSE: &[Part] = &[
-    Part::Line(&[(4.0, 4.0), (12.0, 12.0)]),
-    Part::Line(&[(12.0, 4.0), (4.0, 12.0)]),
+pub(crate) const FOCUS: &[IconStroke] = &[
+    IconStroke::Line(&[(10.6, 13.6), (13.6, 13.6), (13.6, 10.6)]),
+    IconStroke::Line(&[(5.4, 13.6), (2.4, 13.6), (2.4, 10.6)]),
+    IconStroke::Line(&[(10.6, 2.4), (13.6, 2.4), (13.6, 5.4)]),
+    IconStroke::Line(&[(5.4, 2.4), (2.4, 2.4), (2.4, 5.4)]),
+    IconStroke::Dot((8.0, 8.0), 1.6),
 ];
-pub(crate) const CAMERA: &[Part] = &[
-    Part::Closed(&[
+pub(crate) const CLOSE: &[IconStroke] = &[
+    IconStroke::Line(&[(4.0, 4.0), (12.0, 12.0)]),
+    IconStroke::Line(&[(12.0, 4.0), (4.0, 12.0)]),
+];
+pub(crate) const CAMERA: &[IconStroke] = &[
+    IconStroke::Closed(&[
         (2.0, 5.0),
         (5.0, 5.0),
         (6.2, 3.2),
@@ -152,35 +161,35 @@ pub(crate) const CAMERA: &[Part] = &[
         (14.0, 12.8),
         (2.0, 12.8),
     ]),
-    Part::Circle((8.0, 8.8), 2.4),
+    IconStroke::Circle((8.0, 8.8), 2.4),
 ];
-pub(crate) const MEASURE: &[Part] = &[
-    Part::Closed(&[(1.8, 10.6), (10.6, 1.8), (14.2, 5.4), (5.4, 14.2)]),
-    Part::Line(&[(4.4, 8.0), (6.0, 9.6)]),
-    Part::Line(&[(6.6, 5.8), (8.2, 7.4)]),
-    Part::Line(&[(8.8, 3.6), (10.4, 5.2)]),
+pub(crate) const MEASURE: &[IconStroke] = &[
+    IconStroke::Closed(&[(1.8, 10.6), (10.6, 1.8), (14.2, 5.4), (5.4, 14.2)]),
+    IconStroke::Line(&[(4.4, 8.0), (6.0, 9.6)]),
+    IconStroke::Line(&[(6.6, 5.8), (8.2, 7.4)]),
+    IconStroke::Line(&[(8.8, 3.6), (10.4, 5.2)]),
 ];
-pub(crate) const REGION: &[Part] = &[
-    Part::Line(&[(2.0, 5.0), (2.0, 2.0)]),
-    Part::Line(&[(11.0, 2.0), (14.0, 2.0)]),
-    Part::Line(&[(14.0, 11.0), (14.0, 14.0)]),
-    Part::Line(&[(2.0, 2.0), (5.0, 2.0)]),
-    Part::Line(&[(14.0, 2.0), (14.0, 5.0)]),
-    Part::Line(&[(14.0, 14.0), (11.0, 14.0)]),
-    Part::Line(&[(5.0, 14.0), (2.0, 14.0), (2.0, 11.0)]),
-    Part::Line(&[(8.0, 4.8), (8.0, 11.2)]),
-    Part::Line(&[(4.8, 8.0), (11.2, 8.0)]),
+pub(crate) const REGION: &[IconStroke] = &[
+    IconStroke::Line(&[(2.0, 5.0), (2.0, 2.0)]),
+    IconStroke::Line(&[(11.0, 2.0), (14.0, 2.0)]),
+    IconStroke::Line(&[(14.0, 11.0), (14.0, 14.0)]),
+    IconStroke::Line(&[(2.0, 2.0), (5.0, 2.0)]),
+    IconStroke::Line(&[(14.0, 2.0), (14.0, 5.0)]),
+    IconStroke::Line(&[(14.0, 14.0), (11.0, 14.0)]),
+    IconStroke::Line(&[(5.0, 14.0), (2.0, 14.0), (2.0, 11.0)]),
+    IconStroke::Line(&[(8.0, 4.8), (8.0, 11.2)]),
+    IconStroke::Line(&[(4.8, 8.0), (11.2, 8.0)]),
 ];
-pub(crate) const ROAD: &[Part] = &[
-    Part::Line(&[(5.6, 2.0), (2.4, 14.0)]),
-    Part::Line(&[(10.4, 2.0), (13.6, 14.0)]),
-    Part::Line(&[(8.0, 2.4), (8.0, 4.4)]),
-    Part::Line(&[(8.0, 6.8), (8.0, 9.2)]),
-    Part::Line(&[(8.0, 11.6), (8.0, 14.0)]),
+pub(crate) const ROAD: &[IconStroke] = &[
+    IconStroke::Line(&[(5.6, 2.0), (2.4, 14.0)]),
+    IconStroke::Line(&[(10.4, 2.0), (13.6, 14.0)]),
+    IconStroke::Line(&[(8.0, 2.4), (8.0, 4.4)]),
+    IconStroke::Line(&[(8.0, 6.8), (8.0, 9.2)]),
+    IconStroke::Line(&[(8.0, 11.6), (8.0, 14.0)]),
 ];
-pub(crate) const PATH: &[Part] = &[
-    Part::Circle((3.6, 12.4), 1.8),
-    Part::Line(&[
+pub(crate) const PATH: &[IconStroke] = &[
+    IconStroke::Circle((3.6, 12.4), 1.8),
+    IconStroke::Line(&[
         (5.4, 12.2),
         (8.4, 11.4),
         (9.4, 8.8),
@@ -188,41 +197,41 @@ pub(crate) const PATH: &[Part] = &[
         (9.0, 3.8),
         (12.4, 3.4),
     ]),
-    Part::Line(&[(10.4, 1.4), (12.8, 3.4), (10.8, 5.8)]),
+    IconStroke::Line(&[(10.4, 1.4), (12.8, 3.4), (10.8, 5.8)]),
 ];
-pub(crate) const BUILDING: &[Part] = &[
-    Part::Closed(&[(2.5, 6.6), (8.0, 2.2), (13.5, 6.6), (13.5, 13.8), (2.5, 13.8)]),
-    Part::Line(&[(6.6, 13.8), (6.6, 9.6), (9.4, 9.6), (9.4, 13.8)]),
+pub(crate) const BUILDING: &[IconStroke] = &[
+    IconStroke::Closed(&[(2.5, 6.6), (8.0, 2.2), (13.5, 6.6), (13.5, 13.8), (2.5, 13.8)]),
+    IconStroke::Line(&[(6.6, 13.8), (6.6, 9.6), (9.4, 9.6), (9.4, 13.8)]),
 ];
-pub(crate) const TREE: &[Part] = &[
-    Part::Circle((8.0, 6.0), 4.2),
-    Part::Line(&[(8.0, 14.2), (8.0, 7.4)]),
-    Part::Line(&[(8.0, 9.6), (9.9, 7.6)]),
+pub(crate) const TREE: &[IconStroke] = &[
+    IconStroke::Circle((8.0, 6.0), 4.2),
+    IconStroke::Line(&[(8.0, 14.2), (8.0, 7.4)]),
+    IconStroke::Line(&[(8.0, 9.6), (9.9, 7.6)]),
 ];
-pub(crate) const FENCE: &[Part] = &[
-    Part::Line(&[(3.0, 14.0), (3.0, 3.6)]),
-    Part::Line(&[(8.0, 14.0), (8.0, 3.6)]),
-    Part::Line(&[(13.0, 14.0), (13.0, 3.6)]),
-    Part::Line(&[(1.4, 6.4), (14.6, 6.4)]),
-    Part::Line(&[(1.4, 10.6), (14.6, 10.6)]),
+pub(crate) const FENCE: &[IconStroke] = &[
+    IconStroke::Line(&[(3.0, 14.0), (3.0, 3.6)]),
+    IconStroke::Line(&[(8.0, 14.0), (8.0, 3.6)]),
+    IconStroke::Line(&[(13.0, 14.0), (13.0, 3.6)]),
+    IconStroke::Line(&[(1.4, 6.4), (14.6, 6.4)]),
+    IconStroke::Line(&[(1.4, 10.6), (14.6, 10.6)]),
 ];
-pub(crate) const SHRUBS: &[Part] = &[
-    Part::Arc((4.8, 12.6), 3.2, 180.0, 360.0),
-    Part::Arc((11.2, 12.6), 3.2, 180.0, 360.0),
-    Part::Arc((8.0, 9.2), 3.4, 190.0, 350.0),
-    Part::Line(&[(1.6, 12.6), (14.4, 12.6)]),
+pub(crate) const SHRUBS: &[IconStroke] = &[
+    IconStroke::Arc((4.8, 12.6), 3.2, 180.0, 360.0),
+    IconStroke::Arc((11.2, 12.6), 3.2, 180.0, 360.0),
+    IconStroke::Arc((8.0, 9.2), 3.4, 190.0, 350.0),
+    IconStroke::Line(&[(1.6, 12.6), (14.4, 12.6)]),
 ];
-pub(crate) const LAMP: &[Part] = &[
-    Part::Line(&[(5.0, 14.2), (5.0, 2.6), (12.2, 2.6)]),
-    Part::Line(&[(10.2, 2.6), (10.2, 5.0), (13.6, 5.0), (13.6, 2.6)]),
-    Part::Line(&[(3.2, 14.2), (6.8, 14.2)]),
+pub(crate) const LAMP: &[IconStroke] = &[
+    IconStroke::Line(&[(5.0, 14.2), (5.0, 2.6), (12.2, 2.6)]),
+    IconStroke::Line(&[(10.2, 2.6), (10.2, 5.0), (13.6, 5.0), (13.6, 2.6)]),
+    IconStroke::Line(&[(3.2, 14.2), (6.8, 14.2)]),
 ];
-pub(crate) const LOCK: &[Part] = &[
-    Part::Closed(&[(3.5, 7.2), (12.5, 7.2), (12.5, 13.6), (3.5, 13.6)]),
-    Part::Arc((8.0, 6.8), 3.1, 180.0, 360.0),
+pub(crate) const LOCK: &[IconStroke] = &[
+    IconStroke::Closed(&[(3.5, 7.2), (12.5, 7.2), (12.5, 13.6), (3.5, 13.6)]),
+    IconStroke::Arc((8.0, 6.8), 3.1, 180.0, 360.0),
 ];
-pub(crate) const MAP: &[Part] = &[
-    Part::Closed(&[
+pub(crate) const MAP: &[IconStroke] = &[
+    IconStroke::Closed(&[
         (2.0, 3.5),
         (6.0, 2.2),
         (10.0, 3.8),
@@ -232,21 +241,21 @@ pub(crate) const MAP: &[Part] = &[
         (6.0, 12.2),
         (2.0, 13.5),
     ]),
-    Part::Line(&[(6.0, 2.2), (6.0, 12.2)]),
-    Part::Line(&[(10.0, 3.8), (10.0, 13.8)]),
+    IconStroke::Line(&[(6.0, 2.2), (6.0, 12.2)]),
+    IconStroke::Line(&[(10.0, 3.8), (10.0, 13.8)]),
 ];
-pub(crate) const SWEEP: &[Part] = &[
-    Part::Dot((8.0, 12.6), 1.4),
-    Part::Arc((8.0, 12.6), 4.4, 205.0, 335.0),
-    Part::Arc((8.0, 12.6), 8.0, 210.0, 330.0),
+pub(crate) const SWEEP: &[IconStroke] = &[
+    IconStroke::Dot((8.0, 12.6), 1.4),
+    IconStroke::Arc((8.0, 12.6), 4.4, 205.0, 335.0),
+    IconStroke::Arc((8.0, 12.6), 8.0, 210.0, 330.0),
 ];
-pub(crate) const SIDES: &[Part] = &[
-    Part::Closed(&[(2.0, 2.5), (7.0, 2.5), (7.0, 7.0), (2.0, 7.0)]),
-    Part::Closed(&[(9.0, 2.5), (14.0, 2.5), (14.0, 7.0), (9.0, 7.0)]),
-    Part::Closed(&[(2.0, 9.0), (7.0, 9.0), (7.0, 13.5), (2.0, 13.5)]),
+pub(crate) const SIDES: &[IconStroke] = &[
+    IconStroke::Closed(&[(2.0, 2.5), (7.0, 2.5), (7.0, 7.0), (2.0, 7.0)]),
+    IconStroke::Closed(&[(9.0, 2.5), (14.0, 2.5), (14.0, 7.0), (9.0, 7.0)]),
+    IconStroke::Closed(&[(2.0, 9.0), (7.0, 9.0), (7.0, 13.5), (2.0, 13.5)]),
 ];
-pub(crate) const WORDS: &[Part] = &[
-    Part::Closed(&[
+pub(crate) const WORDS: &[IconStroke] = &[
+    IconStroke::Closed(&[
         (2.0, 3.0),
         (14.0, 3.0),
         (14.0, 11.0),
@@ -255,41 +264,44 @@ pub(crate) const WORDS: &[Part] = &[
         (5.0, 11.0),
         (2.0, 11.0),
     ]),
-    Part::Line(&[(4.6, 6.0), (11.4, 6.0)]),
-    Part::Line(&[(4.6, 8.4), (9.0, 8.4)]),
+    IconStroke::Line(&[(4.6, 6.0), (11.4, 6.0)]),
+    IconStroke::Line(&[(4.6, 8.4), (9.0, 8.4)]),
 ];
-pub(crate) const STACK: &[Part] = &[
-    Part::Closed(&[(8.0, 2.2), (14.0, 5.2), (8.0, 8.2), (2.0, 5.2)]),
-    Part::Line(&[(2.0, 8.2), (8.0, 11.2), (14.0, 8.2)]),
-    Part::Line(&[(2.0, 11.0), (8.0, 14.0), (14.0, 11.0)]),
+pub(crate) const STACK: &[IconStroke] = &[
+    IconStroke::Closed(&[(8.0, 2.2), (14.0, 5.2), (8.0, 8.2), (2.0, 5.2)]),
+    IconStroke::Line(&[(2.0, 8.2), (8.0, 11.2), (14.0, 8.2)]),
+    IconStroke::Line(&[(2.0, 11.0), (8.0, 14.0), (14.0, 11.0)]),
 ];
-pub(crate) const LIST: &[Part] = &[
-    Part::Dot((3.0, 4.0), 1.1),
-    Part::Dot((3.0, 8.0), 1.1),
-    Part::Dot((3.0, 12.0), 1.1),
-    Part::Line(&[(6.0, 4.0), (14.0, 4.0)]),
-    Part::Line(&[(6.0, 8.0), (14.0, 8.0)]),
-    Part::Line(&[(6.0, 12.0), (14.0, 12.0)]),
+pub(crate) const LIST: &[IconStroke] = &[
+    IconStroke::Dot((3.0, 4.0), 1.1),
+    IconStroke::Dot((3.0, 8.0), 1.1),
+    IconStroke::Dot((3.0, 12.0), 1.1),
+    IconStroke::Line(&[(6.0, 4.0), (14.0, 4.0)]),
+    IconStroke::Line(&[(6.0, 8.0), (14.0, 8.0)]),
+    IconStroke::Line(&[(6.0, 12.0), (14.0, 12.0)]),
 ];
-pub(crate) const TICK: &[Part] = &[
-    Part::Closed(&[(2.5, 2.5), (13.5, 2.5), (13.5, 13.5), (2.5, 13.5)]),
-    Part::Line(&[(5.0, 8.2), (7.2, 10.6), (11.2, 5.4)]),
+pub(crate) const TICK: &[IconStroke] = &[
+    IconStroke::Closed(&[(2.5, 2.5), (13.5, 2.5), (13.5, 13.5), (2.5, 13.5)]),
+    IconStroke::Line(&[(5.0, 8.2), (7.2, 10.6), (11.2, 5.4)]),
 ];
-pub(crate) const SUN: &[Part] = &[
-    Part::Circle((8.0, 8.0), 3.0),
-    Part::Line(&[(8.0, 1.2), (8.0, 3.2)]),
-    Part::Line(&[(8.0, 12.8), (8.0, 14.8)]),
-    Part::Line(&[(1.2, 8.0), (3.2, 8.0)]),
-    Part::Line(&[(12.8, 8.0), (14.8, 8.0)]),
-    Part::Line(&[(3.2, 3.2), (4.6, 4.6)]),
-    Part::Line(&[(11.4, 11.4), (12.8, 12.8)]),
-    Part::Line(&[(3.2, 12.8), (4.6, 11.4)]),
-    Part::Line(&[(11.4, 4.6), (12.8, 3.2)]),
+pub(crate) const SUN: &[IconStroke] = &[
+    IconStroke::Circle((8.0, 8.0), 3.0),
+    IconStroke::Line(&[(8.0, 1.2), (8.0, 3.2)]),
+    IconStroke::Line(&[(8.0, 12.8), (8.0, 14.8)]),
+    IconStroke::Line(&[(1.2, 8.0), (3.2, 8.0)]),
+    IconStroke::Line(&[(12.8, 8.0), (14.8, 8.0)]),
+    IconStroke::Line(&[(3.2, 3.2), (4.6, 4.6)]),
+    IconStroke::Line(&[(11.4, 11.4), (12.8, 12.8)]),
+    IconStroke::Line(&[(3.2, 12.8), (4.6, 11.4)]),
+    IconStroke::Line(&[(11.4, 4.6), (12.8, 3.2)]),
 ];
-pub(crate) const BARS: &[Part] = &[
-    Part::Line(&[(2.2, 13.8), (13.8, 13.8)]),
-    Part::Closed(&[(3.0, 8.6), (5.4, 8.6), (5.4, 13.8), (3.0, 13.8)]),
-    Part::Closed(&[(6.8, 3.0), (9.2, 3.0), (9.2, 13.8), (6.8, 13.8)]),
-    Part::Closed(&[(10.6, 6.0), (13.0, 6.0), (13.0, 13.8), (10.6, 13.8)]),
+pub(crate) const BARS: &[IconStroke] = &[
+    IconStroke::Line(&[(2.2, 13.8), (13.8, 13.8)]),
+    IconStroke::Closed(&[(3.0, 8.6), (5.4, 8.6), (5.4, 13.8), (3.0, 13.8)]),
+    IconStroke::Closed(&[(6.8, 3.0), (9.2, 3.0), (9.2, 13.8), (6.8, 13.8)]),
+    IconStroke::Closed(&[(10.6, 6.0), (13.0, 6.0), (13.0, 13.8), (10.6, 13.8)]),
 ];
-pub(crate) const CIRCLE: &[Part] = &[Part::Circle((8.0, 8.0), 6.0), Part::Circle((8.0, 8.0), 0.9)];
+pub(crate) const CIRCLE: &[IconStroke] = &[
+    IconStroke::Circle((8.0, 8.0), 6.0),
+    IconStroke::Circle((8.0, 8.0), 0.9),
+];

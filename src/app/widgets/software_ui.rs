@@ -19,12 +19,12 @@ pub fn install(ctx: &Context, render_state: &RenderState) {
     if software && !render_state.target_format.is_srgb() {
         let painter = UiPainter::new(&render_state.device, render_state.target_format);
         ctx.add_plugin(SoftwareUi {
-            shared: Arc::new(Mutex::new(Shared {
+            shared: Arc::new(Mutex::new(SharedPainter {
                 painter,
                 waiting: Damage::All,
             })),
             render_state: render_state.clone(),
-            before: Before::default(),
+            before: PreviousFrame::default(),
             touched: Vec::new(),
             sizes: HashMap::new(),
         });
@@ -58,7 +58,7 @@ impl Damage {
     }
 }
 
-struct Shared {
+struct SharedPainter {
     painter: UiPainter,
     /// Damage that is not drawn yet.
     waiting: Damage,
@@ -66,7 +66,7 @@ struct Shared {
 
 /// The frame handed over last.
 #[derive(Default)]
-struct Before {
+struct PreviousFrame {
     frame: Arc<Frame>,
     scale: f32,
     screen: Option<Rect>,
@@ -74,9 +74,9 @@ struct Before {
 }
 
 struct SoftwareUi {
-    shared: Arc<Mutex<Shared>>,
+    shared: Arc<Mutex<SharedPainter>>,
     render_state: RenderState,
-    before: Before,
+    before: PreviousFrame,
     touched: Vec<Touched>,
     sizes: HashMap<TextureId, [usize; 2]>, // of egui's textures
 }
@@ -139,13 +139,13 @@ impl egui::Plugin for SoftwareUi {
             false => Damage::All,
         });
         self.touched.clear();
-        self.before = Before {
+        self.before = PreviousFrame {
             frame: frame.clone(),
             scale,
             screen: Some(screen),
             clear,
         };
-        let all = Painted {
+        let all = UiPaintCallback {
             frame,
             clear,
             shared: self.shared.clone(),
@@ -174,14 +174,14 @@ fn common(a: [u32; 4], b: [u32; 4]) -> Option<[u32; 4]> {
     (high[0] > low[0] && high[1] > low[1]).then(|| [low[0], low[1], high[0] - low[0], high[1] - low[1]])
 }
 
-struct Painted {
+struct UiPaintCallback {
     frame: Arc<Frame>,
     clear: [f32; 4],
-    shared: Arc<Mutex<Shared>>,
+    shared: Arc<Mutex<SharedPainter>>,
     render_state: RenderState,
 }
 
-impl CallbackTrait for Painted {
+impl CallbackTrait for UiPaintCallback {
     fn prepare(
         &self,
         device: &wgpu::Device,

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use egui::{DragValue, Ui};
 use glam::DVec2;
 
-use crate::batch::plan::{Axis, Base, Change, FORMAT, Generate, Output, Plan, Seeds, VERSION, Value};
+use crate::batch::plan::{
+    Base, BatchGeneration, BatchPlan, FORMAT, Output, Seeds, VERSION, Value, VariantChange, VariationAxis,
+};
 use language::{t, tf};
 use scene::{BoxId, Scene, TimeOfDay, Weather};
 use widgets::{icons, theme};
@@ -38,7 +40,7 @@ impl Range {
         let last = (self.steps.max(2) - 1) as f64;
         let by_m = |i: usize| direction * (self.reach_m * (2.0 * i as f64 / last - 1.0));
         let value = |i| {
-            Value::One(Change::Offset {
+            Value::One(VariantChange::Offset {
                 id,
                 by_m: by_m(i),
                 turn_deg: 0.0,
@@ -97,18 +99,18 @@ impl PlanForm {
     }
 
     /// The plan for variants of a scene that lies in the output folder.
-    pub fn plan(&self, scene: &Scene, chosen: Option<BoxId>) -> Plan {
+    pub fn plan(&self, scene: &Scene, chosen: Option<BoxId>) -> BatchPlan {
         let mut sweep = Vec::new();
         let mut axis = |name: &str, values: Vec<Value>| {
             if !values.is_empty() {
-                sweep.push(Axis {
+                sweep.push(VariationAxis {
                     name: name.into(),
                     values,
                     seeds: None,
                 });
             }
         };
-        let conditions = |time, weather| Value::One(Change::Conditions { time, weather });
+        let conditions = |time, weather| Value::One(VariantChange::Conditions { time, weather });
         axis(
             "time",
             self.times.iter().map(|t| conditions(Some(*t), None)).collect(),
@@ -126,7 +128,7 @@ impl PlanForm {
             }
         }
         if self.quality.is_some() {
-            sweep.push(Axis {
+            sweep.push(VariationAxis {
                 name: "seed".into(),
                 values: Vec::new(),
                 seeds: Some(Seeds {
@@ -140,14 +142,14 @@ impl PlanForm {
             size: Some(self.size_px),
             learned_lidar: false,
         };
-        Plan {
+        BatchPlan {
             format: FORMAT.into(),
             version: VERSION,
             base: Base::Scene(BASE.into()),
             seed: scene.seed,
             sweep,
             sample: None,
-            generate: self.quality.clone().map(|quality| Generate {
+            generate: self.quality.clone().map(|quality| BatchGeneration {
                 quality,
                 whole: false,
             }),
@@ -360,7 +362,7 @@ mod tests {
         assert_eq!((plan.count(), plan.problem()), (6, None));
         let offsets: Vec<f64> = (0..3)
             .map(|i| match &plan.sweep[2].value(i)[0] {
-                Change::Offset { by_m, .. } => by_m.x,
+                VariantChange::Offset { by_m, .. } => by_m.x,
                 other => panic!("{other:?}"),
             })
             .collect();

@@ -7,7 +7,7 @@ use egui::accesskit::Role;
 use egui::{Color32, Rect, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2};
 
 use super::batch_plan::PlanForm;
-use crate::batch::queue::{Item, Priority, Queue, State};
+use crate::batch::queue::{BatchState, Item, Priority, Queue};
 use language::{t, tf};
 use scene::{BoxId, Scene};
 use widgets::{icons, theme};
@@ -34,7 +34,7 @@ pub struct BatchesInput<'a> {
 }
 
 /// Request of the user.
-pub enum Asked {
+pub enum BatchAction {
     /// Add the batch of the form.
     Add,
     /// Open a variant as a scene.
@@ -47,7 +47,7 @@ pub enum Asked {
 
 /// Filter of the variants.
 #[derive(Clone, Copy, Default, PartialEq)]
-enum Shown {
+enum VariantFilter {
     #[default]
     All,
     Starred,
@@ -63,7 +63,7 @@ pub struct BatchesWindow {
     pub is_new: bool,
     /// The batch whose variants are shown.
     pub chosen: Option<u64>,
-    shown: Shown,
+    shown: VariantFilter,
     pictures: HashMap<PathBuf, Option<TextureHandle>>,
 }
 
@@ -74,7 +74,7 @@ impl BatchesWindow {
             form: PlanForm::new(folder),
             is_new: true,
             chosen: None,
-            shown: Shown::All,
+            shown: VariantFilter::All,
             pictures: HashMap::new(),
         }
     }
@@ -86,7 +86,7 @@ impl BatchesWindow {
         queue: &mut Queue,
         input: &BatchesInput<'_>,
         open: &mut bool,
-    ) -> Option<Asked> {
+    ) -> Option<BatchAction> {
         let mut asked = None;
         egui::Window::new(t("Batches"))
             .id(egui::Id::unique("batches"))
@@ -110,7 +110,7 @@ impl BatchesWindow {
                         }
                         None => {
                             let add = self.form.ui(ui, input.scene, input.chosen, input.qualities);
-                            asked = add.then_some(Asked::Add);
+                            asked = add.then_some(BatchAction::Add);
                         }
                     }
                 });
@@ -138,14 +138,18 @@ impl BatchesWindow {
         });
     }
 
-    fn sheet(&mut self, ui: &mut Ui, item: &Item) -> Option<Asked> {
+    fn sheet(&mut self, ui: &mut Ui, item: &Item) -> Option<BatchAction> {
         let all = item.plan.count();
         let marks = &item.marks;
         let kinds = [
-            (Shown::All, t("All"), t("every variant")),
-            (Shown::Kept, t("Kept"), t("without those that were discarded")),
-            (Shown::Starred, t("Starred"), t("with a star")),
-            (Shown::Failed, t("Failed"), t("could not be made")),
+            (VariantFilter::All, t("All"), t("every variant")),
+            (
+                VariantFilter::Kept,
+                t("Kept"),
+                t("without those that were discarded"),
+            ),
+            (VariantFilter::Starred, t("Starred"), t("with a star")),
+            (VariantFilter::Failed, t("Failed"), t("could not be made")),
         ];
         icons::segments(ui, &mut self.shown, &kinds);
         let failed = |v: usize| {
@@ -156,10 +160,10 @@ impl BatchesWindow {
         };
         let shown: Vec<usize> = (0..all)
             .filter(|v| match self.shown {
-                Shown::All => true,
-                Shown::Kept => !marks.discarded.contains(v),
-                Shown::Starred => marks.starred.contains(v),
-                Shown::Failed => failed(*v).is_some(),
+                VariantFilter::All => true,
+                VariantFilter::Kept => !marks.discarded.contains(v),
+                VariantFilter::Starred => marks.starred.contains(v),
+                VariantFilter::Failed => failed(*v).is_some(),
             })
             .collect();
         if item.plan.pack.is_some() {
@@ -185,7 +189,7 @@ impl BatchesWindow {
                         for variant in shown.iter().skip(row * columns).take(columns) {
                             let path = item.output.join(format!("{variant:06}")).join("thumb.png");
                             let texture = self.picture(ui, path, &mut may_read);
-                            let cell = Cell {
+                            let cell = VariantTile {
                                 item,
                                 variant: *variant,
                                 texture,
@@ -234,19 +238,19 @@ fn cell_size() -> egui::Vec2 {
 fn told(item: &Item, is_next: bool) -> (Color32, String) {
     let of = item.plan.count();
     match &item.state {
-        State::Waiting if is_next => (theme::text_weak(), t("is next").into()),
-        State::Waiting => (theme::text_weak(), t("waits").into()),
-        State::Running => (
+        BatchState::Waiting if is_next => (theme::text_weak(), t("is next").into()),
+        BatchState::Waiting => (theme::text_weak(), t("waits").into()),
+        BatchState::Running => (
             theme::accent(),
             tf!("{done} of {all}", done = item.done, all = of),
         ),
-        State::Paused => (
+        BatchState::Paused => (
             theme::warn(),
             tf!("paused, {done} of {all}", done = item.done, all = of),
         ),
-        State::Done(_) if item.failed.is_empty() => (theme::good(), tf!("{n} ready", n = of)),
-        State::Done(_) => (theme::warn(), tf!("{n} failed", n = item.failed.len())),
-        State::Failed(_) => (theme::bad(), t("failed").into()),
+        BatchState::Done(_) if item.failed.is_empty() => (theme::good(), tf!("{n} ready", n = of)),
+        BatchState::Done(_) => (theme::warn(), tf!("{n} failed", n = item.failed.len())),
+        BatchState::Failed(_) => (theme::bad(), t("failed").into()),
     }
 }
 
@@ -270,13 +274,13 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
         if icons::segments(ui, &mut chosen, &names) {
             queue.set_priority(id, chosen);
         }
-        let can_be_next = state == State::Waiting && queue.next_up() != Some(id);
+        let can_be_next = state == BatchState::Waiting && queue.next_up() != Some(id);
         let next = ui.add_enabled(can_be_next, egui::Button::new(t("Run next")));
         if next.on_hover_text(t("before all others that wait")).clicked() {
             queue.run_next(id);
         }
         match &state {
-            State::Running | State::Waiting => {
+            BatchState::Running | BatchState::Waiting => {
                 if ui
                     .button(t("Pause"))
                     .on_hover_text(t("after the variant at hand"))
@@ -285,22 +289,22 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
                     queue.pause(id);
                 }
             }
-            State::Paused => {
+            BatchState::Paused => {
                 if ui.button(t("Go on")).clicked() {
                     queue.resume(id);
                 }
             }
-            State::Done(report) if !report.failed.is_empty() => {
+            BatchState::Done(report) if !report.failed.is_empty() => {
                 if ui.button(t("Try the failed ones again")).clicked() {
                     queue.resume(id);
                 }
             }
-            State::Failed(_) => {
+            BatchState::Failed(_) => {
                 if ui.button(t("Try again")).clicked() {
                     queue.resume(id);
                 }
             }
-            State::Done(_) => {}
+            BatchState::Done(_) => {}
         }
         if ui
             .button(t("Take out of the queue"))
@@ -311,10 +315,10 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
         }
     });
     match &state {
-        State::Failed(why) => {
+        BatchState::Failed(why) => {
             ui.colored_label(theme::bad(), why);
         }
-        State::Done(_) => {}
+        BatchState::Done(_) => {}
         _ => {
             let text = tf!("{done} of {all}", done = done, all = of);
             let bar = egui::ProgressBar::new(done as f32 / of.max(1) as f32).text(text);
@@ -324,15 +328,15 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
 }
 
 /// One variant in the list.
-struct Cell<'a> {
+struct VariantTile<'a> {
     item: &'a Item,
     variant: usize,
     texture: Option<egui::TextureId>,
     failed: Option<&'a str>,
 }
 
-impl Cell<'_> {
-    fn ui(&self, ui: &mut Ui, size: egui::Vec2) -> Option<Asked> {
+impl VariantTile<'_> {
+    fn ui(&self, ui: &mut Ui, size: egui::Vec2) -> Option<BatchAction> {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
         let (id, variant) = (self.item.id, self.variant);
         let is_starred = self.item.marks.starred.contains(&variant);
@@ -386,8 +390,8 @@ impl Cell<'_> {
             icons::focus_ring(ui, &clicked, button);
             if clicked.on_hover_text(hint).clicked() {
                 asked = Some(match i {
-                    0 => Asked::Star(id, variant),
-                    _ => Asked::Discard(id, variant),
+                    0 => BatchAction::Star(id, variant),
+                    _ => BatchAction::Discard(id, variant),
                 });
             }
         }
@@ -399,31 +403,31 @@ impl Cell<'_> {
             changes = changes
         );
         if response.on_hover_text(text).double_clicked() {
-            asked = Some(Asked::Open(id, variant));
+            asked = Some(BatchAction::Open(id, variant));
         }
         asked
     }
 
     /// The variant's number and its changes from the base, short.
     fn changes(&self) -> String {
-        use crate::batch::plan::Change;
+        use crate::batch::plan::VariantChange;
         let values = self.item.plan.values_of(self.variant);
         let mut parts = vec![format!("{}", self.variant)];
         for (axis, value) in self.item.plan.sweep.iter().zip(values) {
             for change in axis.value(value) {
                 parts.push(match change {
-                    Change::Seed(seed) => tf!("seed {seed}", seed = seed),
-                    Change::Base(_) | Change::Edits(_) => format!("{} {value}", axis.name),
-                    Change::Conditions { time, weather } => {
+                    VariantChange::Seed(seed) => tf!("seed {seed}", seed = seed),
+                    VariantChange::Base(_) | VariantChange::Edits(_) => format!("{} {value}", axis.name),
+                    VariantChange::Conditions { time, weather } => {
                         let names = [time.map(|time| t(time.name())), weather.map(|w| t(w.name()))];
                         names.into_iter().flatten().collect::<Vec<_>>().join(" ")
                     }
-                    Change::Words(words) => words,
-                    Change::Offset { by_m, .. } => match by_m.y == 0.0 {
+                    VariantChange::Words(words) => words,
+                    VariantChange::Offset { by_m, .. } => match by_m.y == 0.0 {
                         true => tf!("{m} m ahead", m = format!("{:+.1}", by_m.x)),
                         false => tf!("{m} m left", m = format!("{:+.1}", by_m.y)),
                     },
-                    Change::Count { class, n } => format!("{n} {}", t(&class.label())),
+                    VariantChange::Count { class, n } => format!("{n} {}", t(&class.label())),
                 });
             }
         }

@@ -6,7 +6,7 @@ use egui::{DragValue, Ui};
 
 use crate::camera_views::LidarModel;
 use crate::export::{ExportOptions, ExportProgress, Format};
-use formats::export::{Product, Span};
+use formats::export::{ExportSpan, Product};
 use language::{t, tf};
 use sensors::cameras::{self, ViewId};
 use widgets::{icons, theme};
@@ -25,7 +25,7 @@ pub struct ExportInput<'a> {
 }
 
 /// Request of the user.
-pub enum Asked {
+pub enum ExportAction {
     /// Write these formats.
     Write(Vec<Format>),
     /// Choose the path with the system's file dialog.
@@ -96,7 +96,7 @@ pub fn export_window(
     input: &ExportInput<'_>,
     dialog: &mut ExportDialog,
     open: &mut bool,
-) -> Option<Asked> {
+) -> Option<ExportAction> {
     let mut asked = None;
     egui::Window::new(t("Export"))
         .id(egui::Id::unique("export"))
@@ -114,7 +114,7 @@ pub fn export_window(
                 ui.label(if folder { t("Folder") } else { t("File") });
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     if input.browse && ui.button(t("Browse…")).clicked() {
-                        asked = Some(Asked::Browse);
+                        asked = Some(ExportAction::Browse);
                     }
                     let field = egui::TextEdit::singleline(&mut dialog.path).desired_width(f32::INFINITY);
                     ui.add(field).accessible_name(t("Export path"));
@@ -135,7 +135,7 @@ pub fn export_window(
                 ui.horizontal(|ui| {
                     ui.colored_label(ui.visuals().warn_fg_color, text);
                     if ui.small_button(t("Show checks")).clicked() {
-                        asked = Some(Asked::Checks);
+                        asked = Some(ExportAction::Checks);
                     }
                 });
                 ui.checkbox(&mut dialog.anyway, t("Export all the same"))
@@ -148,7 +148,7 @@ pub fn export_window(
                 let button = egui::Button::new(t("Export files")).fill(ui.visuals().selection.bg_fill);
                 if ui.add_enabled(enabled, button).clicked() {
                     let formats = dialog.format.map_or_else(formats::export::usual, |f| vec![f]);
-                    asked = Some(Asked::Write(formats));
+                    asked = Some(ExportAction::Write(formats));
                 }
                 if let Some(progress) = input.busy {
                     busy(ui, progress);
@@ -282,8 +282,8 @@ fn kinds(ui: &mut Ui, dialog: &mut ExportDialog) {
     );
     if let Some(format) = dialog.format {
         let span = match format.span {
-            Span::Moment => t("The moment that is shown."),
-            Span::Clip => t("The whole clip."),
+            ExportSpan::Moment => t("The moment that is shown."),
+            ExportSpan::Clip => t("The whole clip."),
         };
         ui.weak(match format.lost {
             "" => span.to_owned(),

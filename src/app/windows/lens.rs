@@ -10,19 +10,19 @@ use scene::{Camera, Lens, ReadOut, Shutter};
 use widgets::theme;
 
 /// A kind of lens, with the values to begin with.
-struct Kind {
+struct LensPreset {
     title: &'static str,
     hint: &'static str,
     lens: Lens,
 }
 
-const KINDS: [Kind; 4] = [
-    Kind {
+const KINDS: [LensPreset; 4] = [
+    LensPreset {
         title: "Pinhole",
         hint: "Straight lines stay straight",
         lens: Lens::Pinhole,
     },
-    Kind {
+    LensPreset {
         title: "Distorted",
         hint: "OpenCV's model: radial k1 to k6, tangential p1, p2",
         lens: Lens::Distorted {
@@ -30,7 +30,7 @@ const KINDS: [Kind; 4] = [
             p: [0.0; 2],
         },
     },
-    Kind {
+    LensPreset {
         title: "Fisheye",
         hint: "Kannala and Brandt, as OpenCV's fisheye: k1 to k4. Depths are distances",
         lens: Lens::Fisheye {
@@ -38,7 +38,7 @@ const KINDS: [Kind; 4] = [
             max_angle_deg: 95.0,
         },
     },
-    Kind {
+    LensPreset {
         title: "f-theta",
         hint: "Radius as a polynomial of the angle: c1 to c6. Depths are distances",
         lens: Lens::FTheta {

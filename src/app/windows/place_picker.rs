@@ -41,7 +41,7 @@ pub struct PlacePicker {
 impl PlacePicker {
     /// A picker at the place that the network suggests.
     pub fn new(network: RoadNetwork, name: String) -> Self {
-        let line = |road: &formats::opendrive::Road| {
+        let line = |road: &formats::opendrive::XodrRoad| {
             let length_m = road.length_m();
             let steps = (length_m / STEP_M).ceil().clamp(1.0, MOST_POINTS) as usize;
             let point = |i: usize| road.reference.at(length_m * i as f64 / steps as f64).position_m;

@@ -8,7 +8,7 @@ use widgets::theme;
 
 /// Answer of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum RecoveryChoice {
     /// Open it.
     Recover,
     /// Remove it for good.
@@ -18,7 +18,7 @@ pub enum Answer {
 }
 
 /// Asks about one scene; `None` until there is an answer. `more` is the number of further offers.
-pub fn recovery_ui(ui: &Ui, offer: &Stale, more: usize) -> Option<Answer> {
+pub fn recovery_ui(ui: &Ui, offer: &Stale, more: usize) -> Option<RecoveryChoice> {
     let mut answer = None;
     let modal = Modal::new(Id::unique("recovery"))
         .frame(theme::dialog_frame(ui.style()))
@@ -46,18 +46,18 @@ pub fn recovery_ui(ui: &Ui, offer: &Stale, more: usize) -> Option<Answer> {
                     .add(egui::Button::new(t("Recover")).fill(ui.visuals().selection.bg_fill))
                     .clicked()
                 {
-                    answer = Some(Answer::Recover);
+                    answer = Some(RecoveryChoice::Recover);
                 }
                 if ui.button(t("Later")).clicked() {
-                    answer = Some(Answer::Later);
+                    answer = Some(RecoveryChoice::Later);
                 }
                 if ui.button(t("Discard")).clicked() {
-                    answer = Some(Answer::Discard);
+                    answer = Some(RecoveryChoice::Discard);
                 }
             });
         });
     if answer.is_none() && modal.should_close() {
-        answer = Some(Answer::Later);
+        answer = Some(RecoveryChoice::Later);
     }
     answer
 }

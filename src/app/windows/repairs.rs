@@ -4,9 +4,9 @@ use egui::{RichText, Ui};
 
 use crate::command::{Command, RepairCommand, ViewCommand};
 use crate::panes::checks::in_words;
-use crate::shell::planning::Shown;
-use editor::checks::Counts;
-use editor::fix::{Plan, Stays};
+use crate::shell::planning::RepairPlanState;
+use editor::checks::SeverityCounts;
+use editor::fix::{RepairPlan, Stays};
 use language::{t, tf};
 use scene::SceneRev;
 use widgets::theme;
@@ -16,7 +16,7 @@ const WIDTH: f32 = 560.0;
 const LIST: f32 = 300.0;
 
 /// Draws the window; `now` is the state to which the repairs would be applied.
-pub fn repairs_ui(ui: &Ui, shown: &Shown, now: SceneRev, commands: &mut Vec<Command>) {
+pub fn repairs_ui(ui: &Ui, shown: &RepairPlanState, now: SceneRev, commands: &mut Vec<Command>) {
     let mut open = true;
     egui::Window::new(t("Repairs"))
         .id(egui::Id::unique("repairs"))
@@ -27,7 +27,7 @@ pub fn repairs_ui(ui: &Ui, shown: &Shown, now: SceneRev, commands: &mut Vec<Comm
         .show(ui.ctx(), |ui| {
             ui.set_width(WIDTH);
             match shown {
-                Shown::Planning(progress) => {
+                RepairPlanState::Planning(progress) => {
                     let text = match progress {
                         Some(p) => tf!(
                             "Trying repairs: {n} of {all}, {kept} help",
@@ -47,7 +47,7 @@ pub fn repairs_ui(ui: &Ui, shown: &Shown, now: SceneRev, commands: &mut Vec<Comm
                     });
                     ui.weak(t("Nothing is changed before you have seen the list."));
                 }
-                Shown::Planned(plan) => planned(ui, plan, plan.of != now, commands),
+                RepairPlanState::Planned(plan) => planned(ui, plan, plan.of != now, commands),
             }
         });
     if !open {
@@ -55,8 +55,8 @@ pub fn repairs_ui(ui: &Ui, shown: &Shown, now: SceneRev, commands: &mut Vec<Comm
     }
 }
 
-fn planned(ui: &mut Ui, plan: &Plan, stale: bool, commands: &mut Vec<Command>) {
-    let open = |counts: Counts| in_words(Counts { infos: 0, ..counts });
+fn planned(ui: &mut Ui, plan: &RepairPlan, stale: bool, commands: &mut Vec<Command>) {
+    let open = |counts: SeverityCounts| in_words(SeverityCounts { infos: 0, ..counts });
     ui.label(match plan.repairs.is_empty() {
         true => t("No repair makes the scene better.").to_owned(),
         false => tf!(
@@ -69,16 +69,16 @@ fn planned(ui: &mut Ui, plan: &Plan, stale: bool, commands: &mut Vec<Command>) {
         ui.label(RichText::new(t("Stopped: there may be more.")).color(theme::warn()));
     }
     ui.separator();
-    let rows: Vec<Row<'_>> = plan
+    let rows: Vec<RepairRow<'_>> = plan
         .repairs
         .iter()
-        .map(|r| Row {
+        .map(|r| RepairRow {
             does: t(r.label),
             says: t(&r.finding.text),
             at: r.finding.where_m,
             done: true,
         })
-        .chain(plan.stays.iter().map(|(f, why)| Row {
+        .chain(plan.stays.iter().map(|(f, why)| RepairRow {
             does: reason(*why),
             says: t(&f.text),
             at: f.where_m,
@@ -118,14 +118,14 @@ fn planned(ui: &mut Ui, plan: &Plan, stale: bool, commands: &mut Vec<Command>) {
 }
 
 /// A line of the list.
-struct Row<'a> {
+struct RepairRow<'a> {
     does: &'a str,
     says: &'a str,
     at: glam::DVec3,
     done: bool,
 }
 
-impl Row<'_> {
+impl RepairRow<'_> {
     fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = format!("{}: {}", self.does, self.says);
         let color = match self.done {

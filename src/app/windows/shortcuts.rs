@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Id, Key, Modal, Ui, WidgetInfo, vec2};
 
-use crate::shell::actions::{ACTIONS, ActionDef, Group, When};
+use crate::shell::actions::{ACTIONS, ActionDef, ActionGroup, When};
 use crate::shell::keymap::{Chord, Chords, Keymap, PRESETS};
 use language::{t, tf};
 use widgets::theme;
@@ -62,7 +62,7 @@ impl Shortcuts {
                 .max_height(room.y - 190.0)
                 .show(ui, |ui| {
                     ui.columns_const(|[left, right]: &mut [Ui; 2]| {
-                        for (i, (group, title)) in Group::ALL.into_iter().enumerate() {
+                        for (i, (group, title)) in ActionGroup::ALL.into_iter().enumerate() {
                             let column = if i == 0 || i == 2 { &mut *left } else { &mut *right };
                             self.group(column, group, title, keymap);
                         }
@@ -116,7 +116,7 @@ impl Shortcuts {
         ui.label(egui::RichText::new(text).small().color(color));
     }
 
-    fn group(&mut self, ui: &mut Ui, group: Group, title: &str, keymap: &mut Keymap) {
+    fn group(&mut self, ui: &mut Ui, group: ActionGroup, title: &str, keymap: &mut Keymap) {
         let wanted = self.query.to_lowercase();
         let fits = |a: &&ActionDef| {
             let text = format!("{} {} {}", a.title, keymap.text(a.id), t(a.title)).to_lowercase();

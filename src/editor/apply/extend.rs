@@ -101,22 +101,22 @@ fn over(frame: &Frame, layout: BevLayout) -> Frame {
 
 /// One side of a map: along x or y, at its lower or upper end.
 #[derive(Clone, Copy)]
-struct Side {
+struct MapSide {
     axis: usize,
     upper: bool,
 }
 
-const SIDES: [Side; 4] = [
-    Side {
+const SIDES: [MapSide; 4] = [
+    MapSide {
         axis: 0,
         upper: false,
     },
-    Side { axis: 0, upper: true },
-    Side {
+    MapSide { axis: 0, upper: true },
+    MapSide {
         axis: 1,
         upper: false,
     },
-    Side { axis: 1, upper: true },
+    MapSide { axis: 1, upper: true },
 ];
 
 /// Exit of a lane from the map: its place along the edge, m, and its shift along the edge per metre outward.
@@ -126,7 +126,7 @@ struct Leaving {
     slope: f64,
 }
 
-impl Side {
+impl MapSide {
     fn outward(self) -> DVec2 {
         let sign = if self.upper { 1.0 } else { -1.0 };
         if self.axis == 0 {

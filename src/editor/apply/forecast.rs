@@ -13,7 +13,7 @@ use super::apply_all;
 use crate::checks::meetings;
 use crate::reaching::{reaching, sights_m};
 use crate::traffic::everybody::Everybody;
-use crate::traffic::follow::{Body, Driver, follow};
+use crate::traffic::follow::{Driver, VehicleBody, follow};
 use crate::traffic::lane_path::lane_path;
 use crate::traffic::template;
 
@@ -144,7 +144,7 @@ pub(super) struct Goer {
     pub(super) id: Option<BoxId>,
     now: Moving,
     class: Option<Class>,
-    body: Body,
+    body: VehicleBody,
     there_s: [Option<f64>; 2],
     pub(super) motion: Option<Motion>,
 }

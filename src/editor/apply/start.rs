@@ -7,7 +7,7 @@ use scene::{BoxId, Clip, Edit, Scene};
 
 use super::forecast::{Goer, forecast, goers, together};
 use super::off_lane::off_lane;
-use crate::checks::{Met, meetings};
+use crate::checks::{Collision, meetings};
 use language::tf;
 
 /// Length of a clip that traffic begins, s.
@@ -19,7 +19,7 @@ const MOST_REASONS: usize = 4;
 
 /// Result of letting traffic drive: the objects that drive off, and those that stay.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Start {
+pub struct TrafficStart {
     /// The edits, to be applied as one step.
     pub edits: Vec<Edit>,
     /// Objects that drive off.
@@ -28,7 +28,7 @@ pub struct Start {
     pub stays: BTreeMap<BoxId, String>,
 }
 
-impl Start {
+impl TrafficStart {
     /// The objects that stay and the reasons, in one line for the user; `None` if none stays.
     pub fn said(&self) -> Option<String> {
         if self.stays.is_empty() {
@@ -59,7 +59,7 @@ impl Start {
 /// Lets every object that has a velocity, but no motion, move from the beginning on, unless it collides with a wall, a
 /// standing object, another moving one or the ego vehicle at any time of the clip, by the checks of the editor. A scene
 /// of one moment becomes a clip. Errors in one line.
-pub fn traffic_drives(scene: &Scene) -> Result<Start, String> {
+pub fn traffic_drives(scene: &Scene) -> Result<TrafficStart, String> {
     let mut waiting = goers(scene, 0.0);
     waiting.retain(|g| g.id.is_some() && g.motion.is_none());
     let mut first = Vec::new();
@@ -71,7 +71,7 @@ pub fn traffic_drives(scene: &Scene) -> Result<Start, String> {
             rate_hz: None,
         });
     }
-    let mut start = Start::default();
+    let mut start = TrafficStart::default();
     for look in 0.. {
         if waiting.is_empty() {
             break;
@@ -93,7 +93,7 @@ pub fn traffic_drives(scene: &Scene) -> Result<Start, String> {
 
 /// The objects among `waiting` that should stay, each with the reason; empty if none collides. With `both`, both
 /// objects of a colliding pair stay, otherwise one of them.
-fn who_stays(waiting: &[Goer], met: &[Met], both: bool) -> BTreeMap<BoxId, String> {
+fn who_stays(waiting: &[Goer], met: &[Collision], both: bool) -> BTreeMap<BoxId, String> {
     let goes: BTreeSet<BoxId> = waiting.iter().filter_map(|g| g.id).collect();
     let mut out: BTreeMap<BoxId, String> = BTreeMap::new();
     let mut pairs: Vec<(BoxId, BoxId, &str)> = Vec::new();

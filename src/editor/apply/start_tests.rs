@@ -53,7 +53,7 @@ fn scene(boxes: &[(BoxId, SceneBox)]) -> Scene {
     scene
 }
 
-fn stay(start: &Start) -> Vec<u32> {
+fn stay(start: &TrafficStart) -> Vec<u32> {
     start.stays.keys().map(|id| id.0).collect()
 }
 
@@ -68,7 +68,7 @@ fn traffic_that_only_has_speeds_is_let_drive() {
     apply_all(&start.edits, &mut scene).expect("sound edits");
     let x = |t: f64| scene.at(t).frame().boxes[&BoxId(1)].center_m.x;
     assert!(x(0.0) == 20.0 && (58.0..76.0).contains(&x(5.0)), "{}", x(5.0));
-    assert_eq!(traffic_drives(&scene), Ok(Start::default()));
+    assert_eq!(traffic_drives(&scene), Ok(TrafficStart::default()));
 }
 
 #[test]
@@ -149,5 +149,5 @@ fn a_moment_becomes_a_clip_and_a_scene_without_traffic_stays_one() {
     assert!((50.0..63.0).contains(&x), "{x}");
     let mut still = scene(&[body(1, Class::Car, [30.0, 0.0], 0.0, 0.0)]);
     still.change_clip(|clip| clip.length_s = 0.0);
-    assert_eq!(traffic_drives(&still), Ok(Start::default()));
+    assert_eq!(traffic_drives(&still), Ok(TrafficStart::default()));
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
-use super::{Counts, Finding, Severity};
+use super::{Finding, Severity, SeverityCounts};
 use language::tf;
 use scene::grid::NOT_PAINTED;
 use scene::{BoxId, Recorded, Scene, VoxelPaint};
@@ -14,33 +14,33 @@ use scene::{BoxId, Recorded, Scene, VoxelPaint};
 pub const MOST: usize = 200;
 
 /// Kind of a finding: severity, name of the check, box.
-pub(crate) type Kind = (Severity, &'static str, Option<BoxId>);
+pub(crate) type FindingKind = (Severity, &'static str, Option<BoxId>);
 
 /// How many findings there are of each kind, whether they are listed or not.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Tally(BTreeMap<Kind, usize>);
+pub(crate) struct FindingTally(BTreeMap<FindingKind, usize>);
 
-impl Tally {
+impl FindingTally {
     /// Findings of one kind.
-    pub fn of(&self, kind: Kind) -> usize {
+    pub fn of(&self, kind: FindingKind) -> usize {
         self.0.get(&kind).copied().unwrap_or(0)
     }
 
     /// Kinds that there are, and how many of each.
-    pub fn iter(&self) -> impl Iterator<Item = (Kind, usize)> + '_ {
+    pub fn iter(&self) -> impl Iterator<Item = (FindingKind, usize)> + '_ {
         self.0.iter().map(|(kind, n)| (*kind, *n))
     }
 
     /// How many there are of each severity.
-    pub fn counts(&self) -> Counts {
-        let mut out = Counts::default();
+    pub fn counts(&self) -> SeverityCounts {
+        let mut out = SeverityCounts::default();
         for ((severity, ..), n) in self.iter() {
             *out.of_mut(severity) += n;
         }
         out
     }
 
-    fn add(&mut self, kind: Kind, n: usize) {
+    fn add(&mut self, kind: FindingKind, n: usize) {
         *self.0.entry(kind).or_default() += n;
     }
 }
@@ -48,7 +48,7 @@ impl Tally {
 /// Collects findings check by check.
 pub(super) struct Findings {
     list: Vec<Finding>,
-    tally: Tally,
+    tally: FindingTally,
     /// Findings of each check that are listed at most.
     most: usize,
     /// Boxes that are as a recording has them: findings about them are worth knowing and no mistakes.
@@ -66,7 +66,7 @@ impl Findings {
     pub fn listing(most: usize) -> Self {
         Self {
             list: Vec::new(),
-            tally: Tally::default(),
+            tally: FindingTally::default(),
             most,
             recorded: BTreeSet::new(),
             painted: None,
@@ -128,14 +128,14 @@ impl Findings {
     }
 
     /// Counts a finding that is not listed.
-    pub fn count(&mut self, (severity, check, box_id): Kind, where_m: DVec3) {
+    pub fn count(&mut self, (severity, check, box_id): FindingKind, where_m: DVec3) {
         // Of voxels that are only counted it is not known which were painted.
         let is_recorded = box_id.map_or(self.painted.is_some(), |id| self.is_recorded(id));
         let severity = if is_recorded { Severity::Info } else { severity };
         self.count_as((severity, check, box_id), where_m);
     }
 
-    fn count_as(&mut self, kind: Kind, where_m: DVec3) {
+    fn count_as(&mut self, kind: FindingKind, where_m: DVec3) {
         self.tally.add(kind, 1);
         let severity = kind.0;
         let (n, worst, first_m) = self.more.unwrap_or((0, severity, where_m));
@@ -165,7 +165,7 @@ impl Findings {
     }
 
     /// The listed findings, errors first, and the number of all findings of each kind.
-    pub fn done(mut self) -> (Vec<Finding>, Tally) {
+    pub fn done(mut self) -> (Vec<Finding>, FindingTally) {
         self.list.sort_by_key(|f| std::cmp::Reverse(f.severity));
         (self.list, self.tally)
     }

@@ -26,9 +26,9 @@ use glam::DVec3;
 use super::Edit;
 use findings::Findings;
 pub use findings::MOST;
-pub(crate) use findings::{Kind, Tally};
+pub(crate) use findings::{FindingKind, FindingTally};
 use language::{t, tf};
-pub(crate) use over_time::{Met, meetings};
+pub(crate) use over_time::{Collision, meetings};
 use scene::draft::{ground_bin, ground_class};
 use scene::{BoxId, Class, Extent, Frame, Scene, SceneBox, support};
 
@@ -105,7 +105,7 @@ impl Finding {
 
 /// How many findings there are of each severity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct SeverityCounts {
     /// See [`Severity::Error`].
     pub errors: usize,
     /// See [`Severity::Warning`].
@@ -114,7 +114,7 @@ pub struct Counts {
     pub infos: usize,
 }
 
-impl Counts {
+impl SeverityCounts {
     /// Counts these findings.
     pub fn of<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> Self {
         let mut out = Self::default();
@@ -144,7 +144,7 @@ impl Counts {
 
 /// Pixels and returns of each box in the sensors; a box that is missing counts as 0.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Seen {
+pub struct VisibilityCounts {
     /// Pixels of all cameras together; `None` if no camera was rendered.
     pub camera_pixels: Option<BTreeMap<BoxId, u32>>,
     /// LiDAR returns; `None` if there was no sweep.
@@ -157,7 +157,7 @@ struct Context<'a> {
     frame: &'a Frame,
     /// Boxes whose numbers can be relied on, by id.
     boxes: Vec<SceneBox>,
-    seen: Option<&'a Seen>,
+    seen: Option<&'a VisibilityCounts>,
     /// Moving objects over the course of the clip, made when the first check asks for them.
     over_time: std::cell::OnceCell<over_time::OverTime>,
     /// The frame's occupancy as bits, made when the first check asks for it.
@@ -178,10 +178,10 @@ struct Bits {
     supported: Vec<u16>,
 }
 
-type Check = fn(&Context<'_>, &mut Findings);
+type CheckFunction = fn(&Context<'_>, &mut Findings);
 
 /// Every check, in the order of reports.
-const CHECKS: [(&str, Check); 18] = [
+const CHECKS: [(&str, CheckFunction); 18] = [
     (unsound::NAME, unsound::check),
     (out_of_range::NAME, out_of_range::check),
     (overlapping_boxes::NAME, overlapping_boxes::check),
@@ -234,33 +234,33 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 
 /// Runs every check on the frame being edited; errors first, else in the order of [`names`]. Without `seen` the two
 /// checks that need sensors are left out. Of each check at most [`MOST`] findings are listed; one more counts the rest.
-pub fn run_checks(scene: &Scene, seen: Option<&Seen>) -> Vec<Finding> {
+pub fn run_checks(scene: &Scene, seen: Option<&VisibilityCounts>) -> Vec<Finding> {
     run(scene, seen, &CHECKS, MOST).0
 }
 
 /// The overlapping boxes alone.
 pub(crate) fn overlaps(scene: &Scene) -> Vec<Finding> {
-    let overlapping: (_, Check) = (overlapping_boxes::NAME, overlapping_boxes::check);
+    let overlapping: (_, CheckFunction) = (overlapping_boxes::NAME, overlapping_boxes::check);
     run(scene, None, &[overlapping], MOST).0
 }
 
 /// Findings of all checks that need no sensor, and the number of each kind.
-pub(crate) fn run_counted(scene: &Scene) -> (Vec<Finding>, Tally) {
+pub(crate) fn run_counted(scene: &Scene) -> (Vec<Finding>, FindingTally) {
     run(scene, None, &CHECKS, MOST)
 }
 
 /// The number of findings of each kind by the checks that need no sensor, without a list: several times faster where
 /// there are many.
-pub(crate) fn tally(scene: &Scene) -> Tally {
+pub(crate) fn tally(scene: &Scene) -> FindingTally {
     run(scene, None, &CHECKS, 0).1
 }
 
 fn run(
     scene: &Scene,
-    seen: Option<&Seen>,
-    checks: &[(&'static str, Check)],
+    seen: Option<&VisibilityCounts>,
+    checks: &[(&'static str, CheckFunction)],
     most: usize,
-) -> (Vec<Finding>, Tally) {
+) -> (Vec<Finding>, FindingTally) {
     let frame = scene.frame();
     let highest = |boxes: &BTreeMap<BoxId, SceneBox>| boxes.keys().next_back().map_or(0, |id| id.0);
     let context = Context {

@@ -225,7 +225,7 @@ pub fn backwards(context: &Context<'_>, out: &mut Findings) {
 }
 
 /// A collision: a moving object, and the box or wall that it meets in the course of a clip.
-pub(crate) struct Met {
+pub(crate) struct Collision {
     /// Index of its trace.
     trace: usize,
     /// Box that moves; `None` for the ego vehicle.
@@ -244,14 +244,14 @@ pub(crate) struct Met {
 
 /// All collisions in the course of a clip: first those of moving boxes with any other boxes, then those of boxes with
 /// walls.
-pub(crate) fn meetings(scene: &scene::Scene) -> Vec<Met> {
+pub(crate) fn meetings(scene: &scene::Scene) -> Vec<Collision> {
     let over_time = OverTime::of_scene(scene);
     let mut out = boxes_that_meet(scene, &over_time);
     out.extend(walls_that_are_met(scene, &over_time));
     out
 }
 
-fn boxes_that_meet(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
+fn boxes_that_meet(scene: &scene::Scene, over_time: &OverTime) -> Vec<Collision> {
     let mut standing: Vec<(Option<BoxId>, SceneBox)> = scene
         .canvas()
         .boxes
@@ -264,7 +264,7 @@ fn boxes_that_meet(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
     let mut out = Vec::new();
     for (i, trace) in over_time.traces.iter().enumerate() {
         // The first moment at which each other object is met, and the largest share of area while they overlap.
-        let mut met: BTreeMap<Option<BoxId>, Met> = BTreeMap::new();
+        let mut met: BTreeMap<Option<BoxId>, Collision> = BTreeMap::new();
         for (at, time_s) in over_time.times_s.iter().enumerate() {
             let Some(b) = &trace.at[at] else { continue };
             let moving = over_time.traces[i + 1..].iter().filter_map(|other| {
@@ -284,7 +284,7 @@ fn boxes_that_meet(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
                 if share <= TOLERATED_SHARE {
                     continue;
                 }
-                let first = met.entry(other_id).or_insert_with(|| Met {
+                let first = met.entry(other_id).or_insert_with(|| Collision {
                     trace: i,
                     id: trace.id,
                     other: Ok(other_id),
@@ -306,7 +306,7 @@ fn boxes_that_meet(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
     out
 }
 
-fn walls_that_are_met(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
+fn walls_that_are_met(scene: &scene::Scene, over_time: &OverTime) -> Vec<Collision> {
     let canvas = scene.canvas();
     let (extent, relief) = (canvas.extent(), &canvas.layout.relief);
     let hits = |b: &SceneBox| {
@@ -337,7 +337,7 @@ fn walls_that_are_met(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
             let b = b.as_ref()?;
             Some((at, b, hits(b)?))
         })?;
-        Some(Met {
+        Some(Collision {
             trace: i,
             id: trace.id,
             other: Err(class),
@@ -361,7 +361,7 @@ fn walls_that_are_met(scene: &scene::Scene, over_time: &OverTime) -> Vec<Met> {
     over_time.traces.iter().enumerate().filter_map(of).collect()
 }
 
-fn report(check: &'static str, over_time: &OverTime, met: Vec<Met>, out: &mut Findings) {
+fn report(check: &'static str, over_time: &OverTime, met: Vec<Collision>, out: &mut Findings) {
     for m in met {
         let trace = &over_time.traces[m.trace];
         let Some(b) = &trace.at[m.at] else { continue };

@@ -322,7 +322,7 @@ fn sensors_that_see_nothing_are_told() {
             .map(|id| (BoxId(id), 9))
             .collect()
     };
-    let seen = Seen {
+    let seen = VisibilityCounts {
         camera_pixels: Some(counts(2)),
         lidar_returns: Some(counts(4)),
     };
@@ -333,12 +333,12 @@ fn sensors_that_see_nothing_are_told() {
         [Some(BoxId(2)), Some(BoxId(4))]
     );
     // A count of 0 is no sight either; a sensor that was not asked says nothing.
-    let zero = Seen {
+    let zero = VisibilityCounts {
         camera_pixels: None,
         lidar_returns: Some([(BoxId(1), 0)].into()),
     };
     assert_eq!(checks(&run_checks(&scene, Some(&zero))), ["no_lidar_returns"; 5]);
-    assert_eq!(run_checks(&scene, Some(&Seen::default())), []);
+    assert_eq!(run_checks(&scene, Some(&VisibilityCounts::default())), []);
 }
 
 #[test]

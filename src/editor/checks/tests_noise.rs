@@ -45,7 +45,7 @@ fn noise_is_checked_in_bounds() {
         let scene = noise(seed, percent);
         assert!(scene.frame().boxes.len() <= Frame::MAX_BOXES);
         let start = Instant::now();
-        let findings = run_checks(&scene, Some(&Seen::default()));
+        let findings = run_checks(&scene, Some(&VisibilityCounts::default()));
         let checked_in = start.elapsed();
         for name in names() {
             let of = findings.iter().filter(|f| f.check == name);

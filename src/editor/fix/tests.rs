@@ -9,12 +9,12 @@ use crate::Apply;
 use crate::checks::tests::{object, street, traffic};
 use crate::checks::tests_noise::{noise, random};
 
-fn counts(scene: &Scene) -> Counts {
+fn counts(scene: &Scene) -> SeverityCounts {
     checks::tally(scene).counts()
 }
 
 /// The plan, ended after so many scenes that were tried out.
-fn plan_in(scene: &Scene, tries: usize) -> Plan {
+fn plan_in(scene: &Scene, tries: usize) -> RepairPlan {
     let findings = checks::run_checks(scene, None);
     let mut left = tries;
     plan_all(scene, &findings, &|edits| edits, &mut |_| match left {
@@ -27,7 +27,7 @@ fn plan_in(scene: &Scene, tries: usize) -> Plan {
 }
 
 /// Applies a plan and holds it to what it says: as many errors as it says and never more than before.
-fn holds(scene: &Scene, plan: &Plan, what: &str) -> Counts {
+fn holds(scene: &Scene, plan: &RepairPlan, what: &str) -> SeverityCounts {
     let before = counts(scene);
     let mut after = scene.clone();
     apply_all(&plan.edits(), &mut after).expect("a plan applies");

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use glam::DVec2;
 
-use scene::roads::{Drawn, LAYERS, Owner};
+use scene::roads::{LAYERS, RoadDrawing, RoadElement};
 use scene::{BevLayout, Extent, Frame, Polyline, RoadId, RoadNetwork};
 
 use crate::immediate;
-use crate::junction::Area;
+use crate::junction::CellSet;
 
 /// Columns beside a road within which painted cells change together with it.
 const RIM: usize = 3;
@@ -21,9 +21,10 @@ const STEP_M: f64 = 0.5;
 pub(super) fn redraw(frame: &mut Frame, before: &RoadNetwork, after: &RoadNetwork, anew: Option<RoadId>) {
     let extent = frame.extent();
     let (old, new) = (before.draw(extent), after.draw(extent));
-    let forced = anew.map(|id| after.surface_of(extent, &[Owner::Road(id)], RIM as f64 * Extent::VOXEL_M));
+    let forced =
+        anew.map(|id| after.surface_of(extent, &[RoadElement::Road(id)], RIM as f64 * Extent::VOXEL_M));
     let bits: u32 = LAYERS.iter().map(|l| l.bit()).sum();
-    let drawn = |d: &Drawn, [x, y]: [usize; 2]| d.layout.cell(x, y) & bits;
+    let drawn = |d: &RoadDrawing, [x, y]: [usize; 2]| d.layout.cell(x, y) & bits;
     let differs = |at: [usize; 2]| drawn(&old, at) != drawn(&new, at);
     let mut due = vec![false; extent.columns()];
     for at in extent.all_columns().filter(|at| differs(*at)) {
@@ -82,11 +83,16 @@ fn grown(extent: Extent, cells: &[bool]) -> Vec<bool> {
 }
 
 /// Takes the lines of changed roads out of a layout, and puts the new ones in.
-fn swap_lines(layout: &mut BevLayout, nets: [&RoadNetwork; 2], drawn: [&Drawn; 2], anew: Option<RoadId>) {
+fn swap_lines(
+    layout: &mut BevLayout,
+    nets: [&RoadNetwork; 2],
+    drawn: [&RoadDrawing; 2],
+    anew: Option<RoadId>,
+) {
     let extent = layout.extent();
     let [old, new] = drawn.map(|d| &d.owners);
     let all: BTreeSet<_> = old.keys().chain(new.keys()).copied().collect();
-    let is_anew = |o: &Owner| anew.is_some_and(|id| *o == Owner::Road(id));
+    let is_anew = |o: &RoadElement| anew.is_some_and(|id| *o == RoadElement::Road(id));
     let due: Vec<_> = all
         .into_iter()
         .filter(|o| old.get(o) != new.get(o) || is_anew(o))
@@ -102,9 +108,12 @@ fn swap_lines(layout: &mut BevLayout, nets: [&RoadNetwork; 2], drawn: [&Drawn; 2
         on.collect()
     };
     let own: Vec<bool> = surface.iter().zip(&beside).map(|(a, b)| *a && !*b).collect();
-    let (whole, own) = (Area::new(extent, &on(&surface)), Area::new(extent, &on(&own)));
+    let (whole, own) = (
+        CellSet::new(extent, &on(&surface)),
+        CellSet::new(extent, &on(&own)),
+    );
     // Lines under a new road are removed, except those of other roads.
-    let under = Area::new(extent, &on(&nets[1].surface_of(extent, &due, 0.0)));
+    let under = CellSet::new(extent, &on(&nets[1].surface_of(extent, &due, 0.0)));
     let of_others: Vec<&Polyline> = others.iter().filter_map(|o| new.get(o)).flatten().collect();
     let mut lines: Vec<Polyline> = Vec::new();
     for line in layout.polylines.iter() {
@@ -134,7 +143,7 @@ fn swap_lines(layout: &mut BevLayout, nets: [&RoadNetwork; 2], drawn: [&Drawn; 2
 }
 
 /// Share of a line that lies on an area, 0 to 1; its part beyond the map does not count.
-fn share(area: &Area, points_m: &[DVec2]) -> f64 {
+fn share(area: &CellSet, points_m: &[DVec2]) -> f64 {
     let (mut all, mut on) = (0usize, 0usize);
     for [a, b] in points_m.array_windows::<2>() {
         let steps = (a.distance(*b) / STEP_M).ceil().clamp(1.0, 10_000.0);

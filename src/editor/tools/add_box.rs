@@ -6,10 +6,10 @@ use crate::arrange::adding;
 use language::t;
 use scene::{Class, Frame, variants};
 
-use super::setting::{Control, Setting, Value};
+use super::setting::{Control, ToolOption, Value};
 use super::{
-    Act, CLICK_SLACK, Context, Cursor, Event, Group, Hand, Hint, Mark, Pointer, Response, Shortcut, Sight,
-    Tool, ToolDef, ToolId, ViewKind, When, hint_of, lane_heading,
+    Act, CLICK_SLACK, Context, Cursor, Event, Hand, Hint, Pointer, ReadonlyContext, Response, Shortcut, Tool,
+    ToolDef, ToolGroup, ToolId, ToolMark, ViewKind, When, hint_of, lane_heading,
 };
 
 /// Its name.
@@ -21,7 +21,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Add box",
     key: "A",
     icon: "add_box",
-    group: Group::Scene,
+    group: ToolGroup::Scene,
     is_brush: false,
     paints: false,
     shortcuts: &[Shortcut {
@@ -37,11 +37,11 @@ pub static DEF: ToolDef = ToolDef {
 /// The tool that places boxes.
 #[derive(Clone, Debug, Default)]
 pub struct AddBox {
-    drag: Option<Drag>,
+    drag: Option<PlacementDrag>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Drag {
+enum PlacementDrag {
     /// From above: middle of the footprint, m, and heading, rad.
     Place { at_m: DVec2, yaw_rad: f64 },
     /// In space: where the pointer went down, and whether it has left that place.
@@ -73,7 +73,7 @@ fn place(cx: &Context<'_>, at_m: DVec2, yaw_rad: f64) -> Response {
 impl AddBox {
     fn drag(&mut self, cx: &Context<'_>, pointer: &Pointer) {
         match &mut self.drag {
-            Some(Drag::Place { at_m, yaw_rad }) => {
+            Some(PlacementDrag::Place { at_m, yaw_rad }) => {
                 let Some(to_m) = cx.ground_m(pointer.at) else {
                     return;
                 };
@@ -82,7 +82,9 @@ impl AddBox {
                     false => lane_yaw(cx.frame(), *at_m),
                 };
             }
-            Some(Drag::Click { pressed, moved }) => *moved |= pressed.distance(pointer.at) > CLICK_SLACK,
+            Some(PlacementDrag::Click { pressed, moved }) => {
+                *moved |= pressed.distance(pointer.at) > CLICK_SLACK
+            }
             None => {}
         }
     }
@@ -93,12 +95,12 @@ impl Tool for AddBox {
         match event {
             Event::Press(pointer) => {
                 self.drag = match (cx.from_above(), cx.ground_m(pointer.at)) {
-                    (true, Some(at_m)) => Some(Drag::Place {
+                    (true, Some(at_m)) => Some(PlacementDrag::Place {
                         at_m,
                         yaw_rad: lane_yaw(cx.frame(), at_m),
                     }),
                     (true, None) => None,
-                    (false, _) => Some(Drag::Click {
+                    (false, _) => Some(PlacementDrag::Click {
                         pressed: pointer.at,
                         moved: false,
                     }),
@@ -110,8 +112,8 @@ impl Tool for AddBox {
                 Response::none()
             }
             Event::Release(pointer) => match self.drag.take() {
-                Some(Drag::Place { at_m, yaw_rad }) => place(cx, at_m, yaw_rad),
-                Some(Drag::Click { moved: false, .. }) => match cx.ground_m(pointer.at) {
+                Some(PlacementDrag::Place { at_m, yaw_rad }) => place(cx, at_m, yaw_rad),
+                Some(PlacementDrag::Click { moved: false, .. }) => match cx.ground_m(pointer.at) {
                     Some(at_m) => place(cx, at_m, lane_yaw(cx.frame(), at_m)),
                     None => Response::none(),
                 },
@@ -130,36 +132,36 @@ impl Tool for AddBox {
         hint_of(&["Click places a box", "drag sets its heading"])
     }
 
-    fn cursor(&self, _: &Sight<'_>) -> Cursor {
+    fn cursor(&self, _: &ReadonlyContext<'_>) -> Cursor {
         Cursor::Crosshair
     }
 
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         let (Some(_), frame) = (sight.pointer, sight.scene.frame()) else {
             return Vec::new();
         };
         let (at_m, yaw_rad) = match self.drag {
-            Some(Drag::Place { at_m, yaw_rad }) => (at_m, yaw_rad),
+            Some(PlacementDrag::Place { at_m, yaw_rad }) => (at_m, yaw_rad),
             _ => match sight.ground_m() {
                 Some(at_m) => (at_m, lane_yaw(frame, at_m)),
                 None => return Vec::new(),
             },
         };
         let ghost = sight.hand.new_box(frame, sight.hand.box_class, at_m, yaw_rad);
-        ghost.map(Mark::Ghost).into_iter().collect()
+        ghost.map(ToolMark::Ghost).into_iter().collect()
     }
 
-    fn options(&self, hand: &Hand) -> Vec<Setting> {
+    fn options(&self, hand: &Hand) -> Vec<ToolOption> {
         let class = hand.box_class;
         let named =
             |name: &str, [x, y, z]: [f64; 3]| (format!("{}   {x:.2} × {y:.2} × {z:.2} m", t(name)), "");
         let typical = named("Typical", class.typical_size_m().unwrap_or_default());
         let kinds = variants::of_class(class).map(|kind| named(kind.name, kind.size_m));
         vec![
-            Setting::title("Add box"),
-            Setting::text("Click to place, drag to set the heading. Boxes follow the nearest lane."),
-            Setting::gap(),
-            Setting::new(
+            ToolOption::title("Add box"),
+            ToolOption::text("Click to place, drag to set the heading. Boxes follow the nearest lane."),
+            ToolOption::gap(),
+            ToolOption::new(
                 "kind",
                 Control::List {
                     title: "",
@@ -168,8 +170,8 @@ impl Tool for AddBox {
                     choices: std::iter::once(typical).chain(kinds).collect(),
                 },
             ),
-            Setting::gap(),
-            Setting::new(
+            ToolOption::gap(),
+            ToolOption::new(
                 "class",
                 Control::Class {
                     chosen: class,

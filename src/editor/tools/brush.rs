@@ -7,10 +7,10 @@ use language::{t, tf};
 use scene::raster::disc_cells;
 use scene::{BevLayer, Class, Extent, Frame};
 
-use super::setting::{self, Setting, Value};
+use super::setting::{self, ToolOption, Value};
 use super::{
-    Act, At, Context, Cursor, DRAW_ORDER, Event, Group, Hand, Hint, Key, Mark, PaintShape, Pointer, Response,
-    Role, Shortcut, Sight, Tool, ToolDef, ToolId, ViewKind, When, hint_of,
+    Act, At, Context, Cursor, DRAW_ORDER, Event, Hand, Hint, Key, PaintShape, Pointer, ReadonlyContext,
+    Response, Role, Shortcut, Tool, ToolDef, ToolGroup, ToolId, ToolMark, ViewKind, When, hint_of,
 };
 use crate::flood::FillBounds;
 use crate::roads::Street;
@@ -38,7 +38,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Brush",
     key: "B",
     icon: "brush",
-    group: Group::Scene,
+    group: ToolGroup::Scene,
     is_brush: true,
     paints: true,
     shortcuts: &[
@@ -79,8 +79,8 @@ const STEP_M: f64 = 0.1;
 
 /// Stroke or shape in progress, while the button is held.
 #[derive(Clone, Debug, PartialEq)]
-struct Drag {
-    what: What,
+struct BrushDrag {
+    what: DragShape,
     /// Points so far; a shape begins at the first. Ego frame, m.
     points_m: Vec<DVec2>,
     layer: BevLayer,
@@ -89,7 +89,7 @@ struct Drag {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum What {
+enum DragShape {
     Stroke,
     Rectangle,
     Line,
@@ -98,7 +98,7 @@ enum What {
 /// The brush.
 #[derive(Clone, Debug, Default)]
 pub struct Brush {
-    drag: Option<Drag>,
+    drag: Option<BrushDrag>,
     /// Points of an outline or street that is being drawn, ego frame, m.
     points_m: Vec<DVec2>,
 }
@@ -146,7 +146,7 @@ impl Tool for Brush {
         hint_of(&parts)
     }
 
-    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+    fn cursor(&self, sight: &ReadonlyContext<'_>) -> Cursor {
         match () {
             () if !sight.from_above() => Cursor::Crosshair,
             () if sight.hand.is_locked(sight.hand.layer) => Cursor::Forbidden,
@@ -155,47 +155,49 @@ impl Tool for Brush {
         }
     }
 
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         match sight.from_above() {
             true => self.over_map(sight),
             false => tops(sight).into_iter().collect(),
         }
     }
 
-    fn options(&self, hand: &Hand) -> Vec<Setting> {
+    fn options(&self, hand: &Hand) -> Vec<ToolOption> {
         let mut out = vec![
-            Setting::title("Brush"),
-            Setting::segments("shape", hand.shape, &PaintShape::ALL, 3),
+            ToolOption::title("Brush"),
+            ToolOption::segments("shape", hand.shape, &PaintShape::ALL, 3),
         ];
         let street = &hand.street;
         match hand.shape {
-            PaintShape::Polygon => out.push(Setting::text(
+            PaintShape::Polygon => out.push(ToolOption::text(
                 "Click points. Enter or a double click closes, Backspace takes one back, Esc drops all.",
             )),
             PaintShape::Street => {
                 let lanes = [0.0, Street::MAX_LANES as f64];
                 let lane_m = [*Street::LANE_M.start(), *Street::LANE_M.end()];
                 out.extend([
-                    Setting::number("forward", "Lanes ahead", street.forward as f64, lanes, 0),
-                    Setting::number("backward", "Lanes back", street.backward as f64, lanes, 0),
-                    Setting::number("lane", "Lane, m", street.lane_m, lane_m, 1),
-                    Setting::number("walk", "Walkway, m", street.walk_m, [0.0, 6.0], 1),
-                    Setting::text("Click points along the middle; Enter or a double click lays the street."),
+                    ToolOption::number("forward", "Lanes ahead", street.forward as f64, lanes, 0),
+                    ToolOption::number("backward", "Lanes back", street.backward as f64, lanes, 0),
+                    ToolOption::number("lane", "Lane, m", street.lane_m, lane_m, 1),
+                    ToolOption::number("walk", "Walkway, m", street.walk_m, [0.0, 6.0], 1),
+                    ToolOption::text(
+                        "Click points along the middle; Enter or a double click lays the street.",
+                    ),
                 ]);
             }
-            PaintShape::Fill => out.push(Setting::segments("fill", hand.fill, &FILLS, 2)),
-            PaintShape::Pick => out.push(Setting::text(
+            PaintShape::Fill => out.push(ToolOption::segments("fill", hand.fill, &FILLS, 2)),
+            PaintShape::Pick => out.push(ToolOption::text(
                 "Click takes over the layer under the pointer, as Alt+click always does.",
             )),
             _ => {}
         }
-        out.push(Setting::gap());
+        out.push(ToolOption::gap());
         // A street is laid, a layer is picked: neither is erased.
         if !matches!(hand.shape, PaintShape::Street | PaintShape::Pick) {
-            out.push(Setting::segments("erase", hand.erase, &ERASE, 2));
+            out.push(ToolOption::segments("erase", hand.erase, &ERASE, 2));
         }
         if hand.shape.has_width() {
-            out.extend([Setting::gap(), Setting::brush_size(hand.brush_m)]);
+            out.extend([ToolOption::gap(), ToolOption::brush_size(hand.brush_m)]);
         }
         out
     }
@@ -248,20 +250,20 @@ const FILLS: [(FillBounds, &str, &str); 2] = [
 /// Choices between painting and erasing, for every brush.
 pub(super) const ERASE: [(bool, &str, &str); 2] = [(false, "Paint", ""), (true, "Erase", "E, or hold Shift")];
 
-impl Drag {
+impl BrushDrag {
     /// The shape with the pointer at a point.
     fn shape(&self, at_m: DVec2, shift: bool) -> Shape {
         let from_m = self.points_m.first().copied().unwrap_or(at_m);
         match self.what {
-            What::Stroke => Shape::Line {
+            DragShape::Stroke => Shape::Line {
                 points_m: self.points_m.clone(),
                 width_m: self.width_m,
             },
-            What::Rectangle => Shape::Rect {
+            DragShape::Rectangle => Shape::Rect {
                 min_m: from_m.min(at_m),
                 max_m: from_m.max(at_m),
             },
-            What::Line => Shape::Line {
+            DragShape::Line => Shape::Line {
                 points_m: vec![from_m, straightened(from_m, at_m, shift && !self.erase)],
                 width_m: self.width_m,
             },
@@ -271,12 +273,12 @@ impl Drag {
     /// The name of the undo step.
     fn step(&self) -> &'static str {
         match (self.what, self.erase) {
-            (What::Stroke, false) => "Paint layer",
-            (What::Stroke, true) => "Erase layer",
-            (What::Rectangle, false) => "Paint rectangle",
-            (What::Rectangle, true) => "Erase rectangle",
-            (What::Line, false) => "Paint line",
-            (What::Line, true) => "Erase line",
+            (DragShape::Stroke, false) => "Paint layer",
+            (DragShape::Stroke, true) => "Erase layer",
+            (DragShape::Rectangle, false) => "Paint rectangle",
+            (DragShape::Rectangle, true) => "Erase rectangle",
+            (DragShape::Line, false) => "Paint line",
+            (DragShape::Line, true) => "Erase line",
         }
     }
 }
@@ -342,14 +344,14 @@ fn tops_in_disc(frame: &Frame, center_m: DVec2, radius_m: f64) -> Vec<[usize; 3]
 }
 
 /// The voxels under the brush in space.
-fn tops(sight: &Sight<'_>) -> Option<Mark> {
+fn tops(sight: &ReadonlyContext<'_>) -> Option<ToolMark> {
     let at_m = sight.ground_m()?;
     let color = match sight.hand.erase {
         true => super::voxel::REMOVED,
         false => sight.hand.layer.color(),
     };
     let cells = tops_in_disc(sight.scene.frame(), at_m, sight.hand.brush_m / 2.0);
-    Some(Mark::Voxels(cells, color))
+    Some(ToolMark::Voxels(cells, color))
 }
 
 impl Brush {
@@ -360,7 +362,7 @@ impl Brush {
             // There are strokes only in space, and Alt turns the camera.
             return match cx.hand.is_locked(layer) {
                 true => Response::none(),
-                false => self.begin(cx.hand, What::Stroke, Vec::new(), erase),
+                false => self.begin(cx.hand, DragShape::Stroke, Vec::new(), erase),
             };
         }
         let Some(at_m) = cx.ground_m(pointer.at) else {
@@ -381,12 +383,12 @@ impl Brush {
             return locked(layer);
         }
         let what = match shape {
-            PaintShape::Stroke if pointer.held.ctrl => What::Line,
+            PaintShape::Stroke if pointer.held.ctrl => DragShape::Line,
             PaintShape::Stroke | PaintShape::Pick => {
-                return self.begin(cx.hand, What::Stroke, Vec::new(), erase);
+                return self.begin(cx.hand, DragShape::Stroke, Vec::new(), erase);
             }
-            PaintShape::Rectangle => What::Rectangle,
-            PaintShape::Line => What::Line,
+            PaintShape::Rectangle => DragShape::Rectangle,
+            PaintShape::Line => DragShape::Line,
             PaintShape::Polygon | PaintShape::Street => {
                 if self.points_m.last().is_none_or(|p| p.distance(at_m) > APART_M) {
                     self.points_m.push(at_m);
@@ -398,8 +400,8 @@ impl Brush {
         self.begin(cx.hand, what, vec![at_m], erase)
     }
 
-    fn begin(&mut self, hand: &Hand, what: What, points_m: Vec<DVec2>, erase: bool) -> Response {
-        self.drag = Some(Drag {
+    fn begin(&mut self, hand: &Hand, what: DragShape, points_m: Vec<DVec2>, erase: bool) -> Response {
+        self.drag = Some(BrushDrag {
             what,
             points_m,
             layer: hand.layer,
@@ -413,7 +415,7 @@ impl Brush {
         let (Some(drag), Some(at_m)) = (&mut self.drag, cx.ground_m(pointer.at)) else {
             return Response::none();
         };
-        if drag.what == What::Stroke {
+        if drag.what == DragShape::Stroke {
             if drag
                 .points_m
                 .last()
@@ -454,27 +456,27 @@ impl Brush {
         Response::taken().and(Act::Apply(label.into(), vec![edit]))
     }
 
-    fn over_map(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn over_map(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         let (hand, at_m) = (sight.hand, sight.ground_m());
         let mut out = Vec::new();
         if let (true, Some(pointer), Some(at_m)) = (hand.shape.has_width(), sight.pointer, at_m) {
-            let stroke = self.drag.as_ref().filter(|d| d.what == What::Stroke);
+            let stroke = self.drag.as_ref().filter(|d| d.what == DragShape::Stroke);
             let erase = stroke.map_or(hand.erase || pointer.held.shift, |d| d.erase);
-            out.push(Mark::Disc(at_m, hand.brush_m / 2.0, role(hand.layer, erase)));
+            out.push(ToolMark::Disc(at_m, hand.brush_m / 2.0, role(hand.layer, erase)));
         }
         if let (Some(drag), Some(at_m)) = (&self.drag, at_m)
-            && drag.what != What::Stroke
+            && drag.what != DragShape::Stroke
         {
             let d = at_m - drag.points_m.first().copied().unwrap_or(at_m);
             let text = format!("{:.1} × {:.1} m", d.x.abs(), d.y.abs());
-            out.push(Mark::Tag(at_m.into(), text));
+            out.push(ToolMark::Tag(at_m.into(), text));
         }
         out.extend(self.outline(sight.settled.frame().extent(), hand, at_m));
         out
     }
 
     /// The outline or street that is being drawn, on to the pointer.
-    fn outline(&self, extent: Extent, hand: &Hand, at_m: Option<DVec2>) -> Vec<Mark> {
+    fn outline(&self, extent: Extent, hand: &Hand, at_m: Option<DVec2>) -> Vec<ToolMark> {
         if self.points_m.is_empty() {
             return Vec::new();
         }
@@ -483,15 +485,19 @@ impl Brush {
         let role = role(hand.layer, hand.erase);
         let mut out = Vec::new();
         if hand.shape == PaintShape::Street {
-            out.push(Mark::Ribbon(points_m, hand.street.width_m(), role));
+            out.push(ToolMark::Ribbon(points_m, hand.street.width_m(), role));
         } else if points_m.len() >= 3 {
             let area = Shape::Polygon { points_m };
-            out.push(Mark::Columns(area.cells(extent).unwrap_or_default(), role));
+            out.push(ToolMark::Columns(area.cells(extent).unwrap_or_default(), role));
             let closed = line.iter().copied().chain([line[0]]);
-            out.push(Mark::Dashed(closed.collect(), role));
+            out.push(ToolMark::Dashed(closed.collect(), role));
         }
-        out.push(Mark::Line(line.clone(), Role::Hand));
-        out.extend(line[..self.points_m.len()].iter().map(|p| Mark::Dot(*p, role)));
+        out.push(ToolMark::Line(line.clone(), Role::Hand));
+        out.extend(
+            line[..self.points_m.len()]
+                .iter()
+                .map(|p| ToolMark::Dot(*p, role)),
+        );
         out
     }
 }

@@ -6,10 +6,10 @@ use crate::Shape;
 use language::{filled, t};
 use scene::{BevLayer, Frame};
 
-use super::setting::{self, Setting, Value};
+use super::setting::{self, ToolOption, Value};
 use super::{
-    Act, Context, Cursor, Event, Group, Hand, Hint, Mark, Pointer, Response, Role, Shortcut, Sight, Tool,
-    ToolDef, ToolId, ViewKind, When, brush, hint_of,
+    Act, Context, Cursor, Event, Hand, Hint, Pointer, ReadonlyContext, Response, Role, Shortcut, Tool,
+    ToolDef, ToolGroup, ToolId, ToolMark, ViewKind, When, brush, hint_of,
 };
 
 /// Its name.
@@ -21,7 +21,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Circle brush",
     key: "Shift+U: press at the middle, drag the radius",
     icon: "circle",
-    group: Group::Scene,
+    group: ToolGroup::Scene,
     is_brush: true,
     paints: true,
     shortcuts: &[Shortcut {
@@ -148,29 +148,29 @@ impl Tool for Circle {
         vec![radius.into(), "Release: done".into(), "Esc cancels".into()]
     }
 
-    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+    fn cursor(&self, sight: &ReadonlyContext<'_>) -> Cursor {
         match sight.hand.is_locked(sight.hand.layer) {
             true => Cursor::Forbidden,
             false => Cursor::Crosshair,
         }
     }
 
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         let Some(disc) = self.disc else {
             return Vec::new();
         };
-        let mut out = vec![Mark::Disc(disc.middle_m, disc.radius_m, disc.role())];
+        let mut out = vec![ToolMark::Disc(disc.middle_m, disc.radius_m, disc.role())];
         if let Some(at_m) = sight.ground_m() {
-            out.push(Mark::Tag(at_m.into(), format!("{:.1} m", disc.radius_m)));
+            out.push(ToolMark::Tag(at_m.into(), format!("{:.1} m", disc.radius_m)));
         }
         out
     }
 
-    fn options(&self, hand: &Hand) -> Vec<Setting> {
+    fn options(&self, hand: &Hand) -> Vec<ToolOption> {
         vec![
-            Setting::title("Circle brush"),
-            Setting::text("Press at the middle, drag the radius: a disc of the layer in hand."),
-            Setting::segments("erase", hand.erase, &brush::ERASE, 2),
+            ToolOption::title("Circle brush"),
+            ToolOption::text("Press at the middle, drag the radius: a disc of the layer in hand."),
+            ToolOption::segments("erase", hand.erase, &brush::ERASE, 2),
         ]
     }
 
@@ -222,8 +222,8 @@ mod tests {
         assert_eq!(hint[0], "Paints a disc of 5.0 m radius");
         let marks = tool.overlay(&table.sight(7.0, 2.0));
         let role = Role::Paint(BevLayer::Walkway);
-        assert_eq!(marks[0], Mark::Disc(DVec2::new(4.0, -2.0), 5.0, role));
-        assert!(matches!(&marks[1], Mark::Tag(_, text) if text == "5.0 m"));
+        assert_eq!(marks[0], ToolMark::Disc(DVec2::new(4.0, -2.0), 5.0, role));
+        assert!(matches!(&marks[1], ToolMark::Tag(_, text) if text == "5.0 m"));
         let released = table.release(&mut tool, 7.0, 2.0);
         assert_eq!(released, Response::act(Act::Commit("Paint circle".into())));
         // It is over: moving on changes nothing.

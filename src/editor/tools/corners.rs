@@ -2,14 +2,16 @@
 
 use glam::DVec2;
 
-use super::{At, CLICK_SLACK, Context, Event, Key, Mark, Modifiers, Pointer, Role, Sight, ViewKind};
+use super::{
+    At, CLICK_SLACK, Context, Event, Key, Modifiers, Pointer, ReadonlyContext, Role, ToolMark, ViewKind,
+};
 
 /// A click so near to the first corner closes the outline, points of the screen.
 const CORNER: f64 = 8.0;
 
 /// The corners set so far.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Corners {
+pub(super) struct PolygonDraft {
     /// Points of the ego frame, m, in the view from above; points of the screen in the 3D view.
     points: Vec<DVec2>,
     /// The view in which they were set.
@@ -29,7 +31,7 @@ pub(super) enum Set {
     Closed(Vec<DVec2>, Modifiers),
 }
 
-impl Corners {
+impl PolygonDraft {
     pub(super) fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
@@ -98,7 +100,7 @@ impl Corners {
     }
 
     /// The outline with the pointer as its next corner, and its corners, in the view in which it was begun.
-    pub(super) fn marks(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    pub(super) fn marks(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         let from_above = sight.from_above();
         if self.view() != Some(sight.view.kind()) {
             return Vec::new();
@@ -113,8 +115,8 @@ impl Corners {
             true => At::from(p),
             false => At::Screen(p),
         };
-        let mut out = vec![Mark::Dashed(closed.map(at).collect(), Role::Choose)];
-        out.extend(self.points.iter().map(|p| Mark::Dot(at(*p), Role::Choose)));
+        let mut out = vec![ToolMark::Dashed(closed.map(at).collect(), Role::Choose)];
+        out.extend(self.points.iter().map(|p| ToolMark::Dot(at(*p), Role::Choose)));
         out
     }
 }

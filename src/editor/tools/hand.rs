@@ -9,9 +9,9 @@ use crate::arrange::{Clipboard, LANE_REACH_M, Pivot};
 use crate::flood::FillBounds;
 use crate::lanes::nearest_lane;
 use crate::roads::Street;
-use crate::rows::Row;
+use crate::rows::CopyRows;
 use crate::transform::{Orientation, Snap, TransformKind};
-use crate::voxel_ops::{self, Cell};
+use crate::voxel_ops::{self, VoxelIndex};
 use scene::{
     BevLayer, BevLayout, BoxId, BoxLabel, Class, Extent, Frame, Scene, SceneBox, SceneRev, ThingId, variants,
 };
@@ -115,7 +115,7 @@ pub struct Hand {
     /// Voxels are painted on both sides of the ego x axis.
     pub symmetry: bool,
     /// Chosen voxels.
-    pub voxels: Vec<Cell>,
+    pub voxels: Vec<VoxelIndex>,
     /// Voxels that the stamp sets down.
     pub stamp: Stamp,
     /// An outline chooses voxels behind others, too.
@@ -135,7 +135,7 @@ pub struct Hand {
     /// The dialog of rows, if it is open.
     pub row_open: bool,
     /// Numbers of that dialog.
-    pub row: Row,
+    pub row: CopyRows,
     /// Options, selection and clipboard of the scenery tools.
     pub things: ThingState,
     /// Layer and class that were painted with before.
@@ -185,7 +185,7 @@ impl Default for Hand {
             layers_locked: 0,
             selections: BTreeMap::new(),
             row_open: false,
-            row: Row::default(),
+            row: CopyRows::default(),
             things: ThingState::default(),
             painted_before: PaintsBefore::default(),
         }
@@ -262,7 +262,7 @@ impl Hand {
     }
 
     /// Voxels of a map with their mirror images, if symmetry is on.
-    pub fn both_sides(&self, extent: Extent, cells: Vec<Cell>) -> Vec<Cell> {
+    pub fn both_sides(&self, extent: Extent, cells: Vec<VoxelIndex>) -> Vec<VoxelIndex> {
         match self.symmetry {
             true => voxel_ops::mirrored(extent, &cells),
             false => cells,

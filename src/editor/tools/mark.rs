@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::voxel_ops::Cell;
+use crate::voxel_ops::VoxelIndex;
 use scene::{BevLayer, Form, SceneBox};
 
 /// Role of a mark; the window chooses its colour.
@@ -46,7 +46,7 @@ impl From<DVec3> for At {
 
 /// One thing to draw.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Mark {
+pub enum ToolMark {
     /// A thin line; closed it ends where it began.
     Line(Vec<At>, Role),
     /// A dashed outline.
@@ -72,7 +72,7 @@ pub enum Mark {
     /// A thing of the ego frame that would come.
     Coming(Form),
     /// Voxels that would change, and their colour.
-    Voxels(Vec<Cell>, [u8; 3]),
+    Voxels(Vec<VoxelIndex>, [u8; 3]),
     /// An arrow of the gizmo; `square`: it ends in a knob.
     Arrow {
         /// Begin and tip.

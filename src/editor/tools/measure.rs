@@ -7,10 +7,11 @@ use crate::measure::{Measure, snapped};
 use crate::pick;
 use scene::Frame;
 
-use super::setting::{Control, Setting};
+use super::setting::{Control, ToolOption};
 use super::{
-    At, Context, Cursor, Event, Group, HANDLE_REACH, Hand, Hint, Key, Mark, Response, Role, Shortcut, Sight,
-    Tool, ToolDef, ToolId, View, ViewKind, Wants, When, hint_of, point_of,
+    At, Context, Cursor, Event, HANDLE_REACH, Hand, Hint, Key, ReadonlyContext, Response, Role,
+    ScreenProjection, Shortcut, Tool, ToolDef, ToolGroup, ToolId, ToolMark, ViewKind, Wants, When, hint_of,
+    point_of,
 };
 
 /// Its name.
@@ -22,7 +23,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Measure",
     key: "M",
     icon: "measure",
-    group: Group::Scene,
+    group: ToolGroup::Scene,
     is_brush: false,
     paints: false,
     shortcuts: &[Shortcut {
@@ -43,7 +44,7 @@ pub struct Ruler {
 
 /// The point under a point of the screen: in the view from above on the ground, snapped to the boxes near it; in the 3D
 /// view on the surface that is hit.
-fn point(frame: &Frame, view: &dyn View, at: DVec2) -> Option<DVec3> {
+fn point(frame: &Frame, view: &dyn ScreenProjection, at: DVec2) -> Option<DVec3> {
     let ray = view.ray(at)?;
     match view.kind() {
         ViewKind::Bev => {
@@ -75,36 +76,36 @@ impl Tool for Ruler {
         hint_of(&["Click sets a point", "Esc clears"])
     }
 
-    fn cursor(&self, _: &Sight<'_>) -> Cursor {
+    fn cursor(&self, _: &ReadonlyContext<'_>) -> Cursor {
         Cursor::Crosshair
     }
 
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         let under = sight.pointer.map(|p| p.at);
         let next_m = under.and_then(|at| point(sight.scene.frame(), sight.view, at));
         let points_m = self.measure.with(next_m);
         let line: Vec<At> = points_m.iter().map(|p| At::Ego(*p)).collect();
-        let mut out = vec![Mark::Line(line.clone(), Role::Measure)];
+        let mut out = vec![ToolMark::Line(line.clone(), Role::Measure)];
         for pair in points_m.windows(2) {
             let text = format!("{:.2} m", pair[0].distance(pair[1]));
-            out.push(Mark::Label(At::Ego((pair[0] + pair[1]) / 2.0), text));
+            out.push(ToolMark::Label(At::Ego((pair[0] + pair[1]) / 2.0), text));
         }
-        out.extend(line.iter().map(|p| Mark::Dot(*p, Role::Measure)));
+        out.extend(line.iter().map(|p| ToolMark::Dot(*p, Role::Measure)));
         if let (Some(text), Some(last)) = (self.measure.text(next_m), line.last()) {
-            out.push(Mark::Tag(*last, text));
+            out.push(ToolMark::Tag(*last, text));
         }
         out
     }
 
-    fn options(&self, _: &Hand) -> Vec<Setting> {
+    fn options(&self, _: &Hand) -> Vec<ToolOption> {
         let mut out = vec![
-            Setting::title("Measure"),
-            Setting::text(
+            ToolOption::title("Measure"),
+            ToolOption::text(
                 "Click points: two give a distance, a third the angle. From above box corners catch them, in the 3D view they lie on what is under the pointer. Esc clears.",
             ),
         ];
         let text = self.measure.text(None);
-        out.extend(text.map(|text| Setting::new("", Control::Result(text))));
+        out.extend(text.map(|text| ToolOption::new("", Control::Result(text))));
         out
     }
 

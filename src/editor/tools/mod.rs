@@ -29,15 +29,15 @@ mod view;
 pub mod voxel;
 
 pub use hand::{Choose, DRAW_ORDER, Hand, lane_heading};
-pub use mark::{At, Mark, Role};
+pub use mark::{At, Role, ToolMark};
 pub use modes::{ChooseBy, PaintShape, RegionShape, VoxelMode, VoxelTip, VoxelVerb};
-pub use response::{Act, Area, Response};
-pub use setting::{Setting, Value};
-pub use tool::{Cursor, Group, Hint, Shortcut, Tool, ToolDef, ToolId, Wants, When, hint_of};
+pub use response::{Act, InpaintArea, Response};
+pub use setting::{ToolOption, Value};
+pub use tool::{Cursor, Hint, Shortcut, Tool, ToolDef, ToolGroup, ToolId, Wants, When, hint_of};
 pub use toolbox::Toolbox;
 pub use view::{
-    CLICK_SLACK, Context, Event, HANDLE_REACH, Key, Modifiers, Pointer, Sight, View, ViewKind, farthest_m,
-    point_of,
+    CLICK_SLACK, Context, Event, HANDLE_REACH, Key, Modifiers, Pointer, ReadonlyContext, ScreenProjection,
+    ViewKind, farthest_m, point_of,
 };
 
 /// The table: one line for each tool, in the order of the bar.

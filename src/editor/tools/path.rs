@@ -10,10 +10,10 @@ use scene::{BoxId, Edit, Motion, Scene, Template};
 
 use crate::traffic::shown;
 
-use super::setting::Setting;
+use super::setting::ToolOption;
 use super::{
-    Act, At, Context, Cursor, Event, Group, Hand, Hint, Key, Mark, Response, Role, Shortcut, Sight, Tool,
-    ToolDef, ToolId, ViewKind, When,
+    Act, At, Context, Cursor, Event, Hand, Hint, Key, ReadonlyContext, Response, Role, Shortcut, Tool,
+    ToolDef, ToolGroup, ToolId, ToolMark, ViewKind, When,
 };
 
 /// Its name.
@@ -25,7 +25,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Path",
     key: "Shift+M",
     icon: "path",
-    group: Group::Scene,
+    group: ToolGroup::Scene,
     is_brush: false,
     paints: false,
     shortcuts: &[Shortcut {
@@ -151,26 +151,30 @@ impl Tool for Course {
         std::iter::once(first).chain(rest).map(Cow::Borrowed).collect()
     }
 
-    fn cursor(&self, _: &Sight<'_>) -> Cursor {
+    fn cursor(&self, _: &ReadonlyContext<'_>) -> Cursor {
         Cursor::Crosshair
     }
 
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         let set = self.points_m.iter().copied();
         let points_m: Vec<DVec2> = set.chain(sight.ground_m()).collect();
         let line: Vec<At> = line(sight.settled, sight.hand.selected, &points_m)
             .into_iter()
             .map(At::from)
             .collect();
-        let mut out = vec![Mark::Line(line, Role::Hand)];
-        out.extend(self.points_m.iter().map(|p| Mark::Dot((*p).into(), Role::Hand)));
+        let mut out = vec![ToolMark::Line(line, Role::Hand)];
+        out.extend(
+            self.points_m
+                .iter()
+                .map(|p| ToolMark::Dot((*p).into(), Role::Hand)),
+        );
         out
     }
 
-    fn options(&self, hand: &Hand) -> Vec<Setting> {
+    fn options(&self, hand: &Hand) -> Vec<ToolOption> {
         vec![
-            Setting::title("Path"),
-            Setting::text(match hand.selected {
+            ToolOption::title("Path"),
+            ToolOption::text(match hand.selected {
                 Some(_) => {
                     "Click where the chosen object goes from this moment on, Enter ends. It keeps its speed, or gets the usual one of its class."
                 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::pick::Ray;
+use crate::pick::PickRay;
 
 use scene::Extent;
 
@@ -12,7 +12,7 @@ use super::farthest_m;
 const PARALLEL: f64 = 1e-6;
 
 /// Place along a line through `point` at which the ray comes nearest, m; `None` for a ray that runs along it.
-pub(super) fn along_axis(ray: &Ray, point_m: DVec3, axis: DVec3) -> Option<f64> {
+pub(super) fn along_axis(ray: &PickRay, point_m: DVec3, axis: DVec3) -> Option<f64> {
     let (d, w) = (ray.direction_in_ego, point_m - ray.origin_in_ego);
     let b = axis.dot(d);
     let denominator = 1.0 - b * b;
@@ -20,7 +20,7 @@ pub(super) fn along_axis(ray: &Ray, point_m: DVec3, axis: DVec3) -> Option<f64> 
 }
 
 /// The place where a ray meets the plane through a point across an axis of the grid.
-pub(super) fn on_plane(extent: Extent, ray: &Ray, point_m: DVec3, axis: usize) -> Option<DVec3> {
+pub(super) fn on_plane(extent: Extent, ray: &PickRay, point_m: DVec3, axis: usize) -> Option<DVec3> {
     let d = ray.direction_in_ego[axis];
     if d.abs() < PARALLEL {
         return None;
@@ -37,7 +37,7 @@ mod tests {
 
     #[test]
     fn rays_meet_axes_and_planes() {
-        let ray = Ray::new(DVec3::new(0.0, -10.0, 2.0), DVec3::Y).expect("a direction");
+        let ray = PickRay::new(DVec3::new(0.0, -10.0, 2.0), DVec3::Y).expect("a direction");
         let at = along_axis(&ray, DVec3::new(-3.0, 0.0, 2.0), DVec3::X).expect("crosses");
         assert!((at - 3.0).abs() < 1e-12);
         let up = along_axis(&ray, DVec3::new(1.0, 5.0, 0.0), DVec3::Z).expect("passes by");

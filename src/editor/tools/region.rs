@@ -5,11 +5,11 @@ use glam::DVec2;
 use language::tf;
 use scene::{Extent, Frame};
 
-use super::corners::{Corners, Set};
-use super::setting::{self, Setting, Value};
+use super::corners::{PolygonDraft, Set};
+use super::setting::{self, ToolOption, Value};
 use super::{
-    Act, Area, Context, Cursor, Event, Group, Hand, Hint, Mark, Modifiers, Pointer, RegionShape, Response,
-    Role, Shortcut, Sight, Tool, ToolDef, ToolId, ViewKind, Wants, When, hint_of,
+    Act, Context, Cursor, Event, Hand, Hint, InpaintArea, Modifiers, Pointer, ReadonlyContext, RegionShape,
+    Response, Role, Shortcut, Tool, ToolDef, ToolGroup, ToolId, ToolMark, ViewKind, Wants, When, hint_of,
 };
 
 /// Its name.
@@ -21,7 +21,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Region",
     key: "N: inpaint",
     icon: "region",
-    group: Group::Scene,
+    group: ToolGroup::Scene,
     is_brush: true,
     paints: false,
     shortcuts: &[Shortcut {
@@ -52,7 +52,7 @@ const WAYS: [(RegionShape, &str, &str); 4] = [
 
 /// Mark that is being drawn, ego frame, m.
 #[derive(Clone, Debug, PartialEq)]
-enum Drag {
+enum RegionDrag {
     Rectangle { from_m: DVec2, to_m: DVec2 },
     Outline(Vec<DVec2>),
     Stroke(DVec2),
@@ -62,9 +62,9 @@ enum Drag {
 #[derive(Clone, Debug, Default)]
 pub struct Marker {
     /// Mark that is being drawn; true if it marks, false if it takes the mark away.
-    drag: Option<(Drag, bool)>,
+    drag: Option<(RegionDrag, bool)>,
     /// Corners of an outline.
-    corners: Corners,
+    corners: PolygonDraft,
 }
 
 impl Marker {
@@ -73,15 +73,15 @@ impl Marker {
             return Response::none();
         };
         match drag {
-            Drag::Rectangle { to_m, .. } => *to_m = at_m,
-            Drag::Outline(points_m) => {
+            RegionDrag::Rectangle { to_m, .. } => *to_m = at_m,
+            RegionDrag::Outline(points_m) => {
                 let apart_m = 2.0 / cx.view.scale();
                 if points_m.last().is_none_or(|p| p.distance(at_m) > apart_m) {
                     points_m.push(at_m);
                 }
             }
-            Drag::Stroke(from_m) => {
-                let area = Area::Stroke(*from_m, at_m, cx.hand.brush_m);
+            RegionDrag::Stroke(from_m) => {
+                let area = InpaintArea::Stroke(*from_m, at_m, cx.hand.brush_m);
                 *from_m = at_m;
                 return Response::act(Act::Mark(area, *on));
             }
@@ -94,14 +94,14 @@ impl Marker {
             return Response::none();
         };
         let area = match drag {
-            Drag::Rectangle { from_m, to_m } => {
+            RegionDrag::Rectangle { from_m, to_m } => {
                 // A click marks the cell under it.
                 let around = DVec2::splat(Extent::VOXEL_M / 2.0);
-                Area::Rect(from_m.min(to_m) - around, from_m.max(to_m) + around)
+                InpaintArea::Rect(from_m.min(to_m) - around, from_m.max(to_m) + around)
             }
-            Drag::Outline(points_m) => Area::Outline(points_m),
+            RegionDrag::Outline(points_m) => InpaintArea::Outline(points_m),
             // A brush has marked on its way.
-            Drag::Stroke(_) => return Response::none(),
+            RegionDrag::Stroke(_) => return Response::none(),
         };
         Response::act(Act::Mark(area, on))
     }
@@ -118,7 +118,7 @@ impl Tool for Marker {
             Set::Not => {}
             Set::Taken => return Response::taken(),
             Set::Closed(points_m, held) => {
-                let area = Area::Outline(points_m);
+                let area = InpaintArea::Outline(points_m);
                 return Response::taken().and(Act::Mark(area, marks(held)));
             }
         }
@@ -128,16 +128,16 @@ impl Tool for Marker {
                     return Response::none();
                 };
                 let drag = match cx.hand.region_shape {
-                    RegionShape::Rectangle => Drag::Rectangle {
+                    RegionShape::Rectangle => RegionDrag::Rectangle {
                         from_m: at_m,
                         to_m: at_m,
                     },
-                    RegionShape::Lasso => Drag::Outline(vec![at_m]),
-                    RegionShape::Brush => Drag::Stroke(at_m),
+                    RegionShape::Lasso => RegionDrag::Outline(vec![at_m]),
+                    RegionShape::Brush => RegionDrag::Stroke(at_m),
                     RegionShape::Polygon => {
                         return match self.corners.add(cx, pointer) {
                             Set::Closed(points_m, held) => {
-                                Response::act(Act::Mark(Area::Outline(points_m), marks(held)))
+                                Response::act(Act::Mark(InpaintArea::Outline(points_m), marks(held)))
                             }
                             _ => Response::none(),
                         };
@@ -171,58 +171,58 @@ impl Tool for Marker {
         hint_of(&[drag, "Shift takes away"])
     }
 
-    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+    fn cursor(&self, sight: &ReadonlyContext<'_>) -> Cursor {
         match sight.from_above() {
             true => Cursor::Crosshair,
             false => Cursor::Forbidden,
         }
     }
 
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         if !sight.from_above() {
             return Vec::new();
         }
         let mut out = Vec::new();
         match &self.drag {
-            Some((Drag::Rectangle { from_m, to_m }, _)) => {
-                out.push(Mark::Rect((*from_m).into(), (*to_m).into(), Role::Choose));
+            Some((RegionDrag::Rectangle { from_m, to_m }, _)) => {
+                out.push(ToolMark::Rect((*from_m).into(), (*to_m).into(), Role::Choose));
             }
-            Some((Drag::Outline(points_m), _)) => {
+            Some((RegionDrag::Outline(points_m), _)) => {
                 let first = points_m.first();
                 let closed = points_m.iter().chain(first).map(|p| (*p).into());
-                out.push(Mark::Dashed(closed.collect(), Role::Choose));
+                out.push(ToolMark::Dashed(closed.collect(), Role::Choose));
             }
             _ => {}
         }
         out.extend(self.corners.marks(sight));
         if let (RegionShape::Brush, Some(at_m)) = (sight.hand.region_shape, sight.ground_m()) {
-            out.push(Mark::Disc(at_m, sight.hand.brush_m / 2.0, Role::Choose));
+            out.push(ToolMark::Disc(at_m, sight.hand.brush_m / 2.0, Role::Choose));
         }
         out
     }
 
-    fn options(&self, hand: &Hand) -> Vec<Setting> {
+    fn options(&self, hand: &Hand) -> Vec<ToolOption> {
         let any = hand.region_m2 > 0.0;
         let mut out = vec![
-            Setting::title("Region to inpaint"),
-            Setting::text(
+            ToolOption::title("Region to inpaint"),
+            ToolOption::text(
                 "Mark it in the bird's-eye view, Shift takes away. All else, and boxes in it, stay as they are.",
             ),
-            Setting::segments("way", hand.region_shape, &WAYS, 2),
+            ToolOption::segments("way", hand.region_shape, &WAYS, 2),
         ];
         if hand.region_shape == RegionShape::Brush {
             let range = [*Hand::BRUSH_M.start(), *Hand::BRUSH_M.end()];
-            out.push(Setting::number("size", "Brush, m", hand.brush_m, range, 1));
+            out.push(ToolOption::number("size", "Brush, m", hand.brush_m, range, 1));
         }
         out.extend([
-            Setting::text(tf!("{area} m² marked", area = format!("{:.0}", hand.region_m2))),
-            Setting::number("strength", "Strength", hand.region_strength, [0.05, 1.0], 1),
-            Setting::text("1: all of it new. Less is a variation of what is there."),
-            Setting::new(
+            ToolOption::text(tf!("{area} m² marked", area = format!("{:.0}", hand.region_m2))),
+            ToolOption::number("strength", "Strength", hand.region_strength, [0.05, 1.0], 1),
+            ToolOption::text("1: all of it new. Less is a variation of what is there."),
+            ToolOption::new(
                 "",
                 setting::Control::Line(vec![
-                    Setting::button("draw", "Inpaint", "each time from other noise", any),
-                    Setting::button("clear", "Clear region", "", any),
+                    ToolOption::button("draw", "Inpaint", "each time from other noise", any),
+                    ToolOption::button("clear", "Clear region", "", any),
                 ]),
             ),
         ]);
@@ -235,7 +235,7 @@ impl Tool for Marker {
             "size" => setting::take_number(&mut hand.brush_m, value),
             "strength" => setting::take_number(&mut hand.region_strength, value),
             "draw" => return vec![Act::Ask("generate_edited")],
-            "clear" => return vec![Act::Mark(Area::All, false)],
+            "clear" => return vec![Act::Mark(InpaintArea::All, false)],
             _ => {}
         }
         if id == "way" {

@@ -24,7 +24,7 @@ pub enum Act {
     /// Adds things (ego frame) as one undo step, and chooses them.
     AddThings(Vec<Form>),
     /// Marks an area to inpaint, or takes the mark away.
-    Mark(Area, bool),
+    Mark(InpaintArea, bool),
     /// Says something to the user.
     Note(String),
     /// Runs the action of that name, as its key would.
@@ -33,7 +33,7 @@ pub enum Act {
 
 /// A part of the ground, ego frame, m.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Area {
+pub enum InpaintArea {
     /// From corner to corner.
     Rect(DVec2, DVec2),
     /// Inside of an outline.

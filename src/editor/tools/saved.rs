@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use scene::{BevLayer, Class, Frame};
 
 use super::{Hand, PaintShape, ToolId, VoxelMode, VoxelTip, VoxelVerb};
-use crate::voxel_ops::Cell;
+use crate::voxel_ops::VoxelIndex;
 
 /// Voxels that are set down together: their places from the middle of their underside, and their classes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,17 +19,18 @@ impl Stamp {
     pub const MOST: usize = 50_000;
 
     /// Makes a stamp of the voxels of a frame that are not free. `None` if none are left, or more than [`Self::MOST`].
-    pub fn of(frame: &Frame, cells: &[Cell]) -> Option<Self> {
-        let label =
-            |[x, y, z]: Cell| Class::from_id(frame.occupancy.get(x, y, z)).filter(|c| *c != Class::Free);
-        let solid: Vec<(Cell, Class)> = cells.iter().filter_map(|c| Some((*c, label(*c)?))).collect();
+    pub fn of(frame: &Frame, cells: &[VoxelIndex]) -> Option<Self> {
+        let label = |[x, y, z]: VoxelIndex| {
+            Class::from_id(frame.occupancy.get(x, y, z)).filter(|c| *c != Class::Free)
+        };
+        let solid: Vec<(VoxelIndex, Class)> = cells.iter().filter_map(|c| Some((*c, label(*c)?))).collect();
         if solid.is_empty() || solid.len() > Self::MOST {
             return None;
         }
         let low = |a: usize| solid.iter().map(|(c, _)| c[a]).min().unwrap_or(0) as i32;
         let high = |a: usize| solid.iter().map(|(c, _)| c[a]).max().unwrap_or(0) as i32;
         let from = [(low(0) + high(0)) / 2, (low(1) + high(1)) / 2, low(2)];
-        let at = |c: Cell| [0, 1, 2].map(|a| c[a] as i32 - from[a]);
+        let at = |c: VoxelIndex| [0, 1, 2].map(|a| c[a] as i32 - from[a]);
         Some(Self {
             voxels: solid.into_iter().map(|(c, class)| (at(c), class)).collect(),
         })
@@ -54,9 +55,9 @@ impl Stamp {
     }
 
     /// Its voxels, by class, with their underside at a cell; what lies outside the grid is left out.
-    pub fn at(&self, frame: &Frame, cell: Cell) -> Vec<(Class, Vec<Cell>)> {
+    pub fn at(&self, frame: &Frame, cell: VoxelIndex) -> Vec<(Class, Vec<VoxelIndex>)> {
         let size = frame.extent().shape();
-        let mut out: Vec<(Class, Vec<Cell>)> = Vec::new();
+        let mut out: Vec<(Class, Vec<VoxelIndex>)> = Vec::new();
         for (by, class) in &self.voxels {
             let moved = [0, 1, 2].map(|a| i64::try_from(cell[a]).unwrap_or(i64::MAX / 2) + i64::from(by[a]));
             if (0..3).any(|a| moved[a] < 0 || moved[a] >= size[a] as i64) {
@@ -75,7 +76,7 @@ impl Stamp {
 /// Saved settings of a brush.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Held {
+pub enum BrushSettings {
     /// The brush of the map.
     Map {
         /// Layer that it paints.
@@ -113,7 +114,7 @@ pub struct SavedBrush {
     /// Its name.
     pub name: String,
     /// Settings of the brush.
-    pub held: Held,
+    pub held: BrushSettings,
 }
 
 impl SavedBrush {
@@ -123,18 +124,18 @@ impl SavedBrush {
 
 impl Hand {
     /// The brush in hand; none for tools that are no brush.
-    pub fn brush_in_hand(&self) -> Option<Held> {
+    pub fn brush_in_hand(&self) -> Option<BrushSettings> {
         match self.tool {
-            ToolId::BRUSH => Some(Held::Map {
+            ToolId::BRUSH => Some(BrushSettings::Map {
                 layer: self.layer,
                 shape: self.shape,
                 size_m: self.brush_m,
                 erase: self.erase,
             }),
             ToolId::VOXEL if self.voxel_mode == VoxelMode::Stamp => {
-                (!self.stamp.is_empty()).then(|| Held::Stamp(self.stamp.clone()))
+                (!self.stamp.is_empty()).then(|| BrushSettings::Stamp(self.stamp.clone()))
             }
-            ToolId::VOXEL => Some(Held::Voxels {
+            ToolId::VOXEL => Some(BrushSettings::Voxels {
                 mode: self.voxel_mode,
                 verb: self.verb,
                 class: self.voxel_class,
@@ -147,9 +148,9 @@ impl Hand {
     }
 
     /// Takes a brush in hand; sizes are brought within their limits.
-    pub fn take_brush(&mut self, held: &Held) {
+    pub fn take_brush(&mut self, held: &BrushSettings) {
         match held {
-            Held::Map {
+            BrushSettings::Map {
                 layer,
                 shape,
                 size_m,
@@ -161,7 +162,7 @@ impl Hand {
                     self.brush_m = size_m.clamp(*Self::BRUSH_M.start(), *Self::BRUSH_M.end());
                 }
             }
-            Held::Voxels {
+            BrushSettings::Voxels {
                 mode,
                 verb,
                 class,
@@ -175,7 +176,7 @@ impl Hand {
                 self.voxel_size = (*size).clamp(1, Self::MAX_VOXEL_SIZE);
                 self.voxel_height = (*height).clamp(1, scene::Extent::NZ);
             }
-            Held::Stamp(stamp) => {
+            BrushSettings::Stamp(stamp) => {
                 self.tool = ToolId::VOXEL;
                 (self.voxel_mode, self.stamp) = (VoxelMode::Stamp, stamp.clone());
             }
@@ -245,7 +246,7 @@ mod tests {
             (hand.layer, hand.brush_m, hand.erase),
             (BevLayer::Walkway, 5.6, true)
         );
-        hand.take_brush(&Held::Voxels {
+        hand.take_brush(&BrushSettings::Voxels {
             mode: VoxelMode::Block,
             verb: VoxelVerb::Remove,
             class: Class::Car,

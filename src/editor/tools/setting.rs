@@ -5,7 +5,7 @@ use scene::Class;
 
 /// One option, or something between them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Setting {
+pub struct ToolOption {
     /// Its name, for the tool.
     pub id: &'static str,
     /// Control that shows it, with its current value.
@@ -25,7 +25,7 @@ pub enum Control {
     /// A line of text that is read.
     Result(String),
     /// A number.
-    Number(Number),
+    Number(NumberSlider),
     /// One of several, side by side in rows of `columns`.
     Segments {
         /// The one chosen.
@@ -83,16 +83,16 @@ pub enum Control {
         enabled: bool,
     },
     /// Several side by side on one line.
-    Line(Vec<Setting>),
+    Line(Vec<ToolOption>),
     /// Several side by side, in as many lines as they need.
-    Row(Vec<Setting>),
+    Row(Vec<ToolOption>),
     /// A little room.
     Gap,
 }
 
 /// A number that is set by a slider.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Number {
+pub struct NumberSlider {
     /// Beside the slider.
     pub title: &'static str,
     /// Name for a screen reader.
@@ -146,7 +146,7 @@ impl Value {
     }
 }
 
-impl Setting {
+impl ToolOption {
     /// A setting.
     pub fn new(id: &'static str, control: Control) -> Self {
         Self { id, control }
@@ -177,7 +177,7 @@ impl Setting {
     ) -> Self {
         Self::new(
             id,
-            Control::Number(Number {
+            Control::Number(NumberSlider {
                 title,
                 label: title,
                 hint: "",
@@ -195,7 +195,7 @@ impl Setting {
     pub fn brush_size(brush_m: f64) -> Self {
         Self::new(
             "size",
-            Control::Number(Number {
+            Control::Number(NumberSlider {
                 title: "Size",
                 label: "Brush size",
                 hint: "[ and ], or Ctrl+wheel",

@@ -2,17 +2,20 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::pick::Ray;
+use crate::pick::PickRay;
 use scene::{BevLayout, Extent, Frame, Scene, VoxelGrid};
 
-use super::{Context, Event, Hand, Key, Modifiers, Pointer, Response, Sight, Tool, View, ViewKind};
+use super::{
+    Context, Event, Hand, Key, Modifiers, Pointer, ReadonlyContext, Response, ScreenProjection, Tool,
+    ViewKind,
+};
 
 const SCALE: f64 = 10.0;
 
 /// The ground from above, x to the right.
 struct Above;
 
-impl View for Above {
+impl ScreenProjection for Above {
     fn kind(&self) -> ViewKind {
         ViewKind::Bev
     }
@@ -21,8 +24,8 @@ impl View for Above {
         Some(p_m.truncate() * SCALE)
     }
 
-    fn ray(&self, at: DVec2) -> Option<Ray> {
-        Ray::new((at / SCALE).extend(100.0), -DVec3::Z)
+    fn ray(&self, at: DVec2) -> Option<PickRay> {
+        PickRay::new((at / SCALE).extend(100.0), -DVec3::Z)
     }
 
     fn right(&self) -> DVec3 {
@@ -96,8 +99,8 @@ impl Table {
     }
 
     /// What the tool sees with the pointer at a place.
-    pub fn sight(&self, x_m: f64, y_m: f64) -> Sight<'_> {
-        Sight {
+    pub fn sight(&self, x_m: f64, y_m: f64) -> ReadonlyContext<'_> {
+        ReadonlyContext {
             scene: &self.scene,
             settled: &self.scene,
             view: &Above,

@@ -158,7 +158,7 @@ fn regions_are_marked_and_points_measured() {
     table.press(tool, 0.0, 0.0, SHIFT);
     table.drag(tool, 4.0, -2.0);
     let marked = table.release(tool, 4.0, -2.0);
-    let corners = Area::Rect(DVec2::new(-0.2, -2.2), DVec2::new(4.2, 0.2));
+    let corners = InpaintArea::Rect(DVec2::new(-0.2, -2.2), DVec2::new(4.2, 0.2));
     assert_eq!(marked.acts, [Act::Mark(corners.clone(), false)]);
     // Ctrl takes away here, too.
     let ctrl = Modifiers { ctrl: true, ..NONE };
@@ -170,7 +170,7 @@ fn regions_are_marked_and_points_measured() {
     let on_its_way = table.drag(tool, 1.0, 0.0);
     assert_eq!(
         on_its_way.acts,
-        [Act::Mark(Area::Stroke(DVec2::ZERO, DVec2::X, 3.2), true)]
+        [Act::Mark(InpaintArea::Stroke(DVec2::ZERO, DVec2::X, 3.2), true)]
     );
     assert_eq!(table.release(tool, 1.0, 0.0), Response::none());
 
@@ -179,7 +179,7 @@ fn regions_are_marked_and_points_measured() {
     table.click(tool, 3.0, 4.0, NONE);
     assert_eq!((tool.points_m().len(), tool.wants()), (2, Wants::Escape));
     let said =
-        |s: &Setting| matches!(&s.control, setting::Control::Result(text) if text.starts_with("5.00 m"));
+        |s: &ToolOption| matches!(&s.control, setting::Control::Result(text) if text.starts_with("5.00 m"));
     assert!(tool.options(&table.hand).iter().any(said));
     assert!(table.key(tool, Key::Escape).taken && tool.points_m().is_empty());
 }
@@ -245,7 +245,7 @@ fn a_polygon_chooses_boxes_and_marks_regions_corner_by_corner() {
     assert!(
         tool.overlay(&table.sight(0.0, 0.0))
             .iter()
-            .any(|m| matches!(m, Mark::Dashed(p, _) if p.len() == 6))
+            .any(|m| matches!(m, ToolMark::Dashed(p, _) if p.len() == 6))
     );
     assert_eq!(table.hand.chosen(), []);
     assert!(table.tell(tool, Event::DoubleClick).taken);
@@ -268,7 +268,7 @@ fn a_polygon_chooses_boxes_and_marks_regions_corner_by_corner() {
         table.click(tool, x, y, NONE);
     }
     let dots = tool.overlay(&table.sight(0.0, 0.0));
-    assert_eq!(dots.iter().filter(|m| matches!(m, Mark::Dot(..))).count(), 4);
+    assert_eq!(dots.iter().filter(|m| matches!(m, ToolMark::Dot(..))).count(), 4);
     table.click(tool, -5.1, -5.0, NONE);
     assert_eq!(tool.wants(), Wants::Nothing);
     assert_eq!(table.hand.chosen(), [BoxId(2), BoxId(1)]);
@@ -285,7 +285,10 @@ fn a_polygon_chooses_boxes_and_marks_regions_corner_by_corner() {
     }
     let marked = table.key(tool, Key::Enter);
     let outline = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]].map(DVec2::from_array);
-    assert_eq!(marked.acts, [Act::Mark(Area::Outline(outline.to_vec()), false)]);
+    assert_eq!(
+        marked.acts,
+        [Act::Mark(InpaintArea::Outline(outline.to_vec()), false)]
+    );
     table.click(tool, 1.0, 1.0, NONE);
     toolbox.take(&mut table.hand, select::ID);
     assert_eq!(toolbox.tool(region::ID).wants(), Wants::Nothing);

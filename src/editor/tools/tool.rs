@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use scene::Frame;
 
-use super::{Act, Context, Event, Hand, Mark, Response, Setting, Sight, Value, ViewKind};
+use super::{Act, Context, Event, Hand, ReadonlyContext, Response, ToolMark, ToolOption, Value, ViewKind};
 
 /// Name of a tool; the action that takes the tool has the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -34,7 +34,7 @@ pub struct ToolDef {
     /// Name of its icon.
     pub icon: &'static str,
     /// Its part of the tool bar.
-    pub group: Group,
+    pub group: ToolGroup,
     /// True for a brush: the keys for size change the brush, not the height of things.
     pub is_brush: bool,
     /// True if it paints the map or voxels: its letter keys work even if objects are chosen.
@@ -47,7 +47,7 @@ pub struct ToolDef {
 
 /// A part of the bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
+pub enum ToolGroup {
     /// For the map, boxes and voxels.
     Scene,
     /// For things beside the road.
@@ -117,16 +117,16 @@ pub trait Tool: Debug + Send {
     fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint;
 
     /// The cursor over a view.
-    fn cursor(&self, sight: &Sight<'_>) -> Cursor;
+    fn cursor(&self, sight: &ReadonlyContext<'_>) -> Cursor;
 
     /// Marks to draw over a view.
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         let _ = sight;
         Vec::new()
     }
 
     /// Its options, as they are.
-    fn options(&self, hand: &Hand) -> Vec<Setting> {
+    fn options(&self, hand: &Hand) -> Vec<ToolOption> {
         let _ = hand;
         Vec::new()
     }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::pick::{self, Hit, Ray};
+use crate::pick::{self, PickHit, PickRay};
 use scene::{Extent, Frame, Scene};
 
 use super::Hand;
@@ -22,13 +22,13 @@ pub enum ViewKind {
 }
 
 /// Projection between ego frame and screen. Points of the screen are in the window's points, y down.
-pub trait View {
+pub trait ScreenProjection {
     /// Kind of the view.
     fn kind(&self) -> ViewKind;
     /// Point of the screen at which a point of the ego frame (m) appears; `None` behind the eye.
     fn project(&self, p_m: DVec3) -> Option<DVec2>;
     /// The ray under a point of the screen; from above it falls straight down.
-    fn ray(&self, at: DVec2) -> Option<Ray>;
+    fn ray(&self, at: DVec2) -> Option<PickRay>;
     /// The direction to the right on the screen, ego frame.
     fn right(&self) -> DVec3;
     /// Points per metre; only from above it is the same everywhere, elsewhere it is 1.
@@ -49,20 +49,20 @@ pub struct Context<'a> {
     /// The scene without the drag in progress: strokes pick against it.
     pub settled: &'a Scene,
     /// The view under the pointer.
-    pub view: &'a dyn View,
+    pub view: &'a dyn ScreenProjection,
     /// Options and selection of the user.
     pub hand: &'a mut Hand,
 }
 
 /// Read-only form of [`Context`], for marks, cursors and hints.
 #[derive(Clone, Copy)]
-pub struct Sight<'a> {
+pub struct ReadonlyContext<'a> {
     /// The scene shown, a drag in progress included.
     pub scene: &'a Scene,
     /// The scene without the drag in progress.
     pub settled: &'a Scene,
     /// The view that is drawn.
-    pub view: &'a dyn View,
+    pub view: &'a dyn ScreenProjection,
     /// Options and selection of the user.
     pub hand: &'a Hand,
     /// The pointer, if it is over the view.
@@ -86,7 +86,7 @@ impl Context<'_> {
     }
 }
 
-impl Sight<'_> {
+impl ReadonlyContext<'_> {
     /// True in the view from above.
     pub fn from_above(&self) -> bool {
         self.view.kind() == ViewKind::Bev
@@ -99,7 +99,7 @@ impl Sight<'_> {
 }
 
 /// The point where the ray under a point of the screen meets ground, voxels or boxes, ego frame, m.
-fn ground_m(view: &dyn View, scene: &Scene, at: DVec2) -> Option<DVec2> {
+fn ground_m(view: &dyn ScreenProjection, scene: &Scene, at: DVec2) -> Option<DVec2> {
     let ray = view.ray(at)?;
     if view.kind() == ViewKind::Bev {
         return Some(ray.origin_in_ego.truncate());
@@ -109,11 +109,11 @@ fn ground_m(view: &dyn View, scene: &Scene, at: DVec2) -> Option<DVec2> {
 }
 
 /// The point that was hit, ego frame, m.
-pub fn point_of(hit: &Hit, ray: &Ray) -> DVec3 {
+pub fn point_of(hit: &PickHit, ray: &PickRay) -> DVec3 {
     match hit {
-        Hit::Box { distance_m, .. } => ray.at(*distance_m),
-        Hit::Voxel(v) => ray.at(v.distance_m),
-        Hit::Ground { point_in_ego } => *point_in_ego,
+        PickHit::Box { distance_m, .. } => ray.at(*distance_m),
+        PickHit::Voxel(v) => ray.at(v.distance_m),
+        PickHit::Ground { point_in_ego } => *point_in_ego,
     }
 }
 

@@ -99,7 +99,7 @@ impl Other {
 
 /// Body of a driving vehicle, measured from the point that its path leads: a box's middle, the ego vehicle's rear axle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
+pub struct VehicleBody {
     /// From there to its front, m.
     pub front_m: f64,
     /// Half of its width, m.
@@ -125,7 +125,7 @@ const BESIDE_M: f64 = 1.7;
 pub fn ahead_of(
     points_m: &[DVec2],
     along_m: f64,
-    body: &Body,
+    body: &VehicleBody,
     others: &[Other],
 ) -> Option<(Other, f64, DVec2)> {
     // Objects that are not even near the path's rectangle need no projection.
@@ -156,7 +156,7 @@ pub fn follow(
     driver: &Driver,
     points_m: &[DVec2],
     (start_m, start_mps): (f64, f64),
-    body: &Body,
+    body: &VehicleBody,
     length_s: f64,
     others: impl Fn(f64) -> Vec<Other>,
 ) -> Followed {
@@ -243,7 +243,7 @@ mod tests {
         (0..400).map(|i| DVec2::new(f64::from(i), 0.0)).collect()
     }
 
-    const BODY: Body = Body {
+    const BODY: VehicleBody = VehicleBody {
         front_m: 2.2,
         half_width_m: 0.9,
     };

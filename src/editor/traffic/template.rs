@@ -5,7 +5,7 @@ use glam::DVec2;
 use scene::clip::{Path, Speed, Template};
 use scene::{BoxId, Class, Clip, Edit, Motion, Moving, Scene, SceneBox, SensorRig, relations};
 
-use super::follow::{Body, Driver, Other, ahead_of, can, follow};
+use super::follow::{Driver, Other, VehicleBody, ahead_of, can, follow};
 use super::gap::{ego_box, ego_box_of};
 use super::lane_path::{aside, lane_path, lane_through, smooth};
 use super::turning::{Turning, turning};
@@ -107,7 +107,7 @@ pub fn motion_of(scene: &Scene, id: Option<BoxId>, wish: &Wish) -> Result<Vec<Ed
 }
 
 /// The current place and the body of a box, or of the ego vehicle.
-fn place(scene: &Scene, id: Option<BoxId>) -> Option<(Moving, Body)> {
+fn place(scene: &Scene, id: Option<BoxId>) -> Option<(Moving, VehicleBody)> {
     match id {
         Some(id) => {
             let b = scene.frame().boxes.get(&id)?;
@@ -118,16 +118,16 @@ fn place(scene: &Scene, id: Option<BoxId>) -> Option<(Moving, Body)> {
 }
 
 /// The body of a box, which is led by its middle.
-pub(crate) fn body_of(b: &SceneBox) -> Body {
-    Body {
+pub(crate) fn body_of(b: &SceneBox) -> VehicleBody {
+    VehicleBody {
         front_m: b.size_m.x / 2.0,
         half_width_m: b.size_m.y / 2.0,
     }
 }
 
 /// The body of the ego vehicle, which is led by its rear axle.
-pub(crate) fn body_of_ego(scene: &Scene) -> Body {
-    Body {
+pub(crate) fn body_of_ego(scene: &Scene) -> VehicleBody {
+    VehicleBody {
         front_m: scene.rig.ego_center_m[0] + scene.rig.ego_size_m[0] / 2.0,
         half_width_m: scene.rig.ego_size_m[1] / 2.0,
     }
@@ -146,7 +146,7 @@ fn following(
     scene: &Scene,
     id: Option<BoxId>,
     points_m: &[DVec2],
-    (body, wish, length_s): (&Body, &Wish, f64),
+    (body, wish, length_s): (&VehicleBody, &Wish, f64),
 ) -> Result<Vec<Speed>, String> {
     let class = id.and_then(|id| scene.frame().boxes.get(&id)).map(|b| b.class);
     let who = id.map_or("the ego vehicle".to_owned(), |id| format!("box {}", id.0));
@@ -215,7 +215,7 @@ fn path_of(
     scene: &Scene,
     id: Option<BoxId>,
     from: &Moving,
-    body: &Body,
+    body: &VehicleBody,
     wish: &Wish,
     length_s: f64,
 ) -> Result<Path, String> {

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::DVec2;
 
 use crate::kerb::is_roadway;
-use crate::lanes::{LanePoint, along};
+use crate::lanes::{CentrelinePoint, along};
 use scene::{BevLayout, Polyline, PolylineKind};
 
 /// A street leads to the side if it turns off by so much, rad: 45 to 135 degrees.
@@ -41,7 +41,7 @@ struct Meeting {
     along_m: f64,
     at_m: DVec2,
     heading: DVec2,
-    lane: LanePoint,
+    lane: CentrelinePoint,
 }
 
 /// The way along `own_m` (points about a metre apart) up to the first street that leads to the left, or to the right, and
@@ -107,14 +107,14 @@ fn meeting(pair: &[DVec2], passed_m: f64, (line, lane): (usize, &Polyline), left
             along_m: passed_m + own.length() * t,
             at_m,
             heading,
-            lane: LanePoint::on(line, segment.unwrap_or(0), on_lane_m, heading.to_angle()),
+            lane: CentrelinePoint::on(line, segment.unwrap_or(0), on_lane_m, heading.to_angle()),
         });
     }
     None
 }
 
 /// True if a street goes on where a lane leads, and does not turn back.
-fn goes_on(layout: &BevLayout, lane: &LanePoint, radius_m: f64) -> bool {
+fn goes_on(layout: &BevLayout, lane: &CentrelinePoint, radius_m: f64) -> bool {
     let heading = DVec2::from_angle(lane.yaw_rad);
     let end_m = radius_m + GOES_ON_M;
     [0.4, 0.7, 1.0].iter().all(|share| {

@@ -1,6 +1,6 @@
 //! Boxes with their numbers.
 
-use super::{Exporter, OutFile, Product, Span};
+use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::{FormatError, Holds, box_list};
 
 /// See [`box_list`].
@@ -10,7 +10,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("boxes.json"),
     holds: &[Holds::Boxes],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Seen],
     write: |scene, products| {
         let recipe = products.recipe().clone();

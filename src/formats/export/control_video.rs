@@ -3,12 +3,12 @@
 
 use scene::{Pose, Scene};
 
-use super::{Exporter, OutFile, Products, Span};
+use super::{ExportSpan, Exporter, OutFile, Products};
 use crate::video::{VideoKind, VideoWriter};
-use crate::world_scenario::draw::Canvas;
-use crate::world_scenario::draw_scene::{Painted, Shot};
+use crate::world_scenario::draw::MultisamplePicture;
+use crate::world_scenario::draw_scene::{ColoredMap, Shot};
 use crate::world_scenario::ftheta::FTheta;
-use crate::world_scenario::map::Map;
+use crate::world_scenario::map::ScenarioMap;
 use crate::world_scenario::{VIDEO_HZ, boxes_at, clip_id, ego_at, length_s, rig, scenario_from_world};
 use crate::{FormatError, Holds};
 
@@ -22,7 +22,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: None,
     holds: &[Holds::Pictures],
     lost: "",
-    span: Span::Clip,
+    span: ExportSpan::Clip,
     needs: &[],
     write,
 };
@@ -54,18 +54,18 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
         });
     }
     let to_scenario = scenario_from_world(scene);
-    let painted = Painted::of(&Map::of(scene, &to_scenario));
+    let painted = ColoredMap::of(&ScenarioMap::of(scene, &to_scenario));
     let threads = std::thread::available_parallelism()
         .map_or(1, usize::from)
         .min(filmed.len());
     let share = filmed.len().div_ceil(threads);
-    let mut canvases: Vec<Canvas> = (0..threads).map(|_| Canvas::new(2, 2)).collect();
+    let mut canvases: Vec<MultisamplePicture> = (0..threads).map(|_| MultisamplePicture::new(2, 2)).collect();
     for frame in 0..frames {
         let time_s = f64::from(frame) / VIDEO_HZ;
         products.show(time_s.min(scene.clip().length_s))?;
         let ego = to_scenario * ego_at(scene, time_s);
         let boxes = boxes_at(scene, time_s, &to_scenario);
-        let film = |(filmed, canvas): (&mut [Filmed], &mut Canvas)| {
+        let film = |(filmed, canvas): (&mut [Filmed], &mut MultisamplePicture)| {
             filmed.iter_mut().try_for_each(|camera| {
                 let mut shot = Shot {
                     canvas: &mut *canvas,

@@ -2,7 +2,7 @@
 
 use scene::sensor_data::depth_mm;
 
-use super::{Exporter, OutFile, Product, Span};
+use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::{FormatError, Holds, calibration, png, sensor_names};
 
 /// `CAMERA_depth_mm.png` for each camera: millimetres along the optical axis, 0 where there is no depth.
@@ -12,7 +12,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: None,
     holds: &[Holds::Pictures],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::CameraMaps],
     write: |scene, products| {
         let recipe = products.recipe().clone();

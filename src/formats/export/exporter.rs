@@ -22,7 +22,7 @@ pub struct Exporter {
     /// does.
     pub lost: &'static str,
     /// How much of time it holds.
-    pub span: Span,
+    pub span: ExportSpan,
     /// Products that must be made of the scene first; the dialog shows the options for them.
     pub needs: &'static [Product],
     /// Makes the files. With [`Span::Moment`] the scene stands still and is in the ego frame; with [`Span::Clip`] it is
@@ -44,7 +44,7 @@ impl fmt::Debug for Exporter {
 
 /// How much of time a file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Span {
+pub enum ExportSpan {
     /// The moment that is shown.
     Moment,
     /// The whole clip; a scene that stands still is a clip of one moment.
@@ -79,9 +79,9 @@ pub trait Products {
     /// Errors once the export was cancelled.
     fn show(&mut self, time_s: f64) -> Result<(), FormatError>;
     /// How often sensors see each box.
-    fn seen(&mut self) -> Result<Seen, FormatError>;
+    fn seen(&mut self) -> Result<BoxVisibility, FormatError>;
     /// Which voxels the sensors observed.
-    fn observed(&mut self) -> Result<Observed, FormatError>;
+    fn observed(&mut self) -> Result<ObservationMasks, FormatError>;
     /// A sweep of the rig's first LiDAR.
     fn sweep(&mut self) -> Result<LidarSweep, FormatError>;
     /// Classes and depths of every camera, in the order of the rig; each is taken before the next is made.
@@ -92,14 +92,14 @@ pub trait Products {
     /// A picture of every camera, in the order of the rig; each is taken before the next is made.
     fn pictures(
         &mut self,
-        take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
+        take: &mut dyn FnMut(ExportPicture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError>;
     /// A picture of every camera and the truth about it, made of the same hits, in the order of the rig; each is taken
     /// before the next is made. Poses and boxes are in the ego frame. Flow leads to the clip's next frame, if there is
     /// one.
     fn truth(
         &mut self,
-        take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
+        take: &mut dyn FnMut(ExportPicture, CameraTruth) -> Result<(), FormatError>,
     ) -> Result<(), FormatError>;
     /// The scene as coloured Gaussians, in the ego frame.
     fn gaussians(&mut self) -> Result<GaussianScene, FormatError>;
@@ -108,12 +108,12 @@ pub trait Products {
     /// Where the ego vehicle is at the moment that products are made of, in the world frame.
     fn world_from_ego(&self) -> Pose;
     /// A picture of the 3D view.
-    fn view(&mut self) -> Result<Picture, FormatError>;
+    fn view(&mut self) -> Result<ExportPicture, FormatError>;
 }
 
 /// How often sensors see each box; `None` where there is no sensor of that kind.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Seen {
+pub struct BoxVisibility {
     /// Returns of all LiDARs.
     pub lidar_returns: Option<BTreeMap<BoxId, u32>>,
     /// Pixels of all cameras.
@@ -123,21 +123,21 @@ pub struct Seen {
 /// Which voxels the rays of sensors passed or ended in, in the ego frame of the moment: per column `[x][y]` of
 /// [`Observed::EXTENT`] one bit per bin, the lowest bin in bit 0. No bit is set where the rig has no sensor of that kind.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Observed {
+pub struct ObservationMasks {
     /// Rays of all LiDARs, one turn each.
     pub lidar: Vec<u16>,
     /// Rays through the pixels of all cameras.
     pub camera: Vec<u16>,
 }
 
-impl Observed {
+impl ObservationMasks {
     /// The columns that are told of.
     pub const EXTENT: Extent = Extent::WINDOW;
 }
 
 /// A picture to be written.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
+pub struct ExportPicture {
     /// The camera of the rig that took it; empty for the 3D view.
     pub camera: String,
     /// Pixels per row.

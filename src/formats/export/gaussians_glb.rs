@@ -5,7 +5,7 @@ use scene::truth::class_names;
 use scene::{GaussianScene, SceneGaussian};
 use serde_json::{Map, Value, json};
 
-use super::{Exporter, OutFile, Product, Span};
+use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::glb::container;
 use crate::recipe::{NAME, Recipe};
 use crate::{FormatError, Holds};
@@ -17,7 +17,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("scene_gaussians.glb"),
     holds: &[Holds::Pictures],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Gaussians],
     write: |_, products| {
         let gaussians = products.gaussians()?;
@@ -43,7 +43,7 @@ pub fn to_bytes(scene: &GaussianScene, recipe: &Recipe) -> Result<Vec<u8>, Forma
     }
     parts.sort_by_key(|g| (g.instance, g.class));
     let names = class_names();
-    let mut file = File::default();
+    let mut file = GlbBuilder::default();
     for part in parts.chunk_by(|a, b| (a.instance, a.class) == (b.instance, b.class)) {
         let (class, instance) = (part[0].class, part[0].instance);
         let class_name = names.get(usize::from(class)).map_or("others", String::as_str);
@@ -73,7 +73,7 @@ pub fn to_bytes(scene: &GaussianScene, recipe: &Recipe) -> Result<Vec<u8>, Forma
 
 /// A GLB that grows.
 #[derive(Default)]
-struct File {
+struct GlbBuilder {
     bytes: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
@@ -81,7 +81,7 @@ struct File {
     nodes: Vec<Value>,
 }
 
-impl File {
+impl GlbBuilder {
     /// An attribute of `count` elements, which `bytes` holds `stride` bytes apart; returns its accessor.
     fn attribute(&mut self, bytes: &[u8], stride: Option<usize>, mut accessor: Map<String, Value>) -> usize {
         let mut view = json!({

@@ -4,7 +4,7 @@
 use scene::truth::class_names;
 use scene::{GaussianScene, SceneGaussian};
 
-use super::{Exporter, OutFile, Product, Span};
+use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::Holds;
 use crate::recipe::{NAME, Recipe};
 
@@ -15,7 +15,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("scene_gaussians.ply"),
     holds: &[Holds::Pictures],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Gaussians],
     write: |_, products| {
         let gaussians = products.gaussians()?;

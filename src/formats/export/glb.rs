@@ -8,9 +8,11 @@ use scene::raster::box_cells;
 use scene::{BoxId, Class, Extent, Frame, Scene, SceneBox, VoxelGrid};
 use serde::Serialize;
 
-use super::{Exporter, OutFile, Span};
+use super::{ExportSpan, Exporter, OutFile};
 use crate::glb::mesh::{Mesh, meshes};
-use crate::glb::{BoxExtras, CLASS_MAP, ClassExtras, SceneExtras, Told, VERSION, container, y_up_from_z_up};
+use crate::glb::{
+    BoxExtras, CLASS_MAP, ClassExtras, ExtrasHeader, SceneExtras, VERSION, container, y_up_from_z_up,
+};
 use crate::recipe::Recipe;
 use crate::{FormatError, Holds};
 
@@ -21,7 +23,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("scene.glb"),
     holds: &[Holds::Occupancy, Holds::Boxes],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[],
     write: |scene, products| {
         let bytes = to_bytes(scene, products.recipe())?;
@@ -37,7 +39,7 @@ pub fn to_bytes(scene: &Scene, recipe: &Recipe) -> Result<Vec<u8>, FormatError> 
     }
     let (still, own) = apart(frame);
     let extent = still.extent();
-    let mut document = Builder::default();
+    let mut document = GltfBuilder::default();
     let place = |corner: DVec3| extent.from_voxel_units(corner);
     let by_class = meshes([extent.nx(), extent.ny()], |x, y| *still.column(x, y), place);
     let mut classes = Vec::new();
@@ -46,14 +48,14 @@ pub fn to_bytes(scene: &Scene, recipe: &Recipe) -> Result<Vec<u8>, FormatError> 
             continue;
         };
         let mesh = document.mesh(class.name(), class, mesh);
-        classes.push(document.node(Node {
+        classes.push(document.node(WrittenNode {
             name: class.name().to_owned(),
             mesh: Some(mesh),
             extras: Some(Extras::Class(ClassExtras {
                 class,
                 class_id: class.id(),
             })),
-            ..Node::default()
+            ..WrittenNode::default()
         }));
     }
     let mut boxes = Vec::new();
@@ -63,15 +65,15 @@ pub fn to_bytes(scene: &Scene, recipe: &Recipe) -> Result<Vec<u8>, FormatError> 
     let mut children = Vec::new();
     for (name, list) in [("occupancy", classes), ("boxes", boxes)] {
         if !list.is_empty() {
-            children.push(document.node(Node {
+            children.push(document.node(WrittenNode {
                 name: name.to_owned(),
                 children: list,
-                ..Node::default()
+                ..WrittenNode::default()
             }));
         }
     }
     let turn = y_up_from_z_up();
-    let root = document.node(Node {
+    let root = document.node(WrittenNode {
         name: format!("{} (z up)", scene.name),
         children,
         rotation: Some(turn.to_array()),
@@ -79,13 +81,13 @@ pub fn to_bytes(scene: &Scene, recipe: &Recipe) -> Result<Vec<u8>, FormatError> 
             sceneloom: told(scene),
             recipe: serde_json::to_value(recipe).map_err(FormatError::new)?,
         })),
-        ..Node::default()
+        ..WrittenNode::default()
     });
     document.finish(&scene.name, root)
 }
 
-fn told(scene: &Scene) -> Told {
-    Told {
+fn told(scene: &Scene) -> ExtrasHeader {
+    ExtrasHeader {
         version: VERSION,
         seed: scene.seed.to_string(),
         class_map: CLASS_MAP.to_owned(),
@@ -147,18 +149,18 @@ fn cuboid(size_m: DVec3) -> Mesh {
 
 /// A glTF document in the making, with its one buffer.
 #[derive(Default)]
-struct Builder {
-    nodes: Vec<Node>,
+struct GltfBuilder {
+    nodes: Vec<WrittenNode>,
     meshes: Vec<MeshOut>,
-    materials: Vec<Material>,
+    materials: Vec<GltfMaterial>,
     material_of: BTreeMap<Class, usize>,
     accessors: Vec<Accessor>,
-    views: Vec<View>,
+    views: Vec<GltfBufferView>,
     bytes: Vec<u8>,
 }
 
-impl Builder {
-    fn node(&mut self, node: Node) -> usize {
+impl GltfBuilder {
+    fn node(&mut self, node: WrittenNode) -> usize {
         self.nodes.push(node);
         self.nodes.len() - 1
     }
@@ -182,13 +184,13 @@ impl Builder {
         };
         let (sin, cos) = (b.yaw_rad.rem_euclid(std::f64::consts::TAU) / 2.0).sin_cos();
         let mesh = self.mesh(&name, b.class, &mesh);
-        self.node(Node {
+        self.node(WrittenNode {
             mesh: Some(mesh),
             translation: Some(b.center_m.to_array()),
             rotation: Some([0.0, 0.0, sin, cos]),
             extras: Some(Extras::Box(BoxExtras::of(b, voxels.is_some()))),
             name,
-            ..Node::default()
+            ..WrittenNode::default()
         })
     }
 
@@ -246,7 +248,7 @@ impl Builder {
 
     fn view(&mut self, bytes: &[u8], target: u32) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        self.views.push(View {
+        self.views.push(GltfBufferView {
             buffer: 0,
             byte_offset: self.bytes.len(),
             byte_length: bytes.len(),
@@ -260,7 +262,7 @@ impl Builder {
         let materials = &mut self.materials;
         *self.material_of.entry(class).or_insert_with(|| {
             let [r, g, b] = class.color().map(linear);
-            materials.push(Material {
+            materials.push(GltfMaterial {
                 name: class.name(),
                 pbr: Pbr {
                     base_color_factor: [r, g, b, 1.0],
@@ -273,7 +275,7 @@ impl Builder {
     }
 
     fn finish(self, scene: &str, root: usize) -> Result<Vec<u8>, FormatError> {
-        let document = Document {
+        let document = GltfExport {
             asset: Asset {
                 version: "2.0",
                 generator: concat!("sceneloom ", env!("CARGO_PKG_VERSION")),
@@ -316,19 +318,19 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-struct Document {
+struct GltfExport {
     asset: Asset,
     scene: usize,
     scenes: [SceneOut; 1],
-    nodes: Vec<Node>,
+    nodes: Vec<WrittenNode>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     meshes: Vec<MeshOut>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    materials: Vec<Material>,
+    materials: Vec<GltfMaterial>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     accessors: Vec<Accessor>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    buffer_views: Vec<View>,
+    buffer_views: Vec<GltfBufferView>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     buffers: Vec<Buffer>,
 }
@@ -346,7 +348,7 @@ struct SceneOut {
 }
 
 #[derive(Default, Serialize)]
-struct Node {
+struct WrittenNode {
     name: String,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     children: Vec<usize>,
@@ -389,7 +391,7 @@ struct Attributes {
 }
 
 #[derive(Serialize)]
-struct Material {
+struct GltfMaterial {
     name: &'static str,
     #[serde(rename = "pbrMetallicRoughness")]
     pbr: Pbr,
@@ -419,7 +421,7 @@ struct Accessor {
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-struct View {
+struct GltfBufferView {
     buffer: usize,
     byte_offset: usize,
     byte_length: usize,

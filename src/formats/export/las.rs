@@ -7,7 +7,7 @@ use laz::{LasZipCompressor, LazVlr, LazVlrBuilder};
 use scene::{LidarPoint, LidarSweep, Scene};
 
 use super::pcd::physical_sweep;
-use super::{Exporter, OutFile, Product, Products, Span};
+use super::{ExportSpan, Exporter, OutFile, Product, Products};
 use crate::las::{CLASS_FIELD, RING_FIELD, SOFTWARE, asprs_of, record_length};
 use crate::{FormatError, Holds};
 
@@ -18,7 +18,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("lidar.las"),
     holds: &[Holds::Points],
     lost: "single points: they come back as voxels with the class of most of them",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Sweep],
     write: |scene, products| write(scene, products, "lidar.las", false),
 };
@@ -30,7 +30,7 @@ pub const PACKED: Exporter = Exporter {
     file_name: Some("lidar.laz"),
     holds: &[Holds::Points],
     lost: "single points: they come back as voxels with the class of most of them",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Sweep],
     write: |scene, products| write(scene, products, "lidar.laz", true),
 };

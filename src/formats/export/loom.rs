@@ -1,6 +1,6 @@
 //! The program's own scenes.
 
-use super::{Exporter, OutFile, Span};
+use super::{ExportSpan, Exporter, OutFile};
 use crate::{FormatError, Holds, loom};
 
 /// See [`loom`].
@@ -10,7 +10,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("scene.loom"),
     holds: &[Holds::Scene],
     lost: "",
-    span: Span::Clip,
+    span: ExportSpan::Clip,
     needs: &[],
     write: |scene, _| {
         let bytes = loom::to_bytes(scene).map_err(FormatError::new)?;

@@ -30,7 +30,9 @@ pub mod view;
 pub mod vox;
 pub mod world_scenario;
 
-pub use exporter::{Exporter, Observed, OutFile, Picture, Product, Products, Seen, Span};
+pub use exporter::{
+    BoxVisibility, ExportPicture, ExportSpan, Exporter, ObservationMasks, OutFile, Product, Products,
+};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
 const TABLE: &[&Exporter] = &[

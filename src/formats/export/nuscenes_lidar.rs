@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use scene::{LidarPattern, LidarSweep};
 
-use super::{Exporter, OutFile, Product, Span};
+use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::{FormatError, Holds};
 
 /// See [`to_bytes`].
@@ -14,7 +14,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("LIDAR_TOP.pcd.bin"),
     holds: &[Holds::Points],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Sweep],
     write: |scene, products| {
         let sweep = products.sweep()?;

@@ -2,7 +2,7 @@
 
 use scene::{Class, Extent, Frame};
 
-use super::{Exporter, Observed, OutFile, Product, Span};
+use super::{ExportSpan, Exporter, ObservationMasks, OutFile, Product};
 use crate::occ3d::{self, Occ3dFrame};
 use crate::{Holds, voxels};
 
@@ -13,14 +13,14 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("labels.npz"),
     holds: &[Holds::Occupancy],
     lost: "which sensor observed a voxel: what any of them observed comes back as observed",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Observed],
     write: |scene, products| {
         // A map of another extent is cut to the window of the format.
         let frame = scene.frame();
         voxels::check(frame)?;
         let labels = frame.occupancy.crop(Extent::WINDOW);
-        let Observed { lidar, camera } = products.observed()?;
+        let ObservationMasks { lidar, camera } = products.observed()?;
         let known = known(frame);
         let [lidar_observed, camera_observed] = [lidar, camera].map(|words| Some(mask(&words, &known)));
         let found = Occ3dFrame {

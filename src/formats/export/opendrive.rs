@@ -1,6 +1,6 @@
 //! Roads as OpenDRIVE.
 
-use super::{Exporter, OutFile, Span};
+use super::{ExportSpan, Exporter, OutFile};
 use crate::{Holds, opendrive};
 
 /// See [`opendrive::write`].
@@ -11,7 +11,7 @@ pub const EXPORTER: Exporter = Exporter {
     holds: &[Holds::Roads],
     lost: "",
     // Roads stand still: they are written as they lie in the world frame.
-    span: Span::Clip,
+    span: ExportSpan::Clip,
     needs: &[],
     write: |scene, _| {
         let bytes = opendrive::write::to_bytes(

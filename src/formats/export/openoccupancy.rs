@@ -1,6 +1,6 @@
 //! Occupancy as OpenOccupancy (nuScenes-Occupancy) keeps it.
 
-use super::{Exporter, OutFile, Span};
+use super::{ExportSpan, Exporter, OutFile};
 use crate::{Holds, sparse_npy};
 
 /// See `sparse_npy`: cells of 0.2 m, 512 x 512 x 40 of them around the first LiDAR.
@@ -11,7 +11,7 @@ pub const EXPORTER: Exporter = Exporter {
     holds: &[Holds::Occupancy],
     lost: "the class others (noise there); what is more than 3 m above the LiDAR or 51 m away; things less than three voxels high \
            come back three high",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[],
     write: |scene, _| {
         let bytes = sparse_npy::to_bytes(scene, &sparse_npy::OPEN_OCCUPANCY)?;

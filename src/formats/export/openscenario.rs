@@ -1,6 +1,6 @@
 //! A clip as OpenSCENARIO.
 
-use super::{Exporter, OutFile, Span};
+use super::{ExportSpan, Exporter, OutFile};
 use crate::{Holds, opendrive, openscenario};
 
 /// See [`openscenario`].
@@ -10,7 +10,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: None,
     holds: &[Holds::Roads, Holds::Boxes],
     lost: "",
-    span: Span::Clip,
+    span: ExportSpan::Clip,
     needs: &[],
     write: |scene, _| {
         Ok(vec![

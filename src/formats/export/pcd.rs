@@ -3,7 +3,7 @@
 use glam::DVec3;
 use scene::{LidarSweep, Scene};
 
-use super::{Exporter, OutFile, Product, Products, Span};
+use super::{ExportSpan, Exporter, OutFile, Product, Products};
 use crate::physical::to_physical_ground;
 use crate::{FormatError, Holds};
 
@@ -14,7 +14,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("lidar.pcd"),
     holds: &[Holds::Points],
     lost: "single points: they come back as voxels with the class of most of them",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Sweep],
     write: |scene, products| {
         let sweep = physical_sweep(scene, products)?;

@@ -1,6 +1,6 @@
 //! Pictures that the cameras take.
 
-use super::{Exporter, OutFile, Product, Span};
+use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::{FormatError, Holds, calibration, png, sensor_names};
 
 /// `CAMERA.png` for each camera.
@@ -10,7 +10,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: None,
     holds: &[Holds::Pictures],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Pictures],
     write: |scene, products| {
         let recipe = products.recipe().clone();

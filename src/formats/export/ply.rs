@@ -2,7 +2,7 @@
 
 use scene::{Class, LidarSweep};
 
-use super::{Exporter, OutFile, Product, Span};
+use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::Holds;
 
 /// See [`to_bytes`].
@@ -12,7 +12,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("lidar.ply"),
     holds: &[Holds::Points],
     lost: "single points: they come back as voxels with the class of most of them",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Sweep],
     write: |_, products| Ok(vec![OutFile::new("lidar.ply", to_bytes(&products.sweep()?))]),
 };

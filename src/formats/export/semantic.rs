@@ -4,7 +4,7 @@ use scene::sensor_data::{RENDER_IDS, RenderId, render_id_color};
 use scene::{CameraMaps, Class};
 use serde_json::json;
 
-use super::{Exporter, OutFile, Product, Span};
+use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::{FormatError, Holds, calibration, png, sensor_names};
 
 /// `CAMERA_semantic.png` for each camera, and `classes.json`.
@@ -14,7 +14,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: None,
     holds: &[Holds::Pictures],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::CameraMaps],
     write: |scene, products| {
         let recipe = products.recipe().clone();

@@ -4,7 +4,7 @@ use glam::DVec3;
 use scene::solid::fill::SMEAR;
 use scene::{Class, Extent, Frame, LidarSweep, Pose, Scene};
 
-use super::{Exporter, Observed, OutFile, Product, Products, Span};
+use super::{ExportSpan, Exporter, ObservationMasks, OutFile, Product, Products};
 use crate::semantic_kitti::{CELLS, LATTICE, ego_from_cells, packed, raw_id};
 use crate::voxels::{Physical, cells_of, physical};
 use crate::{FormatError, Holds};
@@ -18,7 +18,7 @@ pub const EXPORTER: Exporter = Exporter {
     lost: "what is behind the LiDAR, more than 51.2 m ahead of it, 25.6 m beside it or 2 m below it; barriers come back as \
            manmade, construction vehicles as trailers, traffic cones as others; things less than three voxels high come back \
            three high",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Sweep, Product::Observed],
     write,
 };
@@ -66,15 +66,15 @@ fn is_known(frame: &Frame, p_in_ego: DVec3) -> bool {
 }
 
 /// True at a point that a ray of the LiDAR passed or ended at. Rays met the ground where Occ3D has it.
-fn is_seen(physical: &Physical, observed: &Observed, p_in_ego: DVec3) -> bool {
-    let Some([x, y, z]) = Physical::voxel_at(Observed::EXTENT, p_in_ego) else {
+fn is_seen(physical: &Physical, observed: &ObservationMasks, p_in_ego: DVec3) -> bool {
+    let Some([x, y, z]) = Physical::voxel_at(ObservationMasks::EXTENT, p_in_ego) else {
         return false;
     };
     let here = Physical::voxel_at(physical.extent(), p_in_ego);
     let label = here.map_or(Class::FREE, |[x, y, z]| physical.column(x, y)[z]);
     let is_ground = Class::from_id(label).is_some_and(Class::is_ground);
     let bin = if is_ground { z.saturating_sub(SMEAR) } else { z };
-    let word = observed.lidar.get(Observed::EXTENT.index(x, y));
+    let word = observed.lidar.get(ObservationMasks::EXTENT.index(x, y));
     word.is_some_and(|word| u32::from(*word) >> bin & 1 == 1)
 }
 
@@ -183,10 +183,10 @@ mod tests {
             fn show(&mut self, time_s: f64) -> Result<(), FormatError> {
                 Small.show(time_s)
             }
-            fn seen(&mut self) -> Result<super::super::Seen, FormatError> {
+            fn seen(&mut self) -> Result<super::super::BoxVisibility, FormatError> {
                 Small.seen()
             }
-            fn observed(&mut self) -> Result<Observed, FormatError> {
+            fn observed(&mut self) -> Result<ObservationMasks, FormatError> {
                 Small.observed()
             }
             fn sweep(&mut self) -> Result<LidarSweep, FormatError> {
@@ -215,13 +215,16 @@ mod tests {
             }
             fn pictures(
                 &mut self,
-                take: &mut dyn FnMut(super::super::Picture) -> Result<(), FormatError>,
+                take: &mut dyn FnMut(super::super::ExportPicture) -> Result<(), FormatError>,
             ) -> Result<(), FormatError> {
                 Small.pictures(take)
             }
             fn truth(
                 &mut self,
-                take: &mut dyn FnMut(crate::export::Picture, scene::CameraTruth) -> Result<(), FormatError>,
+                take: &mut dyn FnMut(
+                    crate::export::ExportPicture,
+                    scene::CameraTruth,
+                ) -> Result<(), FormatError>,
             ) -> Result<(), FormatError> {
                 Small.truth(take)
             }
@@ -234,7 +237,7 @@ mod tests {
             fn world_from_ego(&self) -> scene::Pose {
                 Small.world_from_ego()
             }
-            fn view(&mut self) -> Result<super::super::Picture, FormatError> {
+            fn view(&mut self) -> Result<super::super::ExportPicture, FormatError> {
                 Small.view()
             }
         }

@@ -4,8 +4,8 @@ use scene::sensor_data::depth_mm;
 use scene::truth::{self, CameraTruth, SeenBox};
 use serde_json::{Value, json};
 
-use super::{Exporter, OutFile, Picture, Product, Span};
-use crate::npz::{self, Array, Values};
+use super::{ExportPicture, ExportSpan, Exporter, OutFile, Product};
+use crate::npz::{self, Array, NpzValues};
 use crate::recipe::{self, Recipe};
 use crate::{FormatError, Holds, calibration, png, sensor_names};
 
@@ -17,7 +17,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: None,
     holds: &[Holds::Pictures],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::Truth],
     write: |scene, products| {
         let recipe = products.recipe().clone();
@@ -41,7 +41,7 @@ pub const EXPORTER: Exporter = Exporter {
 pub fn of_camera(
     recipe: &Recipe,
     name: &str,
-    picture: &Picture,
+    picture: &ExportPicture,
     truth: &CameraTruth,
 ) -> Result<Vec<OutFile>, FormatError> {
     let (w, h) = (truth.width, truth.height);
@@ -94,15 +94,15 @@ fn arrays(truth: &CameraTruth) -> std::io::Result<Vec<u8>> {
         values,
     };
     let mut arrays = vec![
-        array("class", Values::U8(truth.plane(|p| p.class))),
-        array("instance", Values::U32(truth.plane(|p| p.instance))),
-        array("depth_m", Values::F32(truth.plane(|p| p.depth_m))),
+        array("class", NpzValues::U8(truth.plane(|p| p.class))),
+        array("instance", NpzValues::U32(truth.plane(|p| p.instance))),
+        array("depth_m", NpzValues::F32(truth.plane(|p| p.depth_m))),
     ];
     if truth.flow_s.is_some() {
         arrays.push(Array {
             name: "flow_px",
             shape: &pairs,
-            values: Values::F32(truth.pixels.iter().flat_map(|p| p.flow_px).collect()),
+            values: NpzValues::F32(truth.pixels.iter().flat_map(|p| p.flow_px).collect()),
         });
     }
     npz::to_bytes(&arrays)

@@ -1,6 +1,6 @@
 //! A picture of the 3D view.
 
-use super::{Exporter, OutFile, Product, Span};
+use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::{FormatError, Holds, png};
 
 /// One picture.
@@ -10,7 +10,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("view.png"),
     holds: &[Holds::Pictures],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[Product::View],
     write: |_, products| {
         let recipe = products.recipe().clone();

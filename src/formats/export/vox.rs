@@ -1,6 +1,6 @@
 //! Occupancy for MagicaVoxel.
 
-use super::{Exporter, OutFile, Span};
+use super::{ExportSpan, Exporter, OutFile};
 use crate::{Holds, vox, voxels};
 
 /// See `vox`.
@@ -10,7 +10,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("occupancy.vox"),
     holds: &[Holds::Occupancy],
     lost: "",
-    span: Span::Moment,
+    span: ExportSpan::Moment,
     needs: &[],
     write: |scene, _| {
         let frame = scene.frame();

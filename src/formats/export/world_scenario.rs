@@ -1,6 +1,6 @@
 //! A clip as a world scenario: the tables; see [`crate::world_scenario`].
 
-use super::{Exporter, OutFile, Span};
+use super::{ExportSpan, Exporter, OutFile};
 use crate::Holds;
 use crate::world_scenario::{clip_id, tables};
 
@@ -11,7 +11,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: None,
     holds: &[Holds::Boxes, Holds::Roads],
     lost: "",
-    span: Span::Clip,
+    span: ExportSpan::Clip,
     needs: &[],
     write: |scene, _| {
         let id = clip_id(scene);

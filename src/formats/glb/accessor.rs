@@ -14,23 +14,23 @@ pub(crate) type Buffers<'a> = [std::borrow::Cow<'a, [u8]>];
 
 /// Positions of corners; nothing is copied.
 pub(crate) struct Positions<'a> {
-    numbers: Numbers<'a>,
+    numbers: AccessorElements<'a>,
     replaced: BTreeMap<u64, DVec3>,
 }
 
 /// Places of corners in a picture, from 0 to 1 across and down it.
-pub(crate) struct PicturePlaces<'a>(Numbers<'a>);
+pub(crate) struct PicturePlaces<'a>(AccessorElements<'a>);
 
 /// Indices of corners, or simply their order.
 pub(crate) enum Indices<'a> {
     /// The indices that the file lists.
-    Listed(Numbers<'a>),
+    Listed(AccessorElements<'a>),
     /// No list: the corners in their order, so many of them.
     InOrder(u64),
 }
 
 /// Elements of one accessor in its buffer.
-pub(crate) struct Numbers<'a> {
+pub(crate) struct AccessorElements<'a> {
     /// Starts with the first element; `None` if all are zero.
     bytes: Option<&'a [u8]>,
     stride: usize,
@@ -44,7 +44,7 @@ impl<'a> Positions<'a> {
     /// From an accessor. Errors in one line if it holds no positions, or does not lie within its buffer.
     pub(crate) fn new(root: &Root, buffers: &'a Buffers<'_>, index: usize) -> Result<Self, FormatError> {
         let accessor = get(&root.accessors, index, "accessor")?;
-        let numbers = Numbers::new(root, buffers, accessor, index)?;
+        let numbers = AccessorElements::new(root, buffers, accessor, index)?;
         if numbers.components != 3 || matches!(numbers.kind, ComponentType::U32) {
             return Err(FormatError::new(format!(
                 "accessor {index}: expected positions of three numbers each"
@@ -52,7 +52,7 @@ impl<'a> Positions<'a> {
         }
         let mut replaced = BTreeMap::new();
         if let Some(sparse) = &accessor.sparse {
-            let listed = Numbers {
+            let listed = AccessorElements {
                 components: 1,
                 normalized: false,
                 kind: component(&sparse.indices.component_type)
@@ -79,7 +79,7 @@ impl<'a> Positions<'a> {
                 sparse.values.buffer_view.value(),
                 sparse.values.byte_offset.0,
             )?;
-            let values = Numbers {
+            let values = AccessorElements {
                 bytes: Some(bytes),
                 stride: numbers.tight(),
                 count: sparse.count.0,
@@ -111,7 +111,7 @@ impl<'a> PicturePlaces<'a> {
     /// buffer.
     pub(crate) fn new(root: &Root, buffers: &'a Buffers<'_>, index: usize) -> Result<Self, FormatError> {
         let accessor = get(&root.accessors, index, "accessor")?;
-        let numbers = Numbers::new(root, buffers, accessor, index)?;
+        let numbers = AccessorElements::new(root, buffers, accessor, index)?;
         match numbers.components == 2 && accessor.sparse.is_none() {
             true => Ok(Self(numbers)),
             false => Err(FormatError::new(format!(
@@ -139,7 +139,7 @@ impl<'a> Indices<'a> {
             return Ok(Self::InOrder(corners));
         };
         let accessor = get(&root.accessors, index, "accessor")?;
-        let numbers = Numbers::new(root, buffers, accessor, index)?;
+        let numbers = AccessorElements::new(root, buffers, accessor, index)?;
         let is_index = matches!(
             numbers.kind,
             ComponentType::U8 | ComponentType::U16 | ComponentType::U32
@@ -167,7 +167,7 @@ impl<'a> Indices<'a> {
     }
 }
 
-impl<'a> Numbers<'a> {
+impl<'a> AccessorElements<'a> {
     fn new(
         root: &Root,
         buffers: &'a Buffers<'_>,

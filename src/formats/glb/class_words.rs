@@ -161,7 +161,7 @@ const SEVERAL: [&str; 9] = [
 
 /// Meaning of a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Said {
+pub(crate) struct NameMeaning {
     /// The class, if a word tells it.
     pub(crate) class: Option<Class>,
     /// True where it names several things.
@@ -171,7 +171,7 @@ pub(crate) struct Said {
 }
 
 /// Reads the meaning of a name. Names of the program's own classes are taken literally.
-pub(crate) fn said(name: &str) -> Said {
+pub(crate) fn said(name: &str) -> NameMeaning {
     let words = words(name);
     let has = |word: &str| words.iter().any(|w| w == word);
     // Two words that belong together, such as "traffic light".
@@ -183,7 +183,7 @@ pub(crate) fn said(name: &str) -> Said {
         Class::from_name(&spaced.replace([' ', '-'], "_"))
     });
     let by_words = || WORDS.iter().find(|(word, _)| told(word)).map(|(_, class)| *class);
-    Said {
+    NameMeaning {
         class: own.filter(|class| *class != Class::Free).or_else(by_words),
         several: SEVERAL.iter().any(|word| has(word)),
         nothing: NOTHING.iter().any(|word| has(word)),

@@ -5,12 +5,12 @@ use scene::raster::box_cells;
 use scene::solid::fill::{SMEAR, smear_down};
 use scene::{Class, Extent, SceneBox, VoxelGrid};
 
-use super::surface::Surface;
+use super::surface::TriangleRasteriser;
 use crate::FormatError;
 
 /// The surfaces of still parts at their measured height; ground apart.
 pub(crate) struct Statics {
-    surface: Surface,
+    surface: TriangleRasteriser,
     stands: VoxelGrid,
     ground: VoxelGrid,
 }
@@ -18,7 +18,7 @@ pub(crate) struct Statics {
 impl Statics {
     pub(crate) fn new(extent: Extent) -> Self {
         Self {
-            surface: Surface::new(extent),
+            surface: TriangleRasteriser::new(extent),
             stands: VoxelGrid::over(extent),
             ground: VoxelGrid::over(extent),
         }
@@ -93,7 +93,7 @@ impl Statics {
 
 /// How high a thing is in each column that its box may cover.
 pub(crate) struct Heights {
-    surface: Surface,
+    surface: TriangleRasteriser,
     /// First column, and how many along x and y.
     from: [usize; 2],
     size: [usize; 2],
@@ -111,7 +111,7 @@ impl Heights {
         let from = [0, 1].map(|axis| column(low[axis].floor(), axis));
         let size = [0, 1].map(|axis| column(high[axis].floor() + 1.0, axis) - from[axis]);
         Self {
-            surface: Surface::new(extent),
+            surface: TriangleRasteriser::new(extent),
             from,
             size,
             top: vec![f64::NEG_INFINITY; size[0] * size[1]],

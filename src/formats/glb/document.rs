@@ -16,7 +16,7 @@ use scene::message::quoted;
 use super::accessor::{Indices, PicturePlaces, Positions, from, get};
 use super::{container, z_up_from_y_up};
 use crate::FormatError;
-use crate::import::Source;
+use crate::import::ImportFile;
 
 /// Largest file beside a document, bytes.
 const LARGEST_BUFFER: u64 = 512 << 20;
@@ -39,20 +39,20 @@ const HARMLESS: [&str; 8] = [
 ];
 
 /// A document that was read, and the nodes of its scene.
-pub(crate) struct Document<'a> {
+pub(crate) struct GltfDocument<'a> {
     /// The JSON document as in the file.
     pub(crate) root: Root,
     /// Every node that the scene shows, parents before their children.
-    pub(crate) nodes: Vec<Node>,
+    pub(crate) nodes: Vec<GltfNode>,
     /// Name of the scene; empty without one.
     pub(crate) scene_name: String,
     buffers: Vec<Cow<'a, [u8]>>,
     /// The file itself; other files beside it are read through this.
-    source: &'a Source<'a>,
+    source: &'a ImportFile<'a>,
 }
 
 /// A node of the scene.
-pub(crate) struct Node {
+pub(crate) struct GltfNode {
     /// Its name; empty without one.
     pub(crate) name: String,
     /// Place of its parent in the list.
@@ -88,9 +88,9 @@ impl LeftOut {
     }
 }
 
-impl<'a> Document<'a> {
+impl<'a> GltfDocument<'a> {
     /// Reads a GLB file, or glTF as JSON with its buffers inside or beside it.
-    pub(crate) fn read(source: &'a Source<'a>) -> Result<Self, FormatError> {
+    pub(crate) fn read(source: &'a ImportFile<'a>) -> Result<Self, FormatError> {
         let (json, bin) = match container::is_glb(source.bytes) {
             true => {
                 let chunks = container::split(source.bytes)?;
@@ -125,7 +125,7 @@ impl<'a> Document<'a> {
     /// that is not finite are left out.
     pub(crate) fn triangles(
         &self,
-        node: &Node,
+        node: &GltfNode,
         left_out: &mut LeftOut,
         mut visit: impl FnMut(usize, [DVec3; 3]),
     ) -> Result<(), FormatError> {
@@ -170,7 +170,7 @@ impl<'a> Document<'a> {
     }
 
     /// Triangles of this node as often as they are shown, at most.
-    fn count(&self, node: &Node) -> u64 {
+    fn count(&self, node: &GltfNode) -> u64 {
         let mesh = node.mesh.and_then(|mesh| self.root.meshes.get(mesh));
         let primitives = mesh.map_or(&[][..], |m| &m.primitives);
         let triangles = |p: &Primitive| {
@@ -267,7 +267,7 @@ fn check(root: &Root) -> Result<(), FormatError> {
 fn buffers<'a>(
     root: &Root,
     bin: Option<&'a [u8]>,
-    source: &'a Source<'_>,
+    source: &'a ImportFile<'_>,
 ) -> Result<Vec<Cow<'a, [u8]>>, FormatError> {
     let mut out = Vec::with_capacity(root.buffers.len());
     for (i, buffer) in root.buffers.iter().enumerate() {
@@ -295,7 +295,7 @@ fn buffers<'a>(
 }
 
 /// The bytes at an address: written into it (base64), or in a file beside the document and in no folder above it.
-fn addressed(uri: &str, source: &Source<'_>, limit: u64) -> Result<Vec<u8>, FormatError> {
+fn addressed(uri: &str, source: &ImportFile<'_>, limit: u64) -> Result<Vec<u8>, FormatError> {
     if let Some(data) = uri.strip_prefix("data:") {
         let text = data.split_once(";base64,").map(|(_, text)| text);
         let text = text.ok_or_else(|| FormatError::new("a data address that is not base64"))?;
@@ -337,7 +337,7 @@ fn percent_decoded(uri: &str) -> String {
 
 /// The nodes of the scene, parents first, and the scene's name. Without a scene it begins at all nodes that are no
 /// node's child.
-fn nodes(root: &Root) -> Result<(Vec<Node>, String), FormatError> {
+fn nodes(root: &Root) -> Result<(Vec<GltfNode>, String), FormatError> {
     let shown = match (root.scene, root.scenes.len()) {
         (Some(scene), _) => Some(get(&root.scenes, scene.value(), "scene")?),
         (None, 0) => None,
@@ -360,7 +360,7 @@ fn nodes(root: &Root) -> Result<(Vec<Node>, String), FormatError> {
     let mut seen = vec![false; root.nodes.len()];
     let mut open: Vec<(usize, Option<usize>, DAffine3, usize)> =
         first.into_iter().rev().map(|i| (i, None, up, 0)).collect();
-    let mut out: Vec<Node> = Vec::new();
+    let mut out: Vec<GltfNode> = Vec::new();
     while let Some((index, parent, outer, depth)) = open.pop() {
         let node: &JsonNode = get(&root.nodes, index, "node")?;
         if std::mem::replace(&mut seen[index], true) {
@@ -375,7 +375,7 @@ fn nodes(root: &Root) -> Result<(Vec<Node>, String), FormatError> {
         }
         let world_from_node = outer * local(node);
         let at = out.len();
-        out.push(Node {
+        out.push(GltfNode {
             name: node.name.clone().unwrap_or_default(),
             parent,
             world_from_node,

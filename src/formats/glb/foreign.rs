@@ -11,15 +11,15 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use scene::{BoxId, Class, Extent, Frame, Inferred, Scene, SensorRig, VoxelGrid, infer};
 
-use super::class_words::{Said, paint_said, said};
+use super::class_words::{NameMeaning, paint_said, said};
 use super::columns::{Heights, Statics};
-use super::document::{Document, LeftOut};
-use super::model::{Outline, class_by_size, may_be_one};
+use super::document::{GltfDocument, LeftOut};
+use super::model::{ModelExtents, class_by_size, may_be_one};
 use super::paint::Coats;
-use super::surface::Surface;
+use super::surface::TriangleRasteriser;
 use super::{own, single, work};
 use crate::FormatError;
-use crate::import::Loaded;
+use crate::import::ImportedScene;
 
 /// A single model is smaller than this, seen from above, m.
 const MODEL_M: f64 = 25.0;
@@ -39,8 +39,8 @@ pub(super) struct Bounds {
 }
 
 /// Facts about a node before its voxels are made.
-pub(super) struct About {
-    pub(super) said: Said,
+pub(super) struct ForeignNode {
+    pub(super) said: NameMeaning,
     /// Around its own mesh, and around all below it.
     pub(super) own: Bounds,
     pub(super) all: Bounds,
@@ -51,7 +51,7 @@ pub(super) struct About {
 }
 
 /// A thing that becomes a box.
-struct Thing {
+struct ForeignObject {
     node: usize,
     class: Class,
     /// The class was told by the size.
@@ -59,7 +59,7 @@ struct Thing {
 }
 
 /// The scene of a foreign document.
-pub(crate) fn scene(document: &Document<'_>, name: &str) -> Result<Loaded, FormatError> {
+pub(crate) fn scene(document: &GltfDocument<'_>, name: &str) -> Result<ImportedScene, FormatError> {
     let mut left_out = LeftOut::default();
     let mut abouts = abouts(document, &mut left_out)?;
     let things = things(document, &mut abouts);
@@ -73,15 +73,15 @@ pub(crate) fn scene(document: &Document<'_>, name: &str) -> Result<Loaded, Forma
     }
 }
 
-fn abouts(document: &Document<'_>, left_out: &mut LeftOut) -> Result<Vec<About>, FormatError> {
-    let mut out: Vec<About> = Vec::with_capacity(document.nodes.len());
+fn abouts(document: &GltfDocument<'_>, left_out: &mut LeftOut) -> Result<Vec<ForeignNode>, FormatError> {
+    let mut out: Vec<ForeignNode> = Vec::with_capacity(document.nodes.len());
     for node in &document.nodes {
         let mesh = node.mesh.map_or("", |mesh| document.names(mesh, 0)[0]);
         let own_name = said(&node.name);
         let told = if own_name.class.is_some() {
             own_name
         } else {
-            Said {
+            NameMeaning {
                 class: said(mesh).class,
                 ..own_name
             }
@@ -98,8 +98,8 @@ fn abouts(document: &Document<'_>, left_out: &mut LeftOut) -> Result<Vec<About>,
                     .for_each(|p| own = own.with(Bounds { low: p, high: p }));
             })?,
         }
-        out.push(About {
-            said: Said { nothing, ..told },
+        out.push(ForeignNode {
+            said: NameMeaning { nothing, ..told },
             own,
             all: own,
             thing: None,
@@ -115,8 +115,8 @@ fn abouts(document: &Document<'_>, left_out: &mut LeftOut) -> Result<Vec<About>,
 }
 
 /// The topmost nodes that are things, and which nodes are parts of them.
-fn things(document: &Document<'_>, abouts: &mut [About]) -> Vec<Thing> {
-    let mut out: Vec<Thing> = Vec::new();
+fn things(document: &GltfDocument<'_>, abouts: &mut [ForeignNode]) -> Vec<ForeignObject> {
+    let mut out: Vec<ForeignObject> = Vec::new();
     for i in 0..abouts.len() {
         let outer = document.nodes[i].parent.and_then(|parent| abouts[parent].thing);
         let about = &abouts[i];
@@ -129,7 +129,7 @@ fn things(document: &Document<'_>, abouts: &mut [About]) -> Vec<Thing> {
         let thing = match (outer, class.filter(|_| !about.said.several).filter(is_one)) {
             (Some(thing), _) => Some(thing),
             (None, Some(class)) => {
-                out.push(Thing {
+                out.push(ForeignObject {
                     node: i,
                     class,
                     is_guess: false,
@@ -146,9 +146,9 @@ fn things(document: &Document<'_>, abouts: &mut [About]) -> Vec<Thing> {
 /// The class of the model that a document is, if it is one: objects become a box, others voxels. The flag says that it was
 /// told by the size.
 fn model(
-    document: &Document<'_>,
-    abouts: &[About],
-    things: &[Thing],
+    document: &GltfDocument<'_>,
+    abouts: &[ForeignNode],
+    things: &[ForeignObject],
     all: &Bounds,
     name: &str,
 ) -> Option<(Class, bool)> {
@@ -193,23 +193,23 @@ fn by_extent(high: &DVec3, low: &DVec3) -> Class {
 
 /// A whole scene.
 fn map(
-    document: &Document<'_>,
-    abouts: &[About],
-    things: &[Thing],
+    document: &GltfDocument<'_>,
+    abouts: &[ForeignNode],
+    things: &[ForeignObject],
     all: &Bounds,
     name: &str,
     mut left_out: LeftOut,
-) -> Result<Loaded, FormatError> {
+) -> Result<ImportedScene, FormatError> {
     let (extent, shift_m) = extent(all);
     let place = |corners: [DVec3; 3]| corners.map(|p| p + shift_m);
-    work::check(document, Surface::cost, extent, |node, corners| {
+    work::check(document, TriangleRasteriser::cost, extent, |node, corners| {
         let about = &abouts[node];
         (about.thing.is_some() || !about.said.nothing).then(|| place(corners))
     })?;
     let mut solid = Statics::new(extent);
-    let mut outlines: Vec<Outline> = things
+    let mut outlines: Vec<ModelExtents> = things
         .iter()
-        .map(|t| Outline::new(&document.nodes[t.node].world_from_node))
+        .map(|t| ModelExtents::new(&document.nodes[t.node].world_from_node))
         .collect();
     let mut beside = 0;
     each_triangle(document, |node, primitive, corners| {
@@ -270,7 +270,7 @@ fn map(
     };
     let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), 0);
     scene.background = Arc::new(background);
-    Ok(Loaded {
+    Ok(ImportedScene {
         scene,
         inferred: &["layout", "background"],
         skipped: left_out.report(),
@@ -281,8 +281,8 @@ fn map(
 /// Class of a still part: by its node's name, its material, its mesh, or the names around it. `None` if none of them
 /// tells a class.
 pub(super) fn static_class(
-    document: &Document<'_>,
-    abouts: &[About],
+    document: &GltfDocument<'_>,
+    abouts: &[ForeignNode],
     node: usize,
     primitive: usize,
 ) -> Option<Class> {
@@ -297,7 +297,7 @@ pub(super) fn static_class(
 
 /// Visits every triangle with its node and primitive, in our axes, m.
 pub(super) fn each_triangle(
-    document: &Document<'_>,
+    document: &GltfDocument<'_>,
     mut visit: impl FnMut(usize, usize, [DVec3; 3]),
 ) -> Result<(), FormatError> {
     let mut counted_before = LeftOut::default();

@@ -19,7 +19,7 @@ pub(crate) struct Mesh {
 
 /// A rectangle of faces, in corners of voxels.
 #[derive(Clone, Copy)]
-struct Rectangle {
+struct FaceRectangle {
     /// Axis that it is upright to.
     axis: usize,
     /// True if it looks along that axis, false if against it.
@@ -38,8 +38,8 @@ pub(crate) fn meshes(
     column: impl Fn(usize, usize) -> [u8; Extent::NZ],
     place: impl Fn(DVec3) -> DVec3,
 ) -> BTreeMap<u8, Mesh> {
-    let mut builders: BTreeMap<u8, Builder> = BTreeMap::new();
-    let mut take = |label: u8, rectangle: Rectangle| builders.entry(label).or_default().add(&rectangle);
+    let mut builders: BTreeMap<u8, QuadMeshBuilder> = BTreeMap::new();
+    let mut take = |label: u8, rectangle: FaceRectangle| builders.entry(label).or_default().add(&rectangle);
     let shape = [size[0], size[1], Extent::NZ];
     for axis in 0..3 {
         let [a, b] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -61,7 +61,7 @@ pub(crate) fn meshes(
                 merge(mask, n, |label, from, to| {
                     take(
                         label,
-                        Rectangle {
+                        FaceRectangle {
                             axis,
                             outward,
                             at: at as u32,
@@ -73,7 +73,7 @@ pub(crate) fn meshes(
             }
         }
     }
-    let placed = |builder: Builder| builder.finish(&place);
+    let placed = |builder: QuadMeshBuilder| builder.finish(&place);
     builders
         .into_iter()
         .map(|(label, b)| (label, placed(b)))
@@ -142,14 +142,14 @@ fn merge(mut mask: Vec<u8>, n: [usize; 2], mut visit: impl FnMut(u8, [u32; 2], [
 
 /// Collects rectangles; corners at the same place become one.
 #[derive(Default)]
-struct Builder {
+struct QuadMeshBuilder {
     corners: Vec<[u32; 3]>,
     places: HashMap<[u32; 3], u32>, // looked up alone: its order is never seen
     indices: Vec<u32>,
 }
 
-impl Builder {
-    fn add(&mut self, r: &Rectangle) {
+impl QuadMeshBuilder {
+    fn add(&mut self, r: &FaceRectangle) {
         let around = [
             [r.from[0], r.from[1]],
             [r.to[0], r.from[1]],

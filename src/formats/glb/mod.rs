@@ -43,7 +43,7 @@ pub(crate) fn z_up_from_y_up() -> DMat3 {
 /// Extras of the node that holds a scene of ours.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SceneExtras {
-    pub(crate) sceneloom: Told,
+    pub(crate) sceneloom: ExtrasHeader,
     /// How the file came to be: a [`crate::recipe::Recipe`]. Programs may round its numbers.
     #[serde(default)]
     pub(crate) recipe: serde_json::Value,
@@ -51,7 +51,7 @@ pub(crate) struct SceneExtras {
 
 /// Description of the scene in a file that this program wrote. Unknown keys are passed over.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Told {
+pub(crate) struct ExtrasHeader {
     pub(crate) version: u32,
     /// In digits: programs that read numbers as f64 would round it.
     pub(crate) seed: String,

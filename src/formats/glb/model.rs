@@ -18,7 +18,7 @@ const SHORT_M: f64 = 3.0;
 const ALIKE: f64 = 1.6;
 
 /// Points of a thing, as far as its box needs them.
-pub(crate) struct Outline {
+pub(crate) struct ModelExtents {
     /// The first one is the side's.
     directions: [DVec2; DIRECTIONS],
     /// Least and greatest way along each direction, and across it, m.
@@ -30,7 +30,7 @@ pub(crate) struct Outline {
     side: DVec2,
 }
 
-impl Outline {
+impl ModelExtents {
     /// The outline of a thing whose node lies as `world_from_node` says; without points yet.
     pub(crate) fn new(world_from_node: &DAffine3) -> Self {
         let linear = world_from_node.matrix3;
@@ -146,11 +146,11 @@ mod tests {
     use glam::{DMat3, DQuat};
 
     /// Corners of a block in the node's own axes (glTF: y up), seen in ours after a turn about the vertical.
-    fn outline(size: DVec3, yaw_deg: f64, node_turns: bool) -> Outline {
+    fn outline(size: DVec3, yaw_deg: f64, node_turns: bool) -> ModelExtents {
         let up = DAffine3::from_mat3(crate::glb::z_up_from_y_up());
         let turn = DAffine3::from_quat(DQuat::from_rotation_z(yaw_deg.to_radians()));
         let node = if node_turns { turn * up } else { up };
-        let mut out = Outline::new(&node);
+        let mut out = ModelExtents::new(&node);
         for i in 0..8 {
             let sign = |bit: usize| if i >> bit & 1 == 0 { -0.5 } else { 0.5 };
             let p = DVec3::new(sign(0), sign(1), sign(2)) * size;
@@ -197,7 +197,7 @@ mod tests {
         );
         assert!((b.heading() - DVec2::from_angle(-50f64.to_radians())).length() < 1e-9);
         assert_eq!(
-            Outline::new(&DAffine3::from_mat3(DMat3::ZERO)).to_box(BoxId(1), Class::Car),
+            ModelExtents::new(&DAffine3::from_mat3(DMat3::ZERO)).to_box(BoxId(1), Class::Car),
             None
         );
     }

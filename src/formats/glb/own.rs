@@ -7,16 +7,16 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
 use scene::message::quoted;
-use scene::moved::Columns;
+use scene::moved::ColumnShift;
 use scene::{BevLayout, BoxId, Class, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, VoxelGrid, infer};
 use serde::de::DeserializeOwned;
 
-use super::document::{Document, LeftOut, Node};
+use super::document::{GltfDocument, GltfNode, LeftOut};
 use super::solid::Solid;
-use super::surface::Surface;
+use super::surface::TriangleRasteriser;
 use super::{BoxExtras, CLASS_MAP, ClassExtras, SceneExtras, VERSION, class_words, work};
 use crate::FormatError;
-use crate::import::Loaded;
+use crate::import::ImportedScene;
 
 /// A node within this of where its extras say was not moved: m, and the same for parts of a unit vector.
 const STILL_M: f64 = 2e-3;
@@ -35,7 +35,7 @@ enum Role {
 
 /// The extras that describe the scene of a document; `None` if this program did not write it. Errors if they are of a
 /// newer version, of other classes or otherwise not readable.
-pub(crate) fn extras(document: &Document<'_>) -> Result<Option<SceneExtras>, FormatError> {
+pub(crate) fn extras(document: &GltfDocument<'_>) -> Result<Option<SceneExtras>, FormatError> {
     for node in &document.nodes {
         let Some(text) = node
             .extras
@@ -61,10 +61,10 @@ pub(crate) fn extras(document: &Document<'_>) -> Result<Option<SceneExtras>, For
 
 /// The scene of a document of ours; `name` if the document does not tell its name.
 pub(crate) fn scene(
-    document: &Document<'_>,
+    document: &GltfDocument<'_>,
     extras: &SceneExtras,
     name: &str,
-) -> Result<Loaded, FormatError> {
+) -> Result<ImportedScene, FormatError> {
     let told = &extras.sceneloom;
     let extent = Extent::new(told.extent.from, told.extent.columns).map_err(FormatError::new)?;
     if extent
@@ -88,7 +88,7 @@ pub(crate) fn scene(
         _ => Some(corners),
     };
     // Of the two ways to voxels the dearer one is taken for all.
-    let cost = |extent, corners| Solid::cost(extent, corners).max(Surface::cost(extent, corners));
+    let cost = |extent, corners| Solid::cost(extent, corners).max(TriangleRasteriser::cost(extent, corners));
     work::check(document, cost, extent, shown)?;
     let mut occupancy = VoxelGrid::over(extent);
     // Still parts first: a box that was moved into them then shows in front.
@@ -127,7 +127,7 @@ pub(crate) fn scene(
     // (in a recipe the seed is a number, which programs round)
     scene.seed = seed;
     scene.background = Arc::new(background);
-    Ok(Loaded {
+    Ok(ImportedScene {
         scene,
         inferred: &["layout", "background"],
         skipped: left_out.report(),
@@ -135,13 +135,13 @@ pub(crate) fn scene(
     })
 }
 
-fn parsed<T: DeserializeOwned>(node: &Node) -> Option<T> {
+fn parsed<T: DeserializeOwned>(node: &GltfNode) -> Option<T> {
     serde_json::from_str(node.extras.as_deref()?).ok()
 }
 
 /// The role that each node has by its own extras. Counts boxes whose extras are not readable.
-fn roles(document: &Document<'_>, left_out: &mut LeftOut) -> Vec<Option<Role>> {
-    let mut role = |node: &Node| {
+fn roles(document: &GltfDocument<'_>, left_out: &mut LeftOut) -> Vec<Option<Role>> {
+    let mut role = |node: &GltfNode| {
         let text = node.extras.as_deref()?;
         if let Some(b) = parsed::<BoxExtras>(node) {
             return Some(Role::Box(Box::new(b)));
@@ -155,7 +155,7 @@ fn roles(document: &Document<'_>, left_out: &mut LeftOut) -> Vec<Option<Role>> {
 }
 
 /// The role of a node: its own, or that of the nearest node around it that has one.
-fn role_of<'a>(document: &Document<'_>, roles: &'a [Option<Role>], node: usize) -> Option<&'a Role> {
+fn role_of<'a>(document: &GltfDocument<'_>, roles: &'a [Option<Role>], node: usize) -> Option<&'a Role> {
     let around = std::iter::successors(Some(node), |i| document.nodes[*i].parent);
     around.into_iter().find_map(|i| roles[i].as_ref())
 }
@@ -163,8 +163,8 @@ fn role_of<'a>(document: &Document<'_>, roles: &'a [Option<Role>], node: usize) 
 /// Adds the inside of a node's mesh. A primitive whose material is named after another class is of that class: meshes
 /// were joined.
 fn add_solid(
-    document: &Document<'_>,
-    node: &Node,
+    document: &GltfDocument<'_>,
+    node: &GltfNode,
     class: Class,
     grid: &mut VoxelGrid,
     left_out: &mut LeftOut,
@@ -190,15 +190,15 @@ fn add_solid(
 
 /// Adds the surface of a mesh that this program did not write: a part that was added to the scene elsewhere.
 fn add_surface(
-    document: &Document<'_>,
-    node: &Node,
+    document: &GltfDocument<'_>,
+    node: &GltfNode,
     grid: &mut VoxelGrid,
     left_out: &mut LeftOut,
 ) -> Result<(), FormatError> {
     let Some(mesh) = node.mesh else {
         return Ok(());
     };
-    let mut surface = Surface::new(grid.extent());
+    let mut surface = TriangleRasteriser::new(grid.extent());
     document.triangles(node, left_out, |primitive, corners| {
         let [name, material] = document.names(mesh, primitive);
         let named = [node.name.as_str(), material, name].into_iter();
@@ -216,7 +216,7 @@ fn add_surface(
 
 /// The boxes as their nodes lie. One whose id is there already, because it was copied, gets the next one free.
 fn boxes(
-    document: &Document<'_>,
+    document: &GltfDocument<'_>,
     roles: &[Option<Role>],
     left_out: &mut LeftOut,
 ) -> BTreeMap<BoxId, SceneBox> {
@@ -298,7 +298,7 @@ pub(crate) fn layout(labels: &VoxelGrid) -> BevLayout {
         for y in (0..extent.ny()).step_by(window[1]) {
             let corner = [extent.from()[0] + x as i32, extent.from()[1] + y as i32];
             let origin = Extent::WINDOW.from();
-            let by = Columns([origin[0] - corner[0], origin[1] - corner[1]]);
+            let by = ColumnShift([origin[0] - corner[0], origin[1] - corner[1]]);
             let there = infer::layout(&by.grid(labels).crop(Extent::WINDOW));
             out.paste(&by.back().layout(&there));
         }

@@ -12,7 +12,7 @@ use image::{ImageReader, Limits, RgbImage};
 use scene::Paint;
 
 use super::accessor::PicturePlaces;
-use super::document::{Document, LeftOut, Node};
+use super::document::{GltfDocument, GltfNode, LeftOut};
 use crate::FormatError;
 
 /// Longest side of a picture, pixels, and most memory to decode it, bytes.
@@ -32,7 +32,7 @@ const MUTED: [Paint; 6] = [
 
 /// The colours of a document's materials; its pictures are read when they are first needed.
 pub(crate) struct Coats<'a> {
-    document: &'a Document<'a>,
+    document: &'a GltfDocument<'a>,
     /// By number; none for one that cannot be read.
     pictures: BTreeMap<usize, Option<RgbImage>>,
 }
@@ -45,7 +45,7 @@ struct Coat<'a> {
 
 impl<'a> Coats<'a> {
     /// The coats of a document; none of its pictures is read yet.
-    pub(crate) fn new(document: &'a Document<'a>) -> Self {
+    pub(crate) fn new(document: &'a GltfDocument<'a>) -> Self {
         Self {
             document,
             pictures: BTreeMap::new(),
@@ -54,7 +54,7 @@ impl<'a> Coats<'a> {
 
     /// The paint of what these nodes show; `None` where no material says a colour. Errors in one line where triangles cannot be
     /// read.
-    pub(crate) fn paint(&mut self, nodes: &[Node]) -> Result<Option<Paint>, FormatError> {
+    pub(crate) fn paint(&mut self, nodes: &[GltfNode]) -> Result<Option<Paint>, FormatError> {
         let mut areas = [0.0; Paint::ALL.len()];
         for node in nodes {
             let mesh = node.mesh.and_then(|mesh| self.document.root.meshes.get(mesh));
@@ -68,7 +68,7 @@ impl<'a> Coats<'a> {
     /// Adds the areas of a primitive, m², to those of the paints.
     fn add(
         &mut self,
-        node: &Node,
+        node: &GltfNode,
         primitive: &Primitive,
         areas: &mut [f64; Paint::ALL.len()],
     ) -> Result<(), FormatError> {

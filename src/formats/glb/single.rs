@@ -10,32 +10,32 @@ use scene::{
 
 use super::class_words::paint_said;
 use super::columns::{Heights, Statics};
-use super::document::{Document, LeftOut};
-use super::foreign::{About, Bounds, each_triangle, static_class};
-use super::model::Outline;
+use super::document::{GltfDocument, LeftOut};
+use super::foreign::{Bounds, ForeignNode, each_triangle, static_class};
+use super::model::ModelExtents;
 use super::paint::Coats;
-use super::surface::Surface;
+use super::surface::TriangleRasteriser;
 use super::work;
 use crate::FormatError;
-use crate::import::Loaded;
+use crate::import::ImportedScene;
 
 /// A model around the origin, where the ego vehicle is, is moved ahead by this, m.
 const AHEAD_M: f64 = 8.0;
 
 /// A single model on open ground.
 pub(super) fn scene(
-    document: &Document<'_>,
-    abouts: &[About],
+    document: &GltfDocument<'_>,
+    abouts: &[ForeignNode],
     all: &Bounds,
     (class, is_guess): (Class, bool),
     name: &str,
     left_out: LeftOut,
-) -> Result<Loaded, FormatError> {
+) -> Result<ImportedScene, FormatError> {
     let shown = abouts.iter().position(|a| !a.own.is_empty()).unwrap_or(0);
     let first = std::iter::successors(Some(shown), |i| document.nodes[*i].parent)
         .last()
         .unwrap_or(shown);
-    let mut outline = Outline::new(&document.nodes[first].world_from_node);
+    let mut outline = ModelExtents::new(&document.nodes[first].world_from_node);
     each_triangle(document, |_, _, corners| {
         corners.into_iter().for_each(|p| outline.add(p))
     })?;
@@ -69,7 +69,7 @@ pub(super) fn scene(
         },
         ..b
     };
-    work::check(document, Surface::cost, extent, |_, corners| {
+    work::check(document, TriangleRasteriser::cost, extent, |_, corners| {
         Some(corners.map(|p| place.transform_point3(p)))
     })?;
     let layout = BevLayout::over(extent);
@@ -103,7 +103,7 @@ pub(super) fn scene(
         },
         ..Frame::new(layout, boxes, occupancy)
     };
-    Ok(Loaded {
+    Ok(ImportedScene {
         scene: Scene::single(name, frame, Arc::new(SensorRig::default()), 0),
         inferred: if is_guess { &["boxes"] } else { &[] },
         skipped: left_out.report(),

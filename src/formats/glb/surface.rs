@@ -11,18 +11,18 @@ use crate::FormatError;
 const NUDGE: f64 = 1e-4;
 
 /// Passes triangles on column by column, as long as that takes a bearable time.
-pub(crate) struct Surface {
+pub(crate) struct TriangleRasteriser {
     extent: Extent,
     visits: u64,
 }
 
 /// The corners of a triangle after cuts; at most seven after four cuts.
-struct Corners {
+struct ClippedTriangle {
     list: [DVec3; 8],
     count: usize,
 }
 
-impl Surface {
+impl TriangleRasteriser {
     /// For a map.
     pub(crate) fn new(extent: Extent) -> Self {
         Self { extent, visits: 0 }
@@ -33,7 +33,7 @@ impl Surface {
     pub(crate) fn cost(extent: Extent, corners: [DVec3; 3]) -> u64 {
         let corners = corners.map(|p| extent.to_voxel_units(p));
         let n = [extent.nx() as f64, extent.ny() as f64];
-        let mut on_map = Corners::of(&corners);
+        let mut on_map = ClippedTriangle::of(&corners);
         for (axis, n) in n.into_iter().enumerate() {
             on_map = on_map.half(axis, 0.0, 1.0).half(axis, n, -1.0);
         }
@@ -50,7 +50,7 @@ impl Surface {
     pub(crate) fn visit(&mut self, corners: [DVec3; 3], mut visit: impl FnMut([usize; 2], [f64; 2])) {
         let corners = corners.map(|p| self.extent.to_voxel_units(p) + DVec3::splat(NUDGE));
         let n = [self.extent.nx(), self.extent.ny()];
-        let whole = Corners::of(&corners);
+        let whole = ClippedTriangle::of(&corners);
         let Some((x0, x1)) = whole.columns(0, n[0]) else {
             return;
         };
@@ -107,7 +107,7 @@ impl Inner {
     }
 }
 
-impl Corners {
+impl ClippedTriangle {
     fn of(corners: &[DVec3]) -> Self {
         let mut list = [DVec3::ZERO; 8];
         let count = corners.len().min(list.len());
@@ -207,7 +207,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     fn visited(corners: [DVec3; 3]) -> BTreeMap<[usize; 2], [f64; 2]> {
-        let (mut surface, mut out) = (Surface::new(Extent::WINDOW), BTreeMap::new());
+        let (mut surface, mut out) = (TriangleRasteriser::new(Extent::WINDOW), BTreeMap::new());
         surface.visit(corners, |column, heights| {
             assert_eq!(out.insert(column, heights), None, "a column twice");
         });
@@ -250,7 +250,7 @@ mod tests {
     fn what_is_far_away_costs_nothing_and_a_pile_is_refused() {
         assert!(visited([DVec3::splat(1e30), DVec3::splat(1e31), DVec3::splat(2e30)]).is_empty());
         assert!(visited([DVec3::NAN; 3]).is_empty());
-        let mut surface = Surface::new(Extent::new([-512; 2], [1024; 2]).expect("sound"));
+        let mut surface = TriangleRasteriser::new(Extent::new([-512; 2], [1024; 2]).expect("sound"));
         let far = 1e4;
         let all = [
             DVec3::new(-far, -far, 0.0),
@@ -276,8 +276,8 @@ mod tests {
         for i in 0..300 {
             let size = [3.0, 30.0, 300.0, 1e11][i % 4];
             let corners = [(); 3].map(|()| DVec3::new(dice(size), dice(size) + 10.0, dice(20.0)));
-            let cut = Corners::of(&corners.map(|p| extent.to_voxel_units(p) + DVec3::splat(NUDGE)));
-            let (mut surface, mut visits) = (Surface::new(extent), 0u64);
+            let cut = ClippedTriangle::of(&corners.map(|p| extent.to_voxel_units(p) + DVec3::splat(NUDGE)));
+            let (mut surface, mut visits) = (TriangleRasteriser::new(extent), 0u64);
             surface.visit(corners, |[x, y], [low, high]| {
                 let strip = cut.cut(0, x as f64);
                 let [l, h] = strip.cut(1, y as f64).range(2).expect("touched");
@@ -289,7 +289,7 @@ mod tests {
                 visits += 1;
                 inside += usize::from(strip.inner(x as f64, (y, y)).is_some());
             });
-            let told = Surface::cost(extent, corners);
+            let told = TriangleRasteriser::cost(extent, corners);
             assert!(
                 told >= visits && told <= visits * RIM + 4 * RIM,
                 "{told} for {visits}"

@@ -4,7 +4,7 @@ use glam::DVec3;
 use scene::Extent;
 use scene::message::quoted;
 
-use super::document::{Document, LeftOut};
+use super::document::{GltfDocument, LeftOut};
 use crate::FormatError;
 
 /// Most units of work for all triangles of a document: columns that they cover, those along their rims [`RIM`] times. A few
@@ -16,7 +16,7 @@ pub(super) const RIM: u64 = 4;
 /// Errors where the triangles of a document would cost more than [`MOST_WORK`]; the line names the node that costs most.
 /// `place` brings a triangle of a node onto the map, or is `None` for one that is not shown.
 pub(super) fn check(
-    document: &Document<'_>,
+    document: &GltfDocument<'_>,
     cost: impl Fn(Extent, [DVec3; 3]) -> u64,
     extent: Extent,
     place: impl Fn(usize, [DVec3; 3]) -> Option<[DVec3; 3]>,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use scene::{BevLayout, Frame, Scene, SensorRig, draft};
 
-use super::{Content, Importer, Loaded};
+use super::{Content, ImportedScene, Importer};
 use crate::{FormatError, Holds, box_list, input, recipe};
 
 /// See [`box_list`].
@@ -32,7 +32,7 @@ pub const IMPORTER: Importer = Importer {
         let frame = Frame::new(layout, boxes, occupancy);
         let mut scene = Scene::single(source.name, frame, Arc::new(SensorRig::default()), 0);
         recipe::restore(&recipe, &mut scene);
-        Ok(Content::Scene(Box::new(Loaded {
+        Ok(Content::Scene(Box::new(ImportedScene {
             scene,
             inferred: &[],
             skipped: BTreeMap::new(),

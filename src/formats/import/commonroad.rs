@@ -9,7 +9,7 @@ use roxmltree::Node;
 use super::commonroad_obstacles::obstacle;
 use super::{Content, Importer};
 use crate::lanelets::{self, Between, Lanelet, LaneletMap, MOST_POINTS, Use};
-use crate::opendrive::lanes::Ground;
+use crate::opendrive::lanes::LaneGround;
 use crate::opendrive::xml::{
     OpenDriveError, Result, bad, child, count, decode, elements, named, parse_document, shown, within_reach,
 };
@@ -175,7 +175,7 @@ fn use_of(node: Node<'_, '_>, skipped: &mut Skipped) -> Use {
         return Use::Walking;
     }
     if has(&["parkingLot", "parking"]) {
-        return Use::Ground(Ground::Carpark);
+        return Use::Ground(LaneGround::Carpark);
     }
     if has(&[
         "shoulder",
@@ -184,7 +184,7 @@ fn use_of(node: Node<'_, '_>, skipped: &mut Skipped) -> Use {
         "restrictedArea",
         "restricted",
     ]) {
-        return Use::Ground(Ground::Road);
+        return Use::Ground(LaneGround::Road);
     }
     let known = [
         "urban",

@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::DVec2;
 use scene::{Background, Extent, SceneBox};
 
-use super::{Content, Source, all};
+use super::{Content, ImportFile, all};
 use crate::FormatError;
 use crate::opendrive::RoadNetwork;
 
@@ -47,7 +47,7 @@ fn numbers(text: &str) -> Vec<Range<usize>> {
 
 /// What there is of a network: records, pieces of lanes and marks, points.
 fn size(network: &RoadNetwork) -> usize {
-    let of_road = |road: &crate::opendrive::Road| {
+    let of_road = |road: &crate::opendrive::XodrRoad| {
         let sections = road.sections.iter().map(|s| s.breaks_m().len()).sum::<usize>();
         road.reference.records().len() + road.lane_offset.0.len() + sections + road.objects.len()
     };
@@ -101,7 +101,7 @@ fn far_numbers_in_every_format_of_text_stay_small() {
         for place in places.into_iter().step_by(step) {
             for far in FAR {
                 let changed = format!("{}{far}{}", &text[..place.start], &text[place.end..]);
-                let source = Source {
+                let source = ImportFile {
                     bytes: changed.as_bytes(),
                     name: "far",
                     path: None,

@@ -1,7 +1,7 @@
 //! Meshes as glTF 2.0: scenes of ours, foreign scenes and single models; see [`crate::glb`].
 
-use super::{Content, Importer, Loaded, Source};
-use crate::glb::document::Document;
+use super::{Content, ImportFile, ImportedScene, Importer};
+use crate::glb::document::GltfDocument;
 use crate::glb::{container, foreign, own};
 use crate::{FormatError, Holds};
 
@@ -34,8 +34,8 @@ pub const IMPORTER: Importer = Importer {
     },
 };
 
-fn read(source: &Source<'_>) -> Result<Loaded, FormatError> {
-    let document = Document::read(source)?;
+fn read(source: &ImportFile<'_>) -> Result<ImportedScene, FormatError> {
+    let document = GltfDocument::read(source)?;
     document.check_size()?;
     match own::extras(&document)? {
         Some(extras) => own::scene(&document, &extras, source.name),

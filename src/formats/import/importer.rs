@@ -27,14 +27,14 @@ pub struct Importer {
     /// The file to begin with in a folder of several, where the format keeps its files in one.
     pub in_folder: Option<fn(&Path) -> Option<PathBuf>>,
     /// Reads the bytes of a file. Errors in one line, without the file's name.
-    pub read: fn(&Source<'_>) -> Result<Content, FormatError>,
+    pub read: fn(&ImportFile<'_>) -> Result<Content, FormatError>,
     /// A small file, for the tests of the table.
     #[cfg(test)]
     pub sample: fn() -> Vec<u8>,
 }
 
 /// A file to be read.
-pub struct Source<'a> {
+pub struct ImportFile<'a> {
     /// Content of the file.
     pub bytes: &'a [u8],
     /// Name of the scene to be made.
@@ -45,7 +45,7 @@ pub struct Source<'a> {
     pub lift_m: Option<f64>,
 }
 
-impl Source<'_> {
+impl ImportFile<'_> {
     /// Reads a file beside this one: `relative` is a path from this file's folder, with `/` between names. Errors as
     /// [`Source::place`] does, and if the file has more than `limit` bytes, is not there or cannot be read.
     pub fn beside(&self, relative: &str, limit: u64) -> Result<Vec<u8>, FormatError> {
@@ -71,7 +71,7 @@ impl Source<'_> {
 #[derive(Debug)]
 pub enum Content {
     /// A scene.
-    Scene(Box<Loaded>),
+    Scene(Box<ImportedScene>),
     /// Roads: a scene lies somewhere on them, and the user says where.
     Roads(Box<RoadNetwork>),
     /// Words and parameters that a scene can be made of again.
@@ -80,7 +80,7 @@ pub enum Content {
 
 /// A scene, and what was left out of it.
 #[derive(Debug)]
-pub struct Loaded {
+pub struct ImportedScene {
     /// The scene.
     pub scene: Scene,
     /// Guessed parts of the scene, for a person: `layout`, `boxes`, `background`.

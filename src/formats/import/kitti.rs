@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 use scene::Pose;
 
 use super::cloud::{Cloud, Label};
-use super::scan::{Columns, file_name, labels_beside};
-use super::{Content, Importer, Source, nuscenes_lidar};
+use super::scan::{ScanFormat, file_name, labels_beside};
+use super::{Content, ImportFile, Importer, nuscenes_lidar};
 use crate::kitti::{self, EGO_TO_VELO};
 use crate::{FormatError, Holds, input, semantic_kitti};
 
@@ -23,7 +23,7 @@ pub const IMPORTER: Importer = Importer {
     extensions: &["bin"],
     holds: &[Holds::Points],
     largest: 512 << 20,
-    recognises: |head| Columns::Kitti.are_in(head),
+    recognises: |head| ScanFormat::Kitti.are_in(head),
     in_folder: Some(first_scan),
     read: |source| match file_name(source.path).ends_with(".pcd.bin") {
         true => nuscenes_lidar::read(source),
@@ -42,8 +42,8 @@ fn first_scan(folder: &Path) -> Option<PathBuf> {
         .min()
 }
 
-fn read(source: &Source<'_>) -> Result<Content, FormatError> {
-    let points = Columns::Kitti.read(source.bytes)?;
+fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
+    let points = ScanFormat::Kitti.read(source.bytes)?;
     let count = points.len();
     let stem = source.path.and_then(Path::file_stem).map(|s| s.to_string_lossy());
     let labels = match stem {
@@ -86,7 +86,7 @@ fn read(source: &Source<'_>) -> Result<Content, FormatError> {
 }
 
 /// Where the sensor is, from `calib.txt` beside the folder of scans; `None` if that is not there or does not say.
-fn calibration(source: &Source<'_>) -> Result<Option<Pose>, FormatError> {
+fn calibration(source: &ImportFile<'_>) -> Result<Option<Pose>, FormatError> {
     const FILE: &str = "../calib.txt";
     match source.path.map(|_| source.place(FILE)).transpose()? {
         Some(place) if place.is_file() => {}

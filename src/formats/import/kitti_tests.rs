@@ -6,7 +6,7 @@ use glam::DVec3;
 use scene::{Class, Window};
 
 use super::*;
-use crate::import::{self, GUESSED, Loaded};
+use crate::import::{self, GUESSED, ImportedScene};
 
 /// One point: what the exporter makes of a sweep of one.
 pub(super) fn sample() -> Vec<u8> {
@@ -39,7 +39,7 @@ fn sequence() -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-fn loaded(path: &Path) -> Result<Loaded, FormatError> {
+fn loaded(path: &Path) -> Result<ImportedScene, FormatError> {
     match import::read(path)? {
         (importer, Content::Scene(loaded)) => {
             assert_eq!(importer.id, "kitti");
@@ -49,7 +49,7 @@ fn loaded(path: &Path) -> Result<Loaded, FormatError> {
     }
 }
 
-fn at(loaded: &Loaded, at: [f64; 3]) -> u8 {
+fn at(loaded: &ImportedScene, at: [f64; 3]) -> u8 {
     let [x, y, z] = Window::voxel_at(DVec3::from_array(at)).expect("on the map");
     loaded.scene.frame().occupancy.get(x, y, z)
 }
@@ -120,7 +120,7 @@ fn without_labels_the_shape_tells_and_wrong_ones_are_refused() {
 #[test]
 fn other_numbers_are_no_scan() {
     let refused = |bytes: &[u8]| {
-        let source = Source {
+        let source = ImportFile {
             bytes,
             name: "scan",
             path: None,
@@ -160,7 +160,7 @@ fn other_numbers_are_no_scan() {
     // A few numbers that are not finite are counted.
     let mut points = vec![[1.0, 4.0, 1.0]; 30];
     points[3][1] = f32::INFINITY;
-    let source = Source {
+    let source = ImportFile {
         bytes: &scan(&points),
         name: "scan",
         path: None,
@@ -178,7 +178,7 @@ fn slots_without_a_return_are_left_out_and_counted() {
     let nothing = [[0.0; 3], [5e-5, -2e-5, 1e-5], [f32::NAN; 3], [0.02, 0.0, -0.03]];
     let mut points = vec![[1.0, 4.0, 1.0]; 30];
     points.extend(nothing.repeat(20));
-    let source = Source {
+    let source = ImportFile {
         bytes: &scan(&points),
         name: "scan",
         path: None,
@@ -200,23 +200,23 @@ fn slots_without_a_return_are_left_out_and_counted() {
         .iter()
         .flat_map(|v: &f32| v.to_le_bytes())
         .collect();
-    assert!(Columns::Kitti.are_in(&head));
+    assert!(ScanFormat::Kitti.are_in(&head));
 }
 
 #[test]
 fn scans_are_told_apart_from_each_other_and_from_the_rest() {
-    let is = |columns: Columns, values: &[f32]| {
+    let is = |columns: ScanFormat, values: &[f32]| {
         columns.are_in(&values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())
     };
     let kitti = [20.1, -3.5, -1.7, 0.32, 5.5, 8.25, 0.5, 0.0].repeat(40);
     // The sine of half a turn is not quite 0.
     let kitti_ahead = [20.1, 1e-15, -1.7, 0.32].repeat(40);
-    assert!(is(Columns::Kitti, &kitti_ahead));
+    assert!(is(ScanFormat::Kitti, &kitti_ahead));
     let nuscenes = [20.1, -3.5, -1.7, 12.0, 31.0, 5.5, 8.25, 0.5, 0.0, 0.0].repeat(40);
-    assert!(is(Columns::Kitti, &kitti) && !is(Columns::NuScenes, &kitti));
-    assert!(is(Columns::NuScenes, &nuscenes) && !is(Columns::Kitti, &nuscenes));
+    assert!(is(ScanFormat::Kitti, &kitti) && !is(ScanFormat::NuScenes, &kitti));
+    assert!(is(ScanFormat::NuScenes, &nuscenes) && !is(ScanFormat::Kitti, &nuscenes));
     for values in [&[0.0; 40][..], &[f32::NAN; 40], &[900.0; 40], &[]] {
-        assert!(!is(Columns::Kitti, values) && !is(Columns::NuScenes, values));
+        assert!(!is(ScanFormat::Kitti, values) && !is(ScanFormat::NuScenes, values));
     }
-    assert!(!is(Columns::Kitti, &kitti[..7]));
+    assert!(!is(ScanFormat::Kitti, &kitti[..7]));
 }

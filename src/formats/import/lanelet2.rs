@@ -8,7 +8,7 @@ use roxmltree::Node;
 use super::{Content, Importer};
 use crate::lanelets::utm::Zone;
 use crate::lanelets::{self, Between, Lanelet, LaneletMap, MOST_POINTS, Use};
-use crate::opendrive::lanes::Ground;
+use crate::opendrive::lanes::LaneGround;
 use crate::opendrive::xml::{
     OpenDriveError, Result, bad, count, decode, elements, named, number_or_none, parse_document, shown,
     within_reach,
@@ -41,14 +41,14 @@ pub fn read(bytes: &[u8], name: &str) -> std::result::Result<RoadNetwork, Format
 
 /// A node: place in one of two ways.
 #[derive(Clone, Copy)]
-struct Place {
+struct OsmNode {
     degrees: Option<[f64; 2]>, // latitude, longitude
     local_m: Option<[f64; 2]>,
     height_m: f64,
 }
 
 /// A way: its nodes and what it says it is.
-struct Way<'a> {
+struct OsmWay<'a> {
     nodes: Vec<i64>,
     kind: &'a str,
     is_area: bool,
@@ -73,7 +73,7 @@ fn map(bytes: &[u8], name: &str) -> Result<LaneletMap> {
     let (places, ways) = nodes_and_ways(root)?;
     let in_metres = metres(root, &places)?;
     let mut points = 0;
-    let mut line = |way: &Way<'_>, skipped: &mut Skipped| -> Result<Vec<DVec3>> {
+    let mut line = |way: &OsmWay<'_>, skipped: &mut Skipped| -> Result<Vec<DVec3>> {
         points += way.nodes.len();
         if points > MOST_POINTS {
             return Err(OpenDriveError::TooMuch {
@@ -158,7 +158,7 @@ fn whole(node: Node<'_, '_>, field: &str) -> Result<i64> {
         .map_err(|_| bad(node, field, "a whole number", &format!("{text:?}")))
 }
 
-type NodesAndWays<'a> = (HashMap<i64, Place>, BTreeMap<i64, Way<'a>>);
+type NodesAndWays<'a> = (HashMap<i64, OsmNode>, BTreeMap<i64, OsmWay<'a>>);
 
 fn nodes_and_ways<'a>(root: Node<'a, 'a>) -> Result<NodesAndWays<'a>> {
     let (mut places, mut ways) = (HashMap::new(), BTreeMap::new());
@@ -181,7 +181,7 @@ fn nodes_and_ways<'a>(root: Node<'a, 'a>) -> Result<NodesAndWays<'a>> {
                     true => Ok(None),
                     false => number_or_none(node, key),
                 };
-                let place = Place {
+                let place = OsmNode {
                     degrees: pair(degrees("lat")?, degrees("lon")?),
                     local_m: pair(tagged("local_x")?, tagged("local_y")?),
                     height_m: tagged("ele")?.unwrap_or(0.0),
@@ -192,7 +192,7 @@ fn nodes_and_ways<'a>(root: Node<'a, 'a>) -> Result<NodesAndWays<'a>> {
                 let nodes = named(node, "nd")
                     .map(|nd| whole(nd, "ref"))
                     .collect::<Result<_>>()?;
-                let way = Way {
+                let way = OsmWay {
                     nodes,
                     kind: tag(node, "type"),
                     is_area: tag(node, "area") == "yes",
@@ -205,15 +205,15 @@ fn nodes_and_ways<'a>(root: Node<'a, 'a>) -> Result<NodesAndWays<'a>> {
     // Points that no line goes through need no place.
     let used: HashSet<i64> = ways
         .values()
-        .flat_map(|way: &Way<'_>| way.nodes.iter().copied())
+        .flat_map(|way: &OsmWay<'_>| way.nodes.iter().copied())
         .collect();
     places.retain(|id, _| used.contains(id));
     Ok((places, ways))
 }
 
 /// All nodes of ways in metres.
-fn metres(root: Node<'_, '_>, places: &HashMap<i64, Place>) -> Result<HashMap<i64, DVec3>> {
-    let local = |p: &Place| p.local_m.map(|[x, y]| DVec3::new(x, y, p.height_m));
+fn metres(root: Node<'_, '_>, places: &HashMap<i64, OsmNode>) -> Result<HashMap<i64, DVec3>> {
+    let local = |p: &OsmNode| p.local_m.map(|[x, y]| DVec3::new(x, y, p.height_m));
     if places.values().all(|p| p.local_m.is_some()) {
         return Ok(places
             .iter()
@@ -228,7 +228,7 @@ fn metres(root: Node<'_, '_>, places: &HashMap<i64, Place>) -> Result<HashMap<i6
     };
     let zone = Zone::of(bounds(0), bounds(1)).filter(|_| degrees.len() == places.len());
     let zone = zone.ok_or_else(|| {
-        let without = |has: &dyn Fn(&Place) -> bool| places.values().filter(|p| !has(p)).count();
+        let without = |has: &dyn Fn(&OsmNode) -> bool| places.values().filter(|p| !has(p)).count();
         bad(
             root,
             "node",
@@ -241,7 +241,7 @@ fn metres(root: Node<'_, '_>, places: &HashMap<i64, Place>) -> Result<HashMap<i6
             ),
         )
     })?;
-    let of = |(id, place): (&i64, &Place)| {
+    let of = |(id, place): (&i64, &OsmNode)| {
         let [latitude, longitude] = place.degrees?;
         let sound = Zone::of(latitude, longitude).is_some();
         let p = zone.project(latitude, longitude);
@@ -257,13 +257,13 @@ fn members(node: Node<'_, '_>, role: &str) -> Vec<i64> {
     ways.filter_map(|m| whole(m, "ref").ok()).collect()
 }
 
-type Line<'f> = dyn FnMut(&Way<'_>, &mut Skipped) -> Result<Vec<DVec3>> + 'f;
+type WayResolver<'f> = dyn FnMut(&OsmWay<'_>, &mut Skipped) -> Result<Vec<DVec3>> + 'f;
 
 /// Ways one behind the other, each turned so that it goes on where the one before ends.
 fn chained(
     ids: &[i64],
-    ways: &BTreeMap<i64, Way<'_>>,
-    line: &mut Line<'_>,
+    ways: &BTreeMap<i64, OsmWay<'_>>,
+    line: &mut WayResolver<'_>,
     skipped: &mut Skipped,
 ) -> Result<Vec<DVec3>> {
     let mut out: Vec<DVec3> = Vec::new();
@@ -287,8 +287,8 @@ fn chained(
 
 fn joined(
     ids: &[i64],
-    ways: &BTreeMap<i64, Way<'_>>,
-    line: &mut Line<'_>,
+    ways: &BTreeMap<i64, OsmWay<'_>>,
+    line: &mut WayResolver<'_>,
     skipped: &mut Skipped,
 ) -> Result<Vec<DVec2>> {
     let ring = chained(ids, ways, line, skipped)?;
@@ -298,8 +298,8 @@ fn joined(
 /// A lanelet and the ids of the ways of its bounds.
 fn lanelet(
     node: Node<'_, '_>,
-    ways: &BTreeMap<i64, Way<'_>>,
-    line: &mut Line<'_>,
+    ways: &BTreeMap<i64, OsmWay<'_>>,
+    line: &mut WayResolver<'_>,
     skipped: &mut Skipped,
 ) -> Result<Option<(Lanelet, [Vec<i64>; 2])>> {
     let ids = ["left", "right"].map(|role| members(node, role));
@@ -314,8 +314,8 @@ fn lanelet(
     let subtype = tag(node, "subtype");
     let use_ = match subtype {
         "" | "road" | "highway" | "play_street" | "bus_lane" | "exit" => Use::Traffic,
-        "emergency_lane" | "road_shoulder" => Use::Ground(Ground::Road),
-        "bicycle_lane" if !ids.iter().any(kerb) => Use::Ground(Ground::Road),
+        "emergency_lane" | "road_shoulder" => Use::Ground(LaneGround::Road),
+        "bicycle_lane" if !ids.iter().any(kerb) => Use::Ground(LaneGround::Road),
         "bicycle_lane" | "walkway" | "shared_walkway" | "stairs" | "pedestrian_lane" => Use::Walking,
         "crosswalk" => Use::Crossing,
         other => {
@@ -334,9 +334,9 @@ fn lanelet(
 /// An area of a kind.
 fn area(kind: &str, ring: Vec<DVec2>, out: &mut LaneletMap) {
     let ground = match kind {
-        "parking" | "parking_lot" | "parking_space" => Ground::Carpark,
-        "freespace" | "exit" => Ground::Road,
-        "walkway" => Ground::Walkway,
+        "parking" | "parking_lot" | "parking_space" => LaneGround::Carpark,
+        "freespace" | "exit" => LaneGround::Road,
+        "walkway" => LaneGround::Walkway,
         other => return count(&mut out.skipped, format!("area {}", shown(other, 30))),
     };
     match ring.len() {

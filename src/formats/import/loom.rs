@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Content, Importer, Loaded, first_entry_ends};
+use super::{Content, ImportedScene, Importer, first_entry_ends};
 use crate::{FormatError, Holds, loom};
 
 /// See [`loom`].
@@ -16,7 +16,7 @@ pub const IMPORTER: Importer = Importer {
     in_folder: None,
     read: |source| {
         let scene = loom::from_bytes(source.bytes).map_err(FormatError::new)?;
-        Ok(Content::Scene(Box::new(Loaded {
+        Ok(Content::Scene(Box::new(ImportedScene {
             scene,
             inferred: &[],
             skipped: BTreeMap::new(),

@@ -35,7 +35,7 @@ use std::path::{Path, PathBuf};
 use scene::message::quoted;
 
 use super::{FormatError, input};
-pub use importer::{Content, Importer, Loaded, Source};
+pub use importer::{Content, ImportFile, ImportedScene, Importer};
 use importer::{GUESSED, first_entry_ends, labelled};
 
 /// Every format that can be read.
@@ -191,7 +191,7 @@ pub fn read_as(importer: &Importer, path: &Path) -> Result<Content, FormatError>
 
 fn read_file(importer: &Importer, path: &Path, lift_m: Option<f64>) -> Result<Content, FormatError> {
     let bytes = input::read(path, importer.largest).map_err(FormatError::new)?;
-    let source = Source {
+    let source = ImportFile {
         bytes: &bytes,
         name: &scene_name(path),
         path: Some(path),

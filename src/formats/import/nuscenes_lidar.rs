@@ -12,8 +12,8 @@ use std::path::Path;
 use scene::{Class, SensorRig};
 
 use super::cloud::{Cloud, Label};
-use super::scan::{Columns, file_name, labels_beside};
-use super::{Content, Importer, Source};
+use super::scan::{ScanFormat, file_name, labels_beside};
+use super::{Content, ImportFile, Importer};
 use crate::{FormatError, Holds};
 
 /// See the module.
@@ -23,7 +23,7 @@ pub const IMPORTER: Importer = Importer {
     extensions: &[],
     holds: &[Holds::Points],
     largest: 512 << 20,
-    recognises: |head| Columns::NuScenes.are_in(head),
+    recognises: |head| ScanFormat::NuScenes.are_in(head),
     in_folder: None,
     read,
     #[cfg(test)]
@@ -70,8 +70,8 @@ const CLASSES: [Option<Class>; 32] = [
 ];
 
 /// Reads such a file under any name.
-pub(super) fn read(source: &Source<'_>) -> Result<Content, FormatError> {
-    let points = Columns::NuScenes.read(source.bytes)?;
+pub(super) fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
+    let points = ScanFormat::NuScenes.read(source.bytes)?;
     let labels = match labels_name(source.path) {
         Some(name) => labels_beside(source, &name, (points.len(), 1))?,
         None => None,

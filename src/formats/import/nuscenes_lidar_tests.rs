@@ -6,7 +6,7 @@ use glam::DVec3;
 use scene::Window;
 
 use super::*;
-use crate::import::{self, Loaded};
+use crate::import::{self, ImportedScene};
 
 /// Seven points ahead of the vehicle: the sensor's x axis points to the right, its y axis ahead.
 pub(super) fn sample() -> Vec<u8> {
@@ -18,14 +18,14 @@ fn scan(points: &[[f32; 3]]) -> Vec<u8> {
     points.iter().flat_map(point).collect()
 }
 
-fn loaded(path: &Path) -> Result<Loaded, FormatError> {
+fn loaded(path: &Path) -> Result<ImportedScene, FormatError> {
     match import::read(path)?.1 {
         Content::Scene(loaded) => Ok(*loaded),
         other => panic!("{other:?}: expected a scene"),
     }
 }
 
-fn at(loaded: &Loaded, at: [f64; 3]) -> u8 {
+fn at(loaded: &ImportedScene, at: [f64; 3]) -> u8 {
     let [x, y, z] = Window::voxel_at(DVec3::from_array(at)).expect("on the map");
     loaded.scene.frame().occupancy.get(x, y, z)
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use scene::Unobserved;
 use scene::message::quoted;
 
-use super::{Content, GUESSED, Importer, Loaded, Source, first_entry_ends, labelled};
+use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, first_entry_ends, labelled};
 use crate::{FormatError, Holds, occ3d, recipe};
 
 /// See [`occ3d`].
@@ -22,7 +22,7 @@ pub const IMPORTER: Importer = Importer {
     sample: || occ3d::to_bytes(&crate::table_tests::scene().frame().occupancy),
 };
 
-fn read(source: &Source<'_>) -> Result<Content, occ3d::Occ3dError> {
+fn read(source: &ImportFile<'_>) -> Result<Content, occ3d::Occ3dError> {
     let found = occ3d::read_found(source.bytes)?;
     let frame = found.frame;
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
@@ -42,7 +42,7 @@ fn read(source: &Source<'_>) -> Result<Content, occ3d::Occ3dError> {
     if let Some(told) = &found.recipe {
         recipe::restore(told, &mut scene);
     }
-    Ok(Content::Scene(Box::new(Loaded {
+    Ok(Content::Scene(Box::new(ImportedScene {
         scene,
         inferred: &GUESSED,
         skipped,
@@ -55,19 +55,19 @@ mod tests {
     use scene::{Class, Window};
 
     use super::*;
-    use crate::npz::{Array, Values, to_bytes};
+    use crate::npz::{Array, NpzValues, to_bytes};
 
     fn npz(arrays: Vec<(&str, Vec<u8>)>) -> Vec<u8> {
         let array = |(name, values)| Array {
             name,
             shape: &[Window::NX, Window::NY, Window::NZ],
-            values: Values::U8(values),
+            values: NpzValues::U8(values),
         };
         to_bytes(&arrays.into_iter().map(array).collect::<Vec<_>>()).expect("memory")
     }
 
-    fn loaded(bytes: &[u8]) -> Loaded {
-        let source = Source {
+    fn loaded(bytes: &[u8]) -> ImportedScene {
+        let source = ImportFile {
             bytes,
             name: "labels",
             path: None,
@@ -98,7 +98,7 @@ mod tests {
         for same in [&openocc, &waymo] {
             assert!(same.scene.frame().occupancy == occ3d.scene.frame().occupancy);
         }
-        let notes = |loaded: &Loaded| {
+        let notes = |loaded: &ImportedScene| {
             loaded
                 .skipped
                 .iter()
@@ -163,7 +163,7 @@ mod tests {
         let large = Array {
             name: "voxel_label",
             shape: &[1600, 1600, 64],
-            values: Values::U8(vec![23; 1600 * 1600 * 64]),
+            values: NpzValues::U8(vec![23; 1600 * 1600 * 64]),
         };
         let line = occ3d::read(&to_bytes(&[large]).expect("memory")).expect_err("too fine");
         assert!(line.to_string().contains("Occ3D-Waymo at 0.1 m"), "{line}");

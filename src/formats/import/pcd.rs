@@ -12,7 +12,7 @@ use glam::DVec3;
 use scene::message::quoted;
 
 use super::cloud::{Cloud, LABELS, NothingOnTheMap};
-use super::{Content, Importer, Source};
+use super::{Content, ImportFile, Importer};
 use crate::{FormatError, Holds, lzf};
 
 /// Longest header, bytes, and most fields in it.
@@ -92,8 +92,8 @@ fn wrong(key: &'static str, found: impl Into<String>, expected: impl Into<String
     }
 }
 
-fn read(source: &Source<'_>) -> Result<Content, PcdError> {
-    let header = Header::read(source.bytes)?;
+fn read(source: &ImportFile<'_>) -> Result<Content, PcdError> {
+    let header = PcdHeader::read(source.bytes)?;
     let body = &source.bytes[header.body..];
     let axis = |name| {
         header
@@ -120,7 +120,7 @@ fn read(source: &Source<'_>) -> Result<Content, PcdError> {
 }
 
 /// One field of a point.
-struct Field {
+struct PcdField {
     name: String,
     /// `F`, `I` or `U`, and bytes of one value.
     kind: (u8, usize),
@@ -131,7 +131,7 @@ struct Field {
     values_before: usize,
 }
 
-impl Field {
+impl PcdField {
     /// Its first value, `at` being where the field begins.
     fn value(&self, at: &[u8]) -> f64 {
         macro_rules! number {
@@ -164,8 +164,8 @@ enum Data {
     Compressed,
 }
 
-struct Header {
-    fields: Vec<Field>,
+struct PcdHeader {
+    fields: Vec<PcdField>,
     points: usize,
     data: Data,
     has_viewpoint: bool,
@@ -173,7 +173,7 @@ struct Header {
     body: usize,
 }
 
-impl Header {
+impl PcdHeader {
     fn read(bytes: &[u8]) -> Result<Self, PcdError> {
         let mut lines: BTreeMap<String, Vec<String>> = BTreeMap::new();
         let mut at = 0;
@@ -226,7 +226,7 @@ impl Header {
     }
 
     fn field(&self, names: &[&str]) -> Option<usize> {
-        let of = |f: &Field| names.contains(&f.name.to_lowercase().as_str());
+        let of = |f: &PcdField| names.contains(&f.name.to_lowercase().as_str());
         self.fields.iter().position(of)
     }
 
@@ -241,7 +241,7 @@ impl Header {
             found,
             expected: self.points,
         };
-        let wanted: Vec<&Field> = wanted.iter().filter_map(|at| self.fields.get(*at)).collect();
+        let wanted: Vec<&PcdField> = wanted.iter().filter_map(|at| self.fields.get(*at)).collect();
         let mut values = vec![0.0; wanted.len()];
         if self.data != Data::Ascii {
             let stride: usize = self.fields.iter().map(|f| f.kind.1 * f.count).sum();
@@ -323,7 +323,7 @@ fn whole(key: &'static str, word: Option<&String>, most: usize) -> Result<usize,
 }
 
 /// From the lines FIELDS, SIZE, TYPE and COUNT.
-fn fields(lines: &BTreeMap<String, Vec<String>>) -> Result<Vec<Field>, PcdError> {
+fn fields(lines: &BTreeMap<String, Vec<String>>) -> Result<Vec<PcdField>, PcdError> {
     let of = |key: &'static str| {
         lines
             .get(key)
@@ -353,7 +353,7 @@ fn fields(lines: &BTreeMap<String, Vec<String>>) -> Result<Vec<Field>, PcdError>
             Some(counts) => whole("COUNT", counts.get(i), MOST_VALUES)?.max(1),
             None => 1,
         };
-        fields.push(Field {
+        fields.push(PcdField {
             name: name.clone(),
             kind: (kind, size),
             count,

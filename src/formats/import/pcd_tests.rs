@@ -1,7 +1,7 @@
 //! Tests of the reader of point clouds.
 
 use super::*;
-use crate::import::{GUESSED, Loaded};
+use crate::import::{GUESSED, ImportedScene};
 use scene::{Class, Window};
 
 /// Three points in two voxels and one beside the map, with labels.
@@ -28,8 +28,8 @@ fn binary(points: &[([f64; 3], u16)], promised: usize) -> Vec<u8> {
     out
 }
 
-fn loaded(bytes: &[u8]) -> Result<Loaded, PcdError> {
-    match read(&Source {
+fn loaded(bytes: &[u8]) -> Result<ImportedScene, PcdError> {
+    match read(&ImportFile {
         bytes,
         name: "cloud",
         path: None,

@@ -1,6 +1,6 @@
 //! A picture that the program wrote: reads the scene inside it, or the recipe that it was made with.
 
-use super::{Content, Importer, Loaded};
+use super::{Content, ImportedScene, Importer};
 use crate::recipe::{NAME, Recipe};
 use crate::{FormatError, Holds, loom, png};
 
@@ -17,7 +17,7 @@ pub const IMPORTER: Importer = Importer {
         let inside = png::notes_inside(source.bytes).map_err(FormatError::new)?;
         if let Some(bytes) = inside.scene {
             let scene = loom::from_bytes(bytes).map_err(FormatError::new)?;
-            return Ok(Content::Scene(Box::new(Loaded {
+            return Ok(Content::Scene(Box::new(ImportedScene {
                 scene,
                 inferred: &[],
                 skipped: Default::default(),
@@ -51,11 +51,11 @@ pub const IMPORTER: Importer = Importer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::import::Source;
+    use crate::import::ImportFile;
     use crate::table_tests::scene;
 
     fn read(bytes: &[u8]) -> Result<Content, FormatError> {
-        (IMPORTER.read)(&Source {
+        (IMPORTER.read)(&ImportFile {
             bytes,
             name: "p",
             path: None,

@@ -11,7 +11,7 @@ use glam::DVec3;
 use scene::message::quoted;
 
 use super::cloud::{Cloud, LABELS, NothingOnTheMap};
-use super::{Content, Importer, Source};
+use super::{Content, ImportFile, Importer};
 use crate::{FormatError, Holds};
 
 /// Longest header, bytes; most elements, and most properties of one.
@@ -76,8 +76,8 @@ pub enum PlyError {
     Nothing(#[from] NothingOnTheMap),
 }
 
-fn read(source: &Source<'_>) -> Result<Content, PlyError> {
-    let header = Header::read(source.bytes)?;
+fn read(source: &ImportFile<'_>) -> Result<Content, PlyError> {
+    let header = PlyHeader::read(source.bytes)?;
     let vertex = header.elements.iter().position(|e| e.name == "vertex");
     let at = vertex.ok_or(PlyError::Missing("x"))?;
     let points = &header.elements[at];
@@ -89,7 +89,7 @@ fn read(source: &Source<'_>) -> Result<Content, PlyError> {
     let mut wanted = vec![axis("x")?, axis("y")?, axis("z")?];
     wanted.extend(property(&|p| LABELS.contains(&p.to_lowercase().as_str())));
 
-    let mut body = Body::new(&source.bytes[header.body..], header.encoding);
+    let mut body = PlyBody::new(&source.bytes[header.body..], header.encoding);
     for before in &header.elements[..at] {
         body.pass(before, &[], |_| {})?;
     }
@@ -121,7 +121,7 @@ fn read(source: &Source<'_>) -> Result<Content, PlyError> {
 
 /// Type of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Number {
+enum PlyScalar {
     I8,
     U8,
     I16,
@@ -132,7 +132,7 @@ enum Number {
     F64,
 }
 
-impl Number {
+impl PlyScalar {
     fn named(name: &str) -> Option<Self> {
         Some(match name {
             "char" | "int8" => Self::I8,
@@ -181,9 +181,9 @@ impl Number {
 
 struct Property {
     name: String,
-    number: Number,
+    number: PlyScalar,
     /// Type of the length, for a list; `None` for a single value.
-    length: Option<Number>,
+    length: Option<PlyScalar>,
 }
 
 struct Element {
@@ -210,14 +210,14 @@ enum Encoding {
     Big,
 }
 
-struct Header {
+struct PlyHeader {
     encoding: Encoding,
     elements: Vec<Element>,
     /// Where the numbers begin.
     body: usize,
 }
 
-impl Header {
+impl PlyHeader {
     fn read(bytes: &[u8]) -> Result<Self, PlyError> {
         let (mut at, mut number) = (0, 0);
         let mut encoding = None;
@@ -263,7 +263,7 @@ impl Header {
                     });
                 }
                 ["property", kind @ .., name] => {
-                    let types: Vec<Option<Number>> = kind.iter().map(|k| Number::named(k)).collect();
+                    let types: Vec<Option<PlyScalar>> = kind.iter().map(|k| PlyScalar::named(k)).collect();
                     let (number, length) = match types.as_slice() {
                         [Some(number)] => (*number, None),
                         [None, Some(length), Some(number)] if kind[0] == "list" => (*number, Some(*length)),
@@ -294,12 +294,12 @@ impl Header {
 }
 
 /// The bytes after the header, read from the front.
-struct Body<'a> {
+struct PlyBody<'a> {
     rest: &'a [u8],
     encoding: Encoding,
 }
 
-impl<'a> Body<'a> {
+impl<'a> PlyBody<'a> {
     fn new(rest: &'a [u8], encoding: Encoding) -> Self {
         Self { rest, encoding }
     }

@@ -1,7 +1,7 @@
 //! Tests of the reader of PLY.
 
 use super::*;
-use crate::import::{GUESSED, Loaded};
+use crate::import::{GUESSED, ImportedScene};
 use scene::{Class, Window};
 
 /// Three points in two voxels, one beside the map and one without a number, with labels; a face after them.
@@ -56,8 +56,8 @@ fn binary(is_big: bool) -> Vec<u8> {
     out
 }
 
-fn loaded(bytes: &[u8]) -> Result<Loaded, PlyError> {
-    match read(&Source {
+fn loaded(bytes: &[u8]) -> Result<ImportedScene, PlyError> {
+    match read(&ImportFile {
         bytes,
         name: "cloud",
         path: None,

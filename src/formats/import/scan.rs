@@ -4,12 +4,12 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::Source;
+use super::ImportFile;
 use crate::FormatError;
 
 /// Kind of the columns after x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Columns {
+pub(super) enum ScanFormat {
     /// KITTI: remission, 0 to 1.
     Kitti,
     /// nuScenes: intensity, 0 to 255, and ring.
@@ -27,7 +27,7 @@ const LEAST_SOUND: f64 = 0.9;
 const STRONGEST: f32 = 255.0;
 const MOST_RINGS: f32 = 1024.0;
 
-impl Columns {
+impl ScanFormat {
     pub(super) fn count(self) -> usize {
         match self {
             Self::Kitti => 4,
@@ -139,7 +139,7 @@ fn slot(values: &[f32; 5], far_m: f32) -> Slot {
 
 /// A file beside the scan that is read if it is there: `count` values of `size` bytes. Errors if it holds another number.
 pub(super) fn labels_beside(
-    source: &Source<'_>,
+    source: &ImportFile<'_>,
     relative: &str,
     (count, size): (usize, usize),
 ) -> Result<Option<Vec<u8>>, FormatError> {

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use scene::{Class, Extent, SensorRig, Unobserved, VoxelGrid};
 
-use super::{Content, GUESSED, Importer, Loaded, Source, labelled};
+use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, labelled};
 use crate::semantic_kitti::{BIT_BYTES, CELLS, LATTICE, bit, class_of, ego_from_cells};
-use crate::voxels::{Cells, Physical, unobserved};
+use crate::voxels::{Physical, VoxelVotes, unobserved};
 use crate::{FormatError, Holds};
 
 /// See `semantic_kitti`.
@@ -24,7 +24,7 @@ pub const IMPORTER: Importer = Importer {
     sample: tests::sample,
 };
 
-fn read(source: &Source<'_>) -> Result<Content, String> {
+fn read(source: &ImportFile<'_>) -> Result<Content, String> {
     let (labels, mut skipped) = labels(source.bytes)?;
     let invalid = beside(source, "invalid")?;
     for extension in ["bin", "occluded"] {
@@ -33,7 +33,7 @@ fn read(source: &Source<'_>) -> Result<Content, String> {
         }
     }
     let unobserved = invalid.and_then(|bits| mask(labels.extent(), &bits));
-    Ok(Content::Scene(Box::new(Loaded {
+    Ok(Content::Scene(Box::new(ImportedScene {
         scene: labelled(source.name, labels, unobserved),
         inferred: &GUESSED,
         skipped,
@@ -53,7 +53,7 @@ pub(crate) fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>
     let rig = SensorRig::default();
     let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
     let pose = ego_from_cells(lidar);
-    let mut cells = Cells::new(&LATTICE, &pose)?;
+    let mut cells = VoxelVotes::new(&LATTICE, &pose)?;
     let mut unknown = 0;
     for (index, raw) in bytes.chunks_exact(2).enumerate() {
         let class = match class_of(u16::from_le_bytes([raw[0], raw[1]])) {
@@ -82,7 +82,7 @@ pub(crate) fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>
 
 /// The file of the same frame with another ending: a bit per cell. `None` if it is not there; errors if it is of
 /// another size.
-fn beside(source: &Source<'_>, extension: &str) -> Result<Option<Vec<u8>>, String> {
+fn beside(source: &ImportFile<'_>, extension: &str) -> Result<Option<Vec<u8>>, String> {
     let name = source.path.map(|path| path.with_extension(extension));
     let name = name.as_deref().and_then(Path::file_name).and_then(|n| n.to_str());
     let Some(name) = name.filter(|name| source.place(name).is_ok_and(|path| path.is_file())) else {
@@ -152,8 +152,8 @@ mod tests {
         raw.iter().flat_map(|id| id.to_le_bytes()).collect()
     }
 
-    fn loaded(path: Option<&Path>, bytes: &[u8]) -> Result<Loaded, String> {
-        let source = Source {
+    fn loaded(path: Option<&Path>, bytes: &[u8]) -> Result<ImportedScene, String> {
+        let source = ImportFile {
             bytes,
             name: "000000",
             path,

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use scene::message::quoted;
 use scene::{Class, SensorRig, VoxelGrid};
 
-use super::{Content, GUESSED, Importer, Loaded, Source, labelled};
-use crate::npy::Table;
-use crate::sparse_npy::{Kind, OPEN_OCCUPANCY, ego_from_lidar};
-use crate::voxels::Cells;
+use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, labelled};
+use crate::npy::NpyMatrix;
+use crate::sparse_npy::{OPEN_OCCUPANCY, SparseDataset, ego_from_lidar};
+use crate::voxels::VoxelVotes;
 use crate::{FormatError, Holds};
 
 /// Classes that readers of these files ignore: noise, and the number that they replace it by.
@@ -29,9 +29,9 @@ pub const IMPORTER: Importer = Importer {
     sample: tests::sample,
 };
 
-fn read(source: &Source<'_>) -> Result<Content, String> {
+fn read(source: &ImportFile<'_>) -> Result<Content, String> {
     let (labels, skipped) = labels(source.bytes)?;
-    Ok(Content::Scene(Box::new(Loaded {
+    Ok(Content::Scene(Box::new(ImportedScene {
         scene: labelled(source.name, labels, None),
         inferred: &GUESSED,
         skipped,
@@ -41,7 +41,7 @@ fn read(source: &Source<'_>) -> Result<Content, String> {
 
 /// The labels that a file holds, and what was assumed and left out.
 fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> {
-    let table = Table::read(bytes)?;
+    let table = NpyMatrix::read(bytes)?;
     let (rows, columns) = (table.rows, table.columns);
     if rows == 0 || !matches!(columns, 4 | 7) {
         return Err(format!(
@@ -53,7 +53,7 @@ fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> 
     let rig = SensorRig::default();
     let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
     let pose = ego_from_lidar(lidar);
-    let mut cells = Cells::new(&kind.lattice, &pose)?;
+    let mut cells = VoxelVotes::new(&kind.lattice, &pose)?;
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
     let mut count = |what: &str, n: usize| {
         if n > 0 {
@@ -103,7 +103,7 @@ fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> 
 }
 
 /// Which data set a table is of. Errors if its first three columns are no indices of any of them.
-fn kind_of(table: &Table<'_>, not_finite: impl Fn(usize) -> bool) -> Result<Kind, String> {
+fn kind_of(table: &NpyMatrix<'_>, not_finite: impl Fn(usize) -> bool) -> Result<SparseDataset, String> {
     let mut maxima = [0.0; 3];
     for row in (0..table.rows).filter(|row| !not_finite(*row)) {
         for (column, most) in maxima.iter_mut().enumerate() {
@@ -117,7 +117,7 @@ fn kind_of(table: &Table<'_>, not_finite: impl Fn(usize) -> bool) -> Result<Kind
             *most = value.max(*most);
         }
     }
-    let kind = Kind::of_maxima(maxima.map(|v: f64| v as usize));
+    let kind = SparseDataset::of_maxima(maxima.map(|v: f64| v as usize));
     let kind = kind.filter(|kind| table.columns == 4 || *kind == OPEN_OCCUPANCY);
     kind.ok_or_else(|| {
         let [a, b, c] = maxima;

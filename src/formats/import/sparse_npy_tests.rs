@@ -27,8 +27,8 @@ fn rows(of: &[[i64; 4]]) -> Vec<u8> {
     npy("<i8", false, &format!("({}, 4)", of.len()), &values)
 }
 
-fn loaded(bytes: &[u8]) -> Loaded {
-    let source = Source {
+fn loaded(bytes: &[u8]) -> ImportedScene {
+    let source = ImportFile {
         bytes,
         name: "list",
         path: None,
@@ -41,7 +41,7 @@ fn loaded(bytes: &[u8]) -> Loaded {
 }
 
 fn refusal(bytes: &[u8]) -> String {
-    let source = Source {
+    let source = ImportFile {
         bytes,
         name: "list",
         path: None,

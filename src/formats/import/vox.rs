@@ -1,7 +1,7 @@
 //! MagicaVoxel models: the colours of classes become those classes.
 
-use super::{Content, GUESSED, Importer, Loaded, Source, labelled};
-use crate::vox::{File, Placed, place};
+use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, labelled};
+use crate::vox::{VoxFile, VoxMap, place};
 use crate::{FormatError, Holds};
 
 /// See `vox`.
@@ -18,9 +18,9 @@ pub const IMPORTER: Importer = Importer {
     sample: tests::sample,
 };
 
-fn read(source: &Source<'_>) -> Result<Content, String> {
-    let Placed { grid, skipped } = place(&File::read(source.bytes)?)?;
-    Ok(Content::Scene(Box::new(Loaded {
+fn read(source: &ImportFile<'_>) -> Result<Content, String> {
+    let VoxMap { grid, skipped } = place(&VoxFile::read(source.bytes)?)?;
+    Ok(Content::Scene(Box::new(ImportedScene {
         scene: labelled(source.name, grid, None),
         inferred: &GUESSED,
         skipped,

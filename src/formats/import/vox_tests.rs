@@ -11,12 +11,12 @@ pub(super) fn sample() -> Vec<u8> {
     to_bytes(&scene().frame().occupancy)
 }
 
-fn placed(bytes: &[u8]) -> Placed {
-    place(&File::read(bytes).expect("chunks")).expect("a map")
+fn placed(bytes: &[u8]) -> VoxMap {
+    place(&VoxFile::read(bytes).expect("chunks")).expect("a map")
 }
 
 fn refusal(bytes: &[u8]) -> String {
-    let source = Source {
+    let source = ImportFile {
         bytes,
         name: "model",
         path: None,

@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Lanelet, Use};
-use crate::opendrive::{Junction, RoadEnd};
+use crate::opendrive::{RoadEnd, XodrJunction};
 
 /// Junctions, and the neighbours before and behind every lanelet.
 pub(super) struct Junctions {
-    pub junctions: Vec<Junction>,
+    pub junctions: Vec<XodrJunction>,
     /// Id of the junction of each lanelet in one.
     pub junction_of: BTreeMap<i64, String>,
     before: BTreeMap<i64, RoadEnd>,
@@ -106,7 +106,7 @@ pub(super) fn find(lanelets: &[Lanelet]) -> Junctions {
     }
     out.junctions = incoming
         .into_iter()
-        .map(|(id, incoming)| Junction {
+        .map(|(id, incoming)| XodrJunction {
             connections: connections.get(&id).copied().unwrap_or_default(),
             incoming: incoming.into_iter().collect(),
             id,

@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::opendrive::lanes::{Ground, LaneKind};
+use crate::opendrive::lanes::{LaneGround, LaneKind};
 use crate::opendrive::xml::count;
-use crate::opendrive::{Drawn, RoadNetwork, Skipped};
+use crate::opendrive::{RoadNetwork, RoadlessGeometry, Skipped};
 use scene::{Polyline, PolylineKind, SceneBox};
 
 /// Points of all bounds together, at most; a city has about a million.
@@ -26,7 +26,7 @@ pub(crate) enum Use {
     /// People on foot; also for bicycles behind a kerb.
     Walking,
     /// Ground of this kind without traffic.
-    Ground(Ground),
+    Ground(LaneGround),
     /// People who cross a road.
     Crossing,
     /// No use that a scene shows.
@@ -68,7 +68,7 @@ pub(crate) struct LaneletMap {
     pub between: Vec<Between>,
     pub stop_lines: Vec<Vec<DVec2>>,
     /// Outlines of ground without lanelets.
-    pub areas: Vec<(Ground, Vec<DVec2>)>,
+    pub areas: Vec<(LaneGround, Vec<DVec2>)>,
     /// Boxes that stand on the roads or drive there, on ground at 0.
     pub boxes: Vec<SceneBox>,
     /// Where the file says that the ego vehicle begins: place in m, heading in rad.
@@ -165,9 +165,9 @@ pub(crate) fn network(map: LaneletMap) -> Result<RoadNetwork, String> {
     }
     let of = junctions::find(&lanelets);
     let mut roads = Vec::new();
-    let mut drawn = Drawn {
+    let mut drawn = RoadlessGeometry {
         areas,
-        ..Drawn::default()
+        ..RoadlessGeometry::default()
     };
     for l in &lanelets {
         let kind = match l.use_ {

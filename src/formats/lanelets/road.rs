@@ -6,9 +6,9 @@ use glam::{DVec2, DVec3};
 
 use super::Lanelet;
 use super::junctions::Junctions;
-use crate::opendrive::Road;
+use crate::opendrive::XodrRoad;
 use crate::opendrive::elevation::SurfaceProfile;
-use crate::opendrive::lanes::{CubicPiece, Cubics, Extent, Lane, LaneKind, LaneSection, Side, Travel};
+use crate::opendrive::lanes::{CubicPiece, Cubics, Extent, Lane, LaneKind, LaneSection, SideLanes, Travel};
 use crate::opendrive::write::fit::{placed, reference};
 
 /// Distance between two stations, m, at most.
@@ -57,7 +57,7 @@ pub(super) fn problem<'a>(lanelets: impl Iterator<Item = &'a Lanelet>) -> Option
 }
 
 /// The road; `None` if the lanelet has no length.
-pub(super) fn of_lanelet(lanelet: &Lanelet, kind: LaneKind, junctions: &Junctions) -> Option<Road> {
+pub(super) fn of_lanelet(lanelet: &Lanelet, kind: LaneKind, junctions: &Junctions) -> Option<XodrRoad> {
     let [left, right] = &lanelet.bounds;
     let count = stations(lanelet) as usize;
     let (left, right) = (spread(left, count), spread(right, count));
@@ -106,14 +106,14 @@ pub(super) fn of_lanelet(lanelet: &Lanelet, kind: LaneKind, junctions: &Junction
         start_s_m: 0.0,
         end_s_m: line.end_s_m(),
         left: Arc::default(),
-        right: Arc::new(Side {
+        right: Arc::new(SideLanes {
             origin_s_m: 0.0,
             lanes: vec![lane],
         }),
         center_marks: Vec::new(),
     };
     let [predecessor, successor] = junctions.ends(lanelet.id);
-    Some(Road {
+    Some(XodrRoad {
         limits: Vec::new(),
         id: lanelet.id.to_string(),
         junction: junctions.junction_of.get(&lanelet.id).cloned(),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use scene::Scene;
-use scene::kept::{Kept, KeptVersion};
+use scene::kept::{KeptVersion, ProjectHistory};
 use scene::message::{of_lines, quoted};
 
 use super::archive::{MAX_JSON, Reader, Writer, parse, within};
@@ -43,13 +43,17 @@ fn check(versions: usize, typed: usize) -> Result<(), ProjectError> {
     within(
         "the number of versions",
         versions as u64,
-        Kept::MAX_VERSIONS as u64,
+        ProjectHistory::MAX_VERSIONS as u64,
     )?;
-    within("the number of typed lines", typed as u64, Kept::MAX_TYPED as u64)
+    within(
+        "the number of typed lines",
+        typed as u64,
+        ProjectHistory::MAX_TYPED as u64,
+    )
 }
 
 /// Writes nothing if nothing is kept.
-pub(super) fn write(out: &mut Writer, kept: &Kept) -> Result<(), ProjectError> {
+pub(super) fn write(out: &mut Writer, kept: &ProjectHistory) -> Result<(), ProjectError> {
     if kept.is_empty() {
         return Ok(());
     }
@@ -72,9 +76,9 @@ pub(super) fn write(out: &mut Writer, kept: &Kept) -> Result<(), ProjectError> {
 }
 
 /// Reads the kept versions and typed texts; the versions are not opened.
-pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<Kept, ProjectError> {
+pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<ProjectHistory, ProjectError> {
     if !file.has(KEPT) {
-        return Ok(Kept::default());
+        return Ok(ProjectHistory::default());
     }
     let header: KeptHeader = parse(KEPT, &file.bytes(KEPT, MAX_JSON)?)?;
     check(header.versions.len(), header.typed.len())?;
@@ -88,7 +92,7 @@ pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<Kept, Project
         })
     };
     let versions = header.versions.into_iter().enumerate().map(version);
-    Ok(Kept {
+    Ok(ProjectHistory {
         versions: versions.collect::<Result<_, ProjectError>>()?,
         typed: header.typed,
     })

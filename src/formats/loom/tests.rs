@@ -10,13 +10,13 @@ use scene::clip::ObjectVoxels;
 use scene::roads::{LaneKind, NodeId, NodeKind, RoadCrossing, RoadStop};
 use scene::{Arranged, Arrangement, BoxName, Members, Road, RoadId, RoadLane, RoadNetwork};
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Clip, Conditions, Extent, Frame, Kept, KeptVersion, Key, Motion,
-    Relief, Scene, SceneBox, SensorRig, TimeOfDay, Track, VoxelGrid, Weather,
+    BevLayer, BevLayout, BoxId, Class, Clip, Conditions, Extent, Frame, KeptVersion, Key, Motion,
+    ProjectHistory, Relief, Scene, SceneBox, SensorRig, TimeOfDay, Track, VoxelGrid, Weather,
 };
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
-use super::migrate::{self, Change, Entries, Migration};
+use super::migrate::{self, Entries, Migration, MigrationChange};
 use super::*;
 
 /// What the bundled file of a version holds.
@@ -135,7 +135,7 @@ fn roads() -> RoadNetwork {
 }
 
 /// A version with a star and a name, one without, and two lines.
-fn kept() -> Kept {
+fn kept() -> ProjectHistory {
     let version = |name: &str, starred, of: u32| KeptVersion {
         name: name.into(),
         label: "Add a car".into(),
@@ -143,7 +143,7 @@ fn kept() -> Kept {
         starred,
         loom: Arc::new(alone_to_bytes(&sample(of)).expect("sound")),
     };
-    Kept {
+    ProjectHistory {
         versions: vec![version("before the rain", true, 1), version("", false, 2)],
         typed: vec!["add a car".into(), "regen \"x\"".into()],
     }
@@ -376,7 +376,7 @@ fn of_version_0() -> Vec<u8> {
 const FROM_0: Migration = Migration {
     from: 0,
     what: "the prompt by its name, and 17 for free voxels",
-    change: Change::Rewrites(|old: &mut dyn Entries| {
+    change: MigrationChange::Rewrites(|old: &mut dyn Entries| {
         let scene = old.scene()?;
         let style = scene.as_object_mut().and_then(|o| o.remove("style"));
         let style = style.ok_or_else(|| ProjectError::Unsound("scene.json: style is missing".into()))?;

@@ -65,7 +65,7 @@ pub struct Log {
 
 /// A map that logs were driven on.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Map {
+pub struct NuscenesMap {
     /// Key.
     pub token: String,
     /// Logs.
@@ -113,7 +113,7 @@ pub struct SceneRow {
 
 /// A key frame.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Sample {
+pub struct NuscenesSample {
     /// Key.
     pub token: String,
     /// Time, µs.
@@ -178,7 +178,7 @@ pub struct EgoPose {
 
 /// A kind of sensor.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Sensor {
+pub struct NuscenesSensor {
     /// Key.
     pub token: String,
     /// `CAM_FRONT`.

@@ -4,10 +4,10 @@ use glam::DVec2;
 
 use super::RoadNetwork;
 use super::elevation::edge_heights_m;
-use super::lanes::Ground;
+use super::lanes::LaneGround;
 use super::layout::MapCut;
-use super::levels::{Levels, Off, Stretch, body_edges};
-use super::sampling::Row;
+use super::levels::{Off, RoadLevels, Stretch, body_edges};
+use super::sampling::LaneEdges;
 use super::xml::{Skipped, count};
 use scene::background::Bridge;
 use scene::{Form, Relief};
@@ -22,7 +22,7 @@ const THICKNESS_M: f64 = 0.9;
 const LONGEST_M: f64 = 2000.0;
 
 /// One cross-section of a deck, ego frame.
-struct Section {
+struct DeckSection {
     middle_m: DVec2,
     width_m: f64,
     top_m: f64, // in the file's frame
@@ -32,7 +32,7 @@ struct Section {
 pub(super) fn bridges(
     network: &RoadNetwork,
     window: &MapCut,
-    levels: &Levels,
+    levels: &RoadLevels,
     relief: &Relief,
     file_from_ego_m: f64,
     skipped: &mut Skipped,
@@ -65,29 +65,29 @@ pub(super) fn bridges(
 
 fn for_vehicles(network: &RoadNetwork, stretch: &Stretch) -> bool {
     let section = network.roads[stretch.road].section_at(0.5 * (stretch.from_s_m + stretch.to_s_m));
-    section.is_some_and(|s| s.grounds().contains(&Ground::Road))
+    section.is_some_and(|s| s.grounds().contains(&LaneGround::Road))
 }
 
 /// The stretch inside the window, cut where it would not be level.
-fn pieces(network: &RoadNetwork, window: &MapCut, stretch: &Stretch) -> Vec<Vec<Section>> {
+fn pieces(network: &RoadNetwork, window: &MapCut, stretch: &Stretch) -> Vec<Vec<DeckSection>> {
     let road = &network.roads[stretch.road];
     let from = stretch.from_s_m.max(0.0);
     let to = stretch.to_s_m.min(road.length_m()).min(from + LONGEST_M);
     let steps = ((to - from) / STEP_M).ceil().max(1.0);
-    let mut runs: Vec<Vec<Section>> = vec![Vec::new()];
+    let mut runs: Vec<Vec<DeckSection>> = vec![Vec::new()];
     for i in 0..=steps as usize {
         let s_m = from + (to - from) * i as f64 / steps;
         let cross = road.section_at(s_m).and_then(|section| {
             let [first, last] = body_edges(&section.grounds())?;
-            let row = Row::at(road, section, s_m);
+            let row = LaneEdges::at(road, section, s_m);
             let heights = edge_heights_m(&road.surface, section, &row, s_m);
-            Some(Section {
+            Some(DeckSection {
                 middle_m: window.to_ego(row.between(first, last)),
                 width_m: row.t_m[first] - row.t_m[last],
                 top_m: 0.5 * (heights[first][0] + heights[last - 1][1]),
             })
         });
-        let inside = |s: &Section| window.holds(s.middle_m, 0.0);
+        let inside = |s: &DeckSection| window.holds(s.middle_m, 0.0);
         match (cross.filter(inside), runs.last_mut()) {
             (Some(cross), Some(run)) => run.push(cross),
             (None, Some(run)) if run.is_empty() => {}
@@ -96,14 +96,14 @@ fn pieces(network: &RoadNetwork, window: &MapCut, stretch: &Stretch) -> Vec<Vec<
     }
     let mut out = Vec::new();
     for run in runs {
-        let mut piece: Vec<Section> = Vec::new();
+        let mut piece: Vec<DeckSection> = Vec::new();
         for cross in run {
             if let Some(first) = piece.first()
                 && (cross.top_m - first.top_m).abs() > 2.0 * LEVEL_M
                 && piece.len() > 1
             {
                 // The next piece begins where this one ends.
-                let joint = piece.last().map(|s| Section { ..*s });
+                let joint = piece.last().map(|s| DeckSection { ..*s });
                 out.push(std::mem::replace(&mut piece, joint.into_iter().collect()));
             }
             piece.push(cross);

@@ -1,8 +1,8 @@
 //! Height of a road's surface (ASAM OpenDRIVE 1.4 to 1.8): elevation along it, superelevation and crossfall across it,
 //! and the height of single lanes.
 
-use super::lanes::{Cubics, Lane, LaneSection, Side};
-use super::sampling::Row;
+use super::lanes::{Cubics, Lane, LaneSection, SideLanes};
+use super::sampling::LaneEdges;
 
 /// Elevations beyond this are cut, m: above and below every road there is.
 pub const MOST_ELEVATION_M: f64 = 1e4;
@@ -105,12 +105,12 @@ impl Lane {
 pub(super) fn edge_heights_m(
     surface: &SurfaceProfile,
     section: &LaneSection,
-    row: &Row,
+    row: &LaneEdges,
     held_m: f64,
 ) -> Vec<[f64; 2]> {
     let center = section.center_index();
     let edge = |i: usize| surface.height_m(row.s_m, held_m, row.t_m[i]);
-    let raised = |side: &Side, lane: &Lane| {
+    let raised = |side: &SideLanes, lane: &Lane| {
         lane.height_m(held_m - side.origin_s_m)
             .map(|m| beyond_kerb(bounded(m, MOST_LANE_HEIGHT_M)))
     };

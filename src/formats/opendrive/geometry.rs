@@ -22,7 +22,7 @@ impl CurvePoint {
 
 /// The kind of a record and its own numbers.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum CurveShape {
     /// Straight.
     Line,
     /// Constant curvature.
@@ -62,7 +62,7 @@ pub struct Geometry {
     pub length_m: f64,
     start_m: DVec2,
     heading_rad: f64,
-    shape: Shape,
+    shape: CurveShape,
     stretch: f64,
     knots: Knots,
 }
@@ -92,7 +92,7 @@ impl Geometry {
         start_m: DVec2,
         heading_rad: f64,
         length_m: f64,
-        shape: Shape,
+        shape: CurveShape,
     ) -> Result<Self, (String, String)> {
         if !(length_m > 0.0 && length_m <= MAX_LENGTH_M) {
             return Err((
@@ -102,8 +102,8 @@ impl Geometry {
         }
         let turn = length_m
             * match shape {
-                Shape::Arc { curvature_per_m } => curvature_per_m.abs(),
-                Shape::Spiral {
+                CurveShape::Arc { curvature_per_m } => curvature_per_m.abs(),
+                CurveShape::Spiral {
                     start_per_m,
                     end_per_m,
                 } => start_per_m.abs().max(end_per_m.abs()),
@@ -116,7 +116,7 @@ impl Geometry {
             ));
         }
         let stretch = match &shape {
-            Shape::ParamPoly3 { u, v, normalized } => {
+            CurveShape::ParamPoly3 { u, v, normalized } => {
                 let p = if *normalized { 1.0 } else { length_m };
                 let rate = |k: &[f64; 4]| k[1].abs() + 2.0 * k[2].abs() * p + 3.0 * k[3].abs() * p * p;
                 let per_p = rate(u).hypot(rate(v));
@@ -125,8 +125,8 @@ impl Geometry {
             _ => 1.0,
         };
         let start_offset = match &shape {
-            Shape::ParamPoly3 { u, v, .. } => u[0].hypot(v[0]),
-            Shape::Poly3 { v } => v[0].abs(),
+            CurveShape::ParamPoly3 { u, v, .. } => u[0].hypot(v[0]),
+            CurveShape::Poly3 { v } => v[0].abs(),
             _ => 0.0,
         };
         let span = stretch * length_m + start_offset;
@@ -137,11 +137,11 @@ impl Geometry {
             ));
         }
         let knots = match shape {
-            Shape::Spiral {
+            CurveShape::Spiral {
                 start_per_m,
                 end_per_m,
             } => spiral_knots(length_m, turn, start_per_m, end_per_m),
-            Shape::Poly3 { v } => poly3_knots(length_m, v)?,
+            CurveShape::Poly3 { v } => poly3_knots(length_m, v)?,
             _ => Knots::None,
         };
         Ok(Self {
@@ -162,7 +162,7 @@ impl Geometry {
     }
 
     /// The kind of the record.
-    pub fn shape(&self) -> &Shape {
+    pub fn shape(&self) -> &CurveShape {
         &self.shape
     }
 
@@ -181,13 +181,13 @@ impl Geometry {
         let s = ds_m.clamp(0.0, self.length_m);
         let h = self.heading_rad;
         let (local, turned, curvature) = match self.shape {
-            Shape::Line => (DVec2::new(s, 0.0), 0.0, 0.0),
-            Shape::Arc { curvature_per_m: k } => {
+            CurveShape::Line => (DVec2::new(s, 0.0), 0.0, 0.0),
+            CurveShape::Arc { curvature_per_m: k } => {
                 // The chord: no division by k, so nothing cancels when the arc is almost straight.
                 let half = 0.5 * k * s;
                 (DVec2::from_angle(half) * (s * sinc(half)), k * s, k)
             }
-            Shape::Spiral {
+            CurveShape::Spiral {
                 start_per_m: k0,
                 end_per_m: k1,
             } => {
@@ -198,13 +198,13 @@ impl Geometry {
                     k0 + (k1 - k0) * (s / self.length_m),
                 )
             }
-            Shape::Poly3 { v } => {
+            CurveShape::Poly3 { v } => {
                 let u = self.poly3_u(s, v);
                 let slope = derivative(&v, u);
                 let bend = second_derivative(&v, u) / (1.0 + slope * slope).powf(1.5);
                 (DVec2::new(u, cubic(&v, u)), slope.atan(), bend)
             }
-            Shape::ParamPoly3 { u, v, normalized } => {
+            CurveShape::ParamPoly3 { u, v, normalized } => {
                 let p = if normalized { s / self.length_m } else { s };
                 let (du, dv) = (derivative(&u, p), derivative(&v, p));
                 let (ddu, ddv) = (second_derivative(&u, p), second_derivative(&v, p));
@@ -417,7 +417,8 @@ mod tests {
     #[test]
     fn poly3_is_parametrised_by_arc_length() {
         let v = [0.5, 0.2, 0.03, -0.0008];
-        let g = Geometry::new(0.0, DVec2::new(3.0, -2.0), 0.7, 40.0, Shape::Poly3 { v }).expect("a curve");
+        let g =
+            Geometry::new(0.0, DVec2::new(3.0, -2.0), 0.7, 40.0, CurveShape::Poly3 { v }).expect("a curve");
         let (n, mut walked) = (40_000, 0.0);
         let step = 40.0 / f64::from(n);
         let mut before = g.at(0.0);
@@ -444,16 +445,16 @@ mod tests {
     fn hopeless_records_are_refused() {
         let make = |length, shape| Geometry::new(0.0, DVec2::ZERO, 0.0, length, shape);
         for length in [0.0, -1.0, 1e12, f64::NAN] {
-            assert!(make(length, Shape::Line).is_err(), "{length}");
+            assert!(make(length, CurveShape::Line).is_err(), "{length}");
         }
-        assert!(make(100.0, Shape::Arc { curvature_per_m: 1e6 }).is_err());
+        assert!(make(100.0, CurveShape::Arc { curvature_per_m: 1e6 }).is_err());
         let wild = [0.0, 1e300, 1e300, 1e300];
-        assert!(make(10.0, Shape::Poly3 { v: wild }).is_err());
+        assert!(make(10.0, CurveShape::Poly3 { v: wild }).is_err());
         for normalized in [false, true] {
             assert!(
                 make(
                     10.0,
-                    Shape::ParamPoly3 {
+                    CurveShape::ParamPoly3 {
                         u: wild,
                         v: wild,
                         normalized

@@ -113,11 +113,11 @@ impl LaneKind {
     }
 
     /// The ground of an area of this kind that belongs to no road; `None` if the kind is in no layer.
-    pub fn ground_alone(self) -> Option<Ground> {
+    pub fn ground_alone(self) -> Option<LaneGround> {
         match self {
-            Self::Parking => Some(Ground::Carpark),
-            Self::Sidewalk | Self::Biking => Some(Ground::Walkway),
-            paved if paved.is_paved() => Some(Ground::Road),
+            Self::Parking => Some(LaneGround::Carpark),
+            Self::Sidewalk | Self::Biking => Some(LaneGround::Walkway),
+            paved if paved.is_paved() => Some(LaneGround::Road),
             _ => None,
         }
     }
@@ -153,7 +153,7 @@ pub enum Extent {
 
 /// A road mark that holds from `s_m` (from the section's start) on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mark {
+pub struct RoadMark {
     /// Start, m.
     pub s_m: f64,
     /// The paint.
@@ -189,12 +189,12 @@ pub struct Lane {
     /// Its height above the surface of the road; empty if it lies on it.
     pub heights: Vec<LaneHeight>,
     /// Marks on its outer edge; empty if the file gives none.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<RoadMark>,
 }
 
 /// The lanes on one side of the centre line, from the centre outward.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Side {
+pub struct SideLanes {
     /// Start of the section the lanes were declared in, m: their records count from there.
     pub origin_s_m: f64,
     /// From the centre outward.
@@ -209,16 +209,16 @@ pub struct LaneSection {
     /// End, m.
     pub end_s_m: f64,
     /// Lanes with positive ids.
-    pub left: Arc<Side>,
+    pub left: Arc<SideLanes>,
     /// Lanes with negative ids.
-    pub right: Arc<Side>,
+    pub right: Arc<SideLanes>,
     /// Marks on the centre line.
-    pub center_marks: Vec<Mark>,
+    pub center_marks: Vec<RoadMark>,
 }
 
 /// Ground of a lane in a layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ground {
+pub enum LaneGround {
     /// Drivable area.
     Road,
     /// Drivable and car park.
@@ -229,7 +229,7 @@ pub enum Ground {
     Other,
 }
 
-impl Ground {
+impl LaneGround {
     /// The layers of a map that it sets.
     pub(super) fn layers(self) -> &'static [BevLayer] {
         match self {
@@ -262,7 +262,7 @@ impl LaneSection {
     /// Never increasing.
     pub fn borders_m(&self, lane_offset_m: f64, s_m: f64, held_m: f64, out: &mut Vec<f64>) {
         out.clear();
-        let outward = |side: &Side, sign: f64, out: &mut Vec<f64>| {
+        let outward = |side: &SideLanes, sign: f64, out: &mut Vec<f64>| {
             let (ds, held) = (s_m - side.origin_s_m, held_m - side.origin_s_m);
             let mut reach = 0.0f64;
             for lane in &side.lanes {
@@ -297,7 +297,7 @@ impl LaneSection {
 
     /// An upper estimate of how far the lanes reach from the lane reference line, m.
     pub fn reach_m(&self) -> f64 {
-        let of = |side: &Side| {
+        let of = |side: &SideLanes| {
             let mut reach = 0.0f64;
             for lane in &side.lanes {
                 reach = match &lane.extent {
@@ -330,7 +330,7 @@ impl LaneSection {
     /// The ground of each lane, left to right, in the sense of the nuScenes map: all paved lanes that are connected to
     /// a traffic lane are drivable. A bicycle lane behind a kerb belongs to the walkway, a shoulder behind a kerb to no
     /// layer. A narrow edge strip that touches a walkway is part of it.
-    pub fn grounds(&self) -> Vec<Ground> {
+    pub fn grounds(&self) -> Vec<LaneGround> {
         let lanes: Vec<&Lane> = self.lanes_left_to_right().collect();
         let widths: Vec<f64> = self
             .left
@@ -345,7 +345,7 @@ impl LaneSection {
             })
             .collect();
         let seen: Vec<usize> = (0..lanes.len()).filter(|i| widths[*i] > 0.05).collect();
-        let mut grounds = vec![Ground::Other; lanes.len()];
+        let mut grounds = vec![LaneGround::Other; lanes.len()];
         let mut rest = &seen[..];
         while let Some(first) = rest.first() {
             let run = if lanes[*first].kind.is_paved() {
@@ -356,14 +356,14 @@ impl LaneSection {
             let connected = rest[..run].iter().any(|i| lanes[*i].kind.carries_traffic());
             for i in &rest[..run] {
                 grounds[*i] = match lanes[*i].kind {
-                    LaneKind::Driving | LaneKind::Bidirectional => Ground::Road,
-                    LaneKind::Parking => Ground::Carpark,
-                    LaneKind::Sidewalk => Ground::Walkway,
+                    LaneKind::Driving | LaneKind::Bidirectional => LaneGround::Road,
+                    LaneKind::Parking => LaneGround::Carpark,
+                    LaneKind::Sidewalk => LaneGround::Walkway,
                     LaneKind::Biking | LaneKind::Shoulder | LaneKind::Stop | LaneKind::Paved if connected => {
-                        Ground::Road
+                        LaneGround::Road
                     }
-                    LaneKind::Biking => Ground::Walkway,
-                    _ => Ground::Other,
+                    LaneKind::Biking => LaneGround::Walkway,
+                    _ => LaneGround::Other,
                 };
             }
             rest = &rest[run..];
@@ -375,7 +375,7 @@ impl LaneSection {
                 && widths[*i] <= KERB_M
                 && (walks(seen.get(n + 1)) || n > 0 && walks(seen.get(n - 1)))
             {
-                grounds[*i] = Ground::Walkway;
+                grounds[*i] = LaneGround::Walkway;
             }
         }
         grounds
@@ -405,7 +405,7 @@ mod tests {
                 k: [width, 0.0, 0.0, 0.0],
             }])),
             heights: Vec::new(),
-            marks: vec![Mark {
+            marks: vec![RoadMark {
                 s_m: 0.0,
                 style: if id % 2 == 0 {
                     MarkStyle::Broken
@@ -419,7 +419,7 @@ mod tests {
 
     fn section(left: Vec<Lane>, right: Vec<Lane>) -> LaneSection {
         let side = |lanes| {
-            Arc::new(Side {
+            Arc::new(SideLanes {
                 origin_s_m: 10.0,
                 lanes,
             })
@@ -452,7 +452,7 @@ mod tests {
 
     #[test]
     fn kerbs_decide_what_is_drivable() {
-        use Ground::{Carpark, Other, Road, Walkway};
+        use LaneGround::{Carpark, Other, Road, Walkway};
         use LaneKind::{Biking, Driving, Edge, Median, None, Shoulder, Sidewalk, Stop};
         let s = section(
             vec![

@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::lanes::{Ground, LaneKind, LaneSection, Travel};
-use super::levels::Levels;
+use super::lanes::{LaneGround, LaneKind, LaneSection, Travel};
+use super::levels::RoadLevels;
 use super::lines::{Follower, SectionLines, clipped};
 use super::objects::ObjectKind;
 use super::relief;
-use super::sampling::{BUDGET, Row, walk};
-use super::things::Things;
+use super::sampling::{BUDGET, LaneEdges, walk};
+use super::things::SceneryCollector;
 use super::xml::{Skipped, count};
-use super::{Drawn, Road, RoadNetwork, tidy};
+use super::{RoadNetwork, RoadlessGeometry, XodrRoad, tidy};
 use super::{cost, decks};
 use scene::raster::{draw_polyline, polygon_cells};
 use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, Polyline, PolylineKind, SceneBox, Window};
@@ -119,9 +119,9 @@ impl LayoutImport {
 }
 
 /// The grid while it is drawn.
-struct Canvas {
+struct LayoutRaster {
     window: MapCut,
-    levels: Option<Levels>, // none if every road is flat
+    levels: Option<RoadLevels>, // none if every road is flat
     layout: BevLayout,
     named: Vec<bool>,                  // cells on which some lane lies, drivable or not
     in_junction: Vec<bool>,            // cells on which a connecting road lies
@@ -151,10 +151,10 @@ impl RoadNetwork {
         let columns = extent.columns();
         let is_somewhere = at_m.is_finite() && heading_rad.is_finite();
         let levels = match is_somewhere {
-            true => Levels::survey(self, &window),
+            true => RoadLevels::survey(self, &window),
             false => None,
         };
-        let mut canvas = Canvas {
+        let mut canvas = LayoutRaster {
             window,
             levels,
             layout: BevLayout::over(extent),
@@ -271,7 +271,7 @@ impl RoadNetwork {
     }
 }
 
-impl Canvas {
+impl LayoutRaster {
     fn to_ego(&self, p: DVec2) -> DVec2 {
         self.window.to_ego(p)
     }
@@ -339,7 +339,7 @@ impl Canvas {
     }
 
     /// Draws the lanes of a road; true if any ground of it is in the window.
-    fn road(&mut self, index: usize, road: &Road, marks_known: bool) -> bool {
+    fn road(&mut self, index: usize, road: &XodrRoad, marks_known: bool) -> bool {
         let mut follower = Follower::default();
         let mut seen = false;
         for section in &road.sections {
@@ -379,12 +379,12 @@ impl Canvas {
     fn strips(
         &mut self,
         section: &LaneSection,
-        from: &Row,
-        to: &Row,
-        grounds: &[Ground],
+        from: &LaneEdges,
+        to: &LaneEdges,
+        grounds: &[LaneGround],
         in_junction: bool,
     ) -> bool {
-        let edge = |row: &Row, i: usize| self.to_ego(row.between(i, i));
+        let edge = |row: &LaneEdges, i: usize| self.to_ego(row.between(i, i));
         let edges: Vec<[DVec2; 2]> = (0..from.t_m.len())
             .map(|i| [edge(from, i), edge(to, i)])
             .collect();
@@ -393,14 +393,14 @@ impl Canvas {
         for ((lane, ground), sides) in lanes.zip(edges.windows(2)) {
             let quad = [sides[0][0], sides[0][1], sides[1][1], sides[1][0]];
             seen |= self.fill(&quad, ground.layers(), in_junction);
-            if *ground == Ground::Road {
+            if *ground == LaneGround::Road {
                 self.note_kind(&quad, lane.kind);
             }
         }
         seen
     }
 
-    fn objects(&mut self, index: usize, road: &Road, skipped: &mut Skipped) {
+    fn objects(&mut self, index: usize, road: &XodrRoad, skipped: &mut Skipped) {
         for object in &road.objects {
             if matches!(object.kind, ObjectKind::Standing(_)) || !self.is_on_ground(index, object.s_m) {
                 continue;
@@ -441,7 +441,7 @@ impl Canvas {
             for area in areas {
                 match object.kind {
                     ObjectKind::Parking => {
-                        self.fill(&area, Ground::Carpark.layers(), false);
+                        self.fill(&area, LaneGround::Carpark.layers(), false);
                     }
                     ObjectKind::Area(ground) => {
                         self.fill(&area, ground.layers(), false);
@@ -456,7 +456,7 @@ impl Canvas {
     }
 
     /// Draws the lines and areas on the ground that belong to no road.
-    fn drawn(&mut self, drawn: &Drawn) {
+    fn drawn(&mut self, drawn: &RoadlessGeometry) {
         let to_ego = |canvas: &Self, points: &[DVec2]| -> Vec<DVec2> {
             points.iter().map(|p| canvas.to_ego(*p)).collect()
         };
@@ -487,7 +487,7 @@ impl Canvas {
 
     /// Forms of the scenery beside the roads; the layout must be finished.
     fn things(&mut self, network: &RoadNetwork, skipped: &mut Skipped) -> Vec<Form> {
-        let mut things = Things {
+        let mut things = SceneryCollector {
             window: self.window,
             layout: &self.layout,
             forms: Vec::new(),
@@ -526,8 +526,13 @@ impl Canvas {
 }
 
 /// The ends of a stop line: across all traffic lanes of one direction.
-fn stop_line(road: &Road, section: &LaneSection, s_m: f64, against_line: Option<bool>) -> Option<[DVec2; 2]> {
-    let row = Row::at(road, section, s_m);
+fn stop_line(
+    road: &XodrRoad,
+    section: &LaneSection,
+    s_m: f64,
+    against_line: Option<bool>,
+) -> Option<[DVec2; 2]> {
+    let row = LaneEdges::at(road, section, s_m);
     let holds = |travel: Travel| match against_line {
         None => true,
         Some(against) => travel == Travel::Both || (travel == Travel::Backward) == against,

@@ -6,10 +6,10 @@ use std::collections::HashMap;
 use glam::DVec2;
 
 use super::elevation::edge_heights_m;
-use super::lanes::{Ground, LaneSection};
+use super::lanes::{LaneGround, LaneSection};
 use super::layout::MapCut;
-use super::sampling::{BUDGET, Row, walk};
-use super::{Road, RoadEnd, RoadNetwork};
+use super::sampling::{BUDGET, LaneEdges, walk};
+use super::{RoadEnd, RoadNetwork, XodrRoad};
 use scene::Window;
 use scene::raster::polygon_cells;
 
@@ -46,7 +46,7 @@ pub(super) struct Stretch {
 }
 
 /// The roads in a window by height.
-pub(super) struct Levels {
+pub(super) struct RoadLevels {
     /// By road, then along it.
     pub stretches: Vec<Stretch>,
     /// Height of the road surface per column of the grid in the file's frame, m; `None` beside roads.
@@ -68,7 +68,7 @@ impl Cover {
     }
 }
 
-impl Levels {
+impl RoadLevels {
     /// Levels of the roads around the ego vehicle; `None` if every road of the file is flat.
     pub fn survey(network: &RoadNetwork, window: &MapCut) -> Option<Self> {
         if network.roads.iter().all(is_flat) {
@@ -106,14 +106,14 @@ impl Levels {
     }
 }
 
-fn is_flat(road: &Road) -> bool {
+fn is_flat(road: &XodrRoad) -> bool {
     let lanes = || road.sections.iter().flat_map(LaneSection::lanes_left_to_right);
     road.surface.is_flat() && !lanes().any(|lane| lane.leaves_surface())
 }
 
 /// Edges of the ground that a road brings with it: from its leftmost to its rightmost lane that is paved or walked on.
-pub(super) fn body_edges(grounds: &[Ground]) -> Option<[usize; 2]> {
-    let made = |g: &Ground| *g != Ground::Other;
+pub(super) fn body_edges(grounds: &[LaneGround]) -> Option<[usize; 2]> {
+    let made = |g: &LaneGround| *g != LaneGround::Other;
     Some([
         grounds.iter().position(made)?,
         grounds.iter().rposition(made)? + 1,
@@ -187,8 +187,8 @@ struct Patch {
 }
 
 impl Patch {
-    fn new(window: &MapCut, rows: [&Row; 2], lane: usize, heights_m: [[f64; 2]; 2]) -> Self {
-        let ends = |row: &Row| [lane, lane + 1].map(|i| window.to_ego(row.between(i, i)));
+    fn new(window: &MapCut, rows: [&LaneEdges; 2], lane: usize, heights_m: [[f64; 2]; 2]) -> Self {
+        let ends = |row: &LaneEdges| [lane, lane + 1].map(|i| window.to_ego(row.between(i, i)));
         Self {
             near_m: ends(rows[0]),
             far_m: ends(rows[1]),

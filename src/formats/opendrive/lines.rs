@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::lanes::{Ground, LaneKind, LaneSection, Travel};
-use super::sampling::Row;
+use super::lanes::{LaneGround, LaneKind, LaneSection, Travel};
+use super::sampling::LaneEdges;
 use scene::PolylineKind;
 use scene::roads::curve;
 
@@ -24,7 +24,7 @@ const SHORTEST_M: f64 = 0.5;
 
 /// A line that runs midway between two lane edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Track {
+pub(super) struct MidwayLine {
     pub kind: PolylineKind,
     edges: [usize; 2],
     against_line: bool,
@@ -33,7 +33,7 @@ pub(super) struct Track {
 /// Facts about lines that hold over a whole section.
 pub(super) struct SectionLines<'a> {
     pub section: &'a LaneSection,
-    pub grounds: &'a [Ground],
+    pub grounds: &'a [LaneGround],
     /// Connecting roads have lane centres but no dividers.
     pub in_junction: bool,
     /// False for a file without any road mark: an edge without a mark is a line then.
@@ -45,12 +45,12 @@ pub(super) struct SectionLines<'a> {
 impl SectionLines<'_> {
     /// The lines between two rows: a centre for each traffic lane, one or two dividers between
     /// neighbours that carry traffic.
-    pub fn tracks(&self, from: &Row, to: &Row) -> Vec<Track> {
+    pub fn tracks(&self, from: &LaneEdges, to: &LaneEdges) -> Vec<MidwayLine> {
         let width = |i: usize| 0.5 * (from.width(i) + to.width(i));
         let middle_s = 0.5 * (from.s_m + to.s_m);
         let mut tracks = Vec::new();
         let mut add = |kind, edges, against_line| {
-            tracks.push(Track {
+            tracks.push(MidwayLine {
                 kind,
                 edges,
                 against_line,
@@ -73,7 +73,7 @@ impl SectionLines<'_> {
                     );
                 }
             }
-            let cycles = lane.kind == LaneKind::Biking && self.grounds[i] == Ground::Road;
+            let cycles = lane.kind == LaneKind::Biking && self.grounds[i] == LaneGround::Road;
             if !(traffic || cycles) || width(i) < NARROWEST_M {
                 continue;
             }
@@ -109,7 +109,7 @@ impl SectionLines<'_> {
     /// paved.
     fn median_edges(&self, left: usize, right: usize) -> [usize; 2] {
         let mut unpaved =
-            (left..right).filter(|i| matches!(self.grounds[*i], Ground::Other | Ground::Walkway));
+            (left..right).filter(|i| matches!(self.grounds[*i], LaneGround::Other | LaneGround::Walkway));
         match unpaved.next() {
             Some(first) => [first, unpaved.next_back().unwrap_or(first) + 1],
             None => [left, right],
@@ -120,15 +120,15 @@ impl SectionLines<'_> {
 /// The lines of one road while it is walked, in the file's frame.
 #[derive(Default)]
 pub(super) struct Follower {
-    open: Vec<(Track, Vec<DVec2>)>,
+    open: Vec<(MidwayLine, Vec<DVec2>)>,
     end_s_m: f64,
     done: Vec<(PolylineKind, Vec<DVec2>)>,
 }
 
 impl Follower {
     /// Goes one step along the road. `budget` pays for finding out which line continues which.
-    pub fn step(&mut self, tracks: &[Track], from: &Row, to: &Row, budget: &mut usize) {
-        let ends = |t: &Track| [from, to].map(|row| row.between(t.edges[0], t.edges[1]));
+    pub fn step(&mut self, tracks: &[MidwayLine], from: &LaneEdges, to: &LaneEdges, budget: &mut usize) {
+        let ends = |t: &MidwayLine| [from, to].map(|row| row.between(t.edges[0], t.edges[1]));
         // Records of different kinds may begin at places that differ by rounding.
         let goes_on = (self.end_s_m - from.s_m).abs() < SAME_PLACE_M;
         let same = goes_on
@@ -166,7 +166,7 @@ impl Follower {
         self.end_s_m = to.s_m;
     }
 
-    fn close(&mut self, lines: Vec<(Track, Vec<DVec2>)>) {
+    fn close(&mut self, lines: Vec<(MidwayLine, Vec<DVec2>)>) {
         self.done.extend(lines.into_iter().map(|(track, mut points)| {
             if track.against_line {
                 points.reverse();

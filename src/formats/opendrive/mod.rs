@@ -34,7 +34,7 @@ use std::sync::Arc;
 use elevation::SurfaceProfile;
 use geometry::ReferenceLine;
 use glam::DVec2;
-use lanes::{Cubics, Ground, LaneSection};
+use lanes::{Cubics, LaneGround, LaneSection};
 use objects::RoadObject;
 use own_rows::OwnLayout;
 use scene::{Polyline, SceneBox};
@@ -48,15 +48,15 @@ pub struct RoadNetwork {
     /// Name in the header; often empty.
     pub name: String,
     /// At least one.
-    pub roads: Vec<Road>,
+    pub roads: Vec<XodrRoad>,
     /// May be empty.
-    pub junctions: Vec<Junction>,
+    pub junctions: Vec<XodrJunction>,
     /// Parts of the file that this reader does not understand or model, counted by kind.
     pub skipped: Skipped,
     /// The layout that the roads were made of, where Sceneloom wrote the file.
     pub own: Option<Arc<OwnLayout>>,
     /// Lines and areas on the ground besides the roads; empty for OpenDRIVE.
-    pub drawn: Drawn,
+    pub drawn: RoadlessGeometry,
     /// Boxes that stand or drive on the roads, by the file, in its frame, on ground at 0; empty for OpenDRIVE.
     pub boxes: Vec<SceneBox>,
     /// Where the file says that the ego vehicle begins: place in m and heading in rad, in the file's frame.
@@ -66,16 +66,16 @@ pub struct RoadNetwork {
 
 /// Lines and areas that belong to no road, in the file's frame.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Drawn {
+pub struct RoadlessGeometry {
     /// Dividers, stop lines, and outlines of crossings.
     pub lines: Vec<Polyline>,
     /// Outlines of ground, m.
-    pub areas: Vec<(Ground, Vec<DVec2>)>,
+    pub areas: Vec<(LaneGround, Vec<DVec2>)>,
 }
 
 /// A road: a reference line with lanes on both sides.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Road {
+pub struct XodrRoad {
     /// Id in the file.
     pub id: String,
     /// The junction this road connects through, if it is a connecting road.
@@ -111,7 +111,7 @@ pub enum RoadEnd {
 
 /// A junction. Its ground is that of its connecting roads.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Junction {
+pub struct XodrJunction {
     /// Id in the file.
     pub id: String,
     /// Ids of the roads that lead into it, each once.
@@ -120,7 +120,7 @@ pub struct Junction {
     pub connections: usize,
 }
 
-impl Road {
+impl XodrRoad {
     /// Length by its geometry, m.
     pub fn length_m(&self) -> f64 {
         self.reference.end_s_m()
@@ -143,9 +143,9 @@ impl RoadNetwork {
     /// Roads that were made of lanelets.
     pub(crate) fn of_lanelets(
         name: String,
-        roads: Vec<Road>,
-        junctions: Vec<Junction>,
-        drawn: Drawn,
+        roads: Vec<XodrRoad>,
+        junctions: Vec<XodrJunction>,
+        drawn: RoadlessGeometry,
         boxes: Vec<SceneBox>,
         start: Option<(DVec2, f64)>,
         skipped: Skipped,
@@ -165,6 +165,6 @@ impl RoadNetwork {
 
     /// Length of all roads together, connecting roads included, m.
     pub fn length_m(&self) -> f64 {
-        self.roads.iter().map(Road::length_m).sum()
+        self.roads.iter().map(XodrRoad::length_m).sum()
     }
 }

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::geometry::ReferenceLine;
-use super::lanes::Ground;
-use super::standing::Standing;
+use super::lanes::LaneGround;
+use super::standing::RoadsideObject;
 use super::xml::{Skipped, count};
 
 /// The kinds of object that a scene shows.
@@ -20,14 +20,14 @@ pub enum ObjectKind {
         against_line: Option<bool>,
     },
     /// Ground of the kind of lane that its outline names.
-    Area(Ground),
+    Area(LaneGround),
     /// An object that stands beside the road.
-    Standing(Standing),
+    Standing(RoadsideObject),
 }
 
 /// Corners of one outline.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Corners {
+pub enum OutlineCorners {
     /// (u, v) in the object's own frame, m.
     Local(Vec<[f64; 2]>),
     /// (s, t) along the road, m.
@@ -77,7 +77,7 @@ pub struct RoadObject {
     /// Width of its last marking, m: an outline of two corners is a line of this width.
     pub line_width_m: Option<f64>,
     /// Outlines; empty if the object is its length by its width.
-    pub outlines: Vec<Corners>,
+    pub outlines: Vec<OutlineCorners>,
     /// Rows of copies; empty for the object alone.
     pub repeats: Vec<Repeat>,
 }
@@ -144,8 +144,8 @@ impl RoadObject {
         let mut areas: Vec<Vec<DVec2>> = Vec::new();
         for corners in &self.outlines {
             areas.push(match corners {
-                Corners::Local(list) => list.iter().copied().map(place).collect(),
-                Corners::Road(list) => list.iter().copied().map(road).collect(),
+                OutlineCorners::Local(list) => list.iter().copied().map(place).collect(),
+                OutlineCorners::Road(list) => list.iter().copied().map(road).collect(),
             });
         }
         if areas.is_empty() {

@@ -35,14 +35,14 @@ const LIMIT_FIELD: &str = "mm_per_s";
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnLayout {
     extent: Extent,
-    cells: Vec<Rows<u8>>,
-    heights: Vec<Rows<f32>>, // empty if flat
+    cells: Vec<RepeatedColumns<u8>>,
+    heights: Vec<RepeatedColumns<f32>>, // empty if flat
     lines: Vec<Polyline>,
 }
 
 /// Equal columns along x: how many, and their runs along y.
 #[derive(Clone, Debug, PartialEq)]
-struct Rows<T> {
+struct RepeatedColumns<T> {
     count: usize,
     runs: Vec<(T, u16)>,
 }
@@ -175,7 +175,7 @@ fn packed<T>(
     name: &'static str,
     extent: Extent,
     value: impl Fn(&str) -> Option<T>,
-) -> Result<Vec<Rows<T>>, &'static str> {
+) -> Result<Vec<RepeatedColumns<T>>, &'static str> {
     let mut out = Vec::new();
     let mut left = extent.nx();
     for node in named(node, name) {
@@ -199,7 +199,7 @@ fn packed<T>(
             return Err("rows shorter than their extent");
         }
         runs.shrink_to_fit();
-        out.push(Rows { count, runs });
+        out.push(RepeatedColumns { count, runs });
     }
     match left {
         0 => Ok(out),
@@ -208,7 +208,7 @@ fn packed<T>(
     }
 }
 
-fn unpacked<T: Copy>(rows: &[Rows<T>]) -> impl Iterator<Item = T> {
+fn unpacked<T: Copy>(rows: &[RepeatedColumns<T>]) -> impl Iterator<Item = T> {
     let one = |runs: &[(T, u16)]| -> Vec<T> {
         let values = runs
             .iter()

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use glam::DVec2;
 use roxmltree::Node;
 
-use super::geometry::{Geometry, MAX_LENGTH_M, ReferenceLine, Shape};
+use super::geometry::{CurveShape, Geometry, MAX_LENGTH_M, ReferenceLine};
 use super::own_rows::{self, OwnLayout};
 use super::xml::{
     OpenDriveError, Result, Skipped, ascending, bad, child, count, count_others, decode, elements, four,
     named, number, parse_document, shown, within_reach,
 };
-use super::{Junction, Road, RoadEnd, RoadNetwork, parse_elevation, parse_lanes, parse_objects};
+use super::{RoadEnd, RoadNetwork, XodrJunction, XodrRoad, parse_elevation, parse_lanes, parse_objects};
 
 /// A higher limit is a mistake, mm/s.
 const FASTEST_MM_PER_S: f64 = 150_000.0;
@@ -64,7 +64,7 @@ pub fn read(bytes: &[u8]) -> Result<RoadNetwork> {
     Ok(network)
 }
 
-fn road(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Road> {
+fn road(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<XodrRoad> {
     let length = number(node, "length")?;
     if !(length > 0.0 && length <= MAX_LENGTH_M) {
         let expected = format!("a length above 0 and up to {MAX_LENGTH_M:.0} m");
@@ -105,7 +105,7 @@ fn road(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Road> {
             _ => RoadEnd::Road(id),
         })
     };
-    Ok(Road {
+    Ok(XodrRoad {
         id: node.attribute("id").unwrap_or_default().to_owned(),
         junction: node
             .attribute("junction")
@@ -214,15 +214,15 @@ fn geometry(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Geometry> {
         })
     };
     let shape = match kind.tag_name().name() {
-        "line" => Shape::Line,
-        "arc" => Shape::Arc {
+        "line" => CurveShape::Line,
+        "arc" => CurveShape::Arc {
             curvature_per_m: number(kind, "curvature")?,
         },
-        "spiral" => Shape::Spiral {
+        "spiral" => CurveShape::Spiral {
             start_per_m: number(kind, "curvStart")?,
             end_per_m: number(kind, "curvEnd")?,
         },
-        "poly3" => Shape::Poly3 {
+        "poly3" => CurveShape::Poly3 {
             v: four(kind, ["a", "b", "c", "d"])?,
         },
         "paramPoly3" => {
@@ -244,7 +244,7 @@ fn geometry(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Geometry> {
                     ));
                 }
             };
-            Shape::ParamPoly3 { u, v, normalized }
+            CurveShape::ParamPoly3 { u, v, normalized }
         }
         other => return Err(bad(node, "shape", KINDS, &format!("<{other}>"))),
     };
@@ -262,7 +262,7 @@ fn coordinate(node: Node<'_, '_>, field: &str) -> Result<f64> {
     within_reach(node, field, number(node, field)?)
 }
 
-fn junction(node: Node<'_, '_>, skipped: &mut Skipped) -> Junction {
+fn junction(node: Node<'_, '_>, skipped: &mut Skipped) -> XodrJunction {
     let mut incoming: Vec<String> = Vec::new();
     let mut connections = 0;
     for connection in named(node, "connection") {
@@ -282,7 +282,7 @@ fn junction(node: Node<'_, '_>, skipped: &mut Skipped) -> Junction {
     {
         count(skipped, format!("junction of type {}", shown(kind, 40)));
     }
-    Junction {
+    XodrJunction {
         id: node.attribute("id").unwrap_or_default().to_owned(),
         incoming,
         connections,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use roxmltree::Node;
 
 use super::geometry::ReferenceLine;
-use super::lanes::{Cubics, Extent, Lane, LaneKind, LaneSection, Mark, MarkStyle, Side, Travel};
+use super::lanes::{Cubics, Extent, Lane, LaneKind, LaneSection, MarkStyle, RoadMark, SideLanes, Travel};
 use super::parse::cubics;
 use super::parse_elevation;
 use super::xml::{
@@ -74,7 +74,7 @@ fn lane_section(
     let single = node
         .attribute("singleSide")
         .is_some_and(|v| matches!(v.trim(), "true" | "1"));
-    let mut side = |name: &'static str, old: Option<&Arc<Side>>| -> Result<Arc<Side>> {
+    let mut side = |name: &'static str, old: Option<&Arc<SideLanes>>| -> Result<Arc<SideLanes>> {
         match (child(node, name), old) {
             (None, Some(old)) if single => Ok(old.clone()),
             (None, _) => Ok(Arc::default()),
@@ -85,7 +85,7 @@ fn lane_section(
                     lanes.push(lane(lane_node, name == "left", left_hand, skipped)?);
                 }
                 lanes.sort_by_key(|l| l.id.unsigned_abs());
-                Ok(Arc::new(Side {
+                Ok(Arc::new(SideLanes {
                     origin_s_m: start_s_m,
                     lanes,
                 }))
@@ -160,8 +160,8 @@ fn lane(node: Node<'_, '_>, is_left: bool, left_hand: bool, skipped: &mut Skippe
     })
 }
 
-fn road_marks(lane: Node<'_, '_>, skipped: &mut Skipped) -> Result<Vec<Mark>> {
-    let mut marks: Vec<Mark> = Vec::new();
+fn road_marks(lane: Node<'_, '_>, skipped: &mut Skipped) -> Result<Vec<RoadMark>> {
+    let mut marks: Vec<RoadMark> = Vec::new();
     for node in named(lane, "roadMark") {
         let s_m = number_or(node, "sOffset", 0.0)?;
         ascending(node, "sOffset", s_m, marks.last().map(|m| m.s_m))?;
@@ -176,7 +176,7 @@ fn road_marks(lane: Node<'_, '_>, skipped: &mut Skipped) -> Result<Vec<Mark>> {
             }
         };
         count_others(node, &[], skipped);
-        marks.push(Mark {
+        marks.push(RoadMark {
             s_m,
             style,
             yellow: node.attribute("color") == Some("yellow"),

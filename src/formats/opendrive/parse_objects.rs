@@ -3,9 +3,9 @@
 
 use roxmltree::Node;
 
-use super::lanes::{Ground, LaneKind};
-use super::objects::{Corners, ObjectKind, Repeat, RoadObject};
-use super::standing::Standing;
+use super::lanes::{LaneGround, LaneKind};
+use super::objects::{ObjectKind, OutlineCorners, Repeat, RoadObject};
+use super::standing::RoadsideObject;
 use super::xml::{
     Result, Skipped, child, count, count_others, elements, named, number, number_or, number_or_none, shown,
 };
@@ -55,13 +55,13 @@ fn names(node: Node<'_, '_>) -> [String; 3] {
 }
 
 /// Kind of an object that stands beside the road; `None` if it is not known or does not stand there.
-fn standing(node: Node<'_, '_>) -> Option<Standing> {
+fn standing(node: Node<'_, '_>) -> Option<RoadsideObject> {
     let [kind, subtype, name] = names(node);
-    Standing::from_names(&kind, &subtype, &name)
+    RoadsideObject::from_names(&kind, &subtype, &name)
 }
 
 /// The ground that an outline says to be of a kind of lane (OpenDRIVE 1.5 and later).
-fn ground(node: Node<'_, '_>) -> Option<Ground> {
+fn ground(node: Node<'_, '_>) -> Option<LaneGround> {
     let mut kinds = outlines(node).filter_map(|outline| LaneKind::from_name(outline.attribute("laneType")?));
     kinds.next()?.ground_alone()
 }
@@ -153,7 +153,7 @@ fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject
     }))
 }
 
-fn outline_corners(outline: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<Corners>> {
+fn outline_corners(outline: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<OutlineCorners>> {
     let mut local = Vec::new();
     let mut road = Vec::new();
     for corner in elements(outline) {
@@ -171,9 +171,9 @@ fn outline_corners(outline: Node<'_, '_>, skipped: &mut Skipped) -> Result<Optio
                 count(skipped, "outline with corners of both kinds");
             }
             Some(if road_count > 0 {
-                Corners::Road(road)
+                OutlineCorners::Road(road)
             } else {
-                Corners::Local(local)
+                OutlineCorners::Local(local)
             })
         }
     })
@@ -235,7 +235,7 @@ fn signal(node: Node<'_, '_>) -> Result<RoadObject> {
         _ => std::f64::consts::PI,
     };
     Ok(RoadObject {
-        kind: ObjectKind::Standing(Standing::Signal(kind)),
+        kind: ObjectKind::Standing(RoadsideObject::Signal(kind)),
         s_m: number_or(node, "s", 0.0)?,
         t_m: number_or(node, "t", 0.0)?,
         heading_rad: faces_rad + number_or(node, "hOffset", 0.0)?,

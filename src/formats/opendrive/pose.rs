@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use super::lanes::{Lane, LaneKind, LaneSection, Travel};
-use super::sampling::{BUDGET, Row, walk};
-use super::{Junction, Road, RoadEnd, RoadNetwork};
+use super::sampling::{BUDGET, LaneEdges, walk};
+use super::{RoadEnd, RoadNetwork, XodrJunction, XodrRoad};
 
 /// How far before a junction the default place is, m: its middle is then well ahead, all of it in view.
 const BEFORE_JUNCTION_M: f64 = 12.0;
@@ -41,7 +41,7 @@ impl RoadNetwork {
         if let Some(start) = self.start {
             return start;
         }
-        let mut junctions: Vec<&Junction> = self.junctions.iter().collect();
+        let mut junctions: Vec<&XodrJunction> = self.junctions.iter().collect();
         junctions.sort_by_key(|j| std::cmp::Reverse(j.incoming.len())); // stable: file order on a tie
         let mut leading = self.approaches();
         let near_junction = junctions.iter().find_map(|junction| {
@@ -59,7 +59,7 @@ impl RoadNetwork {
         });
         near_junction
             .or_else(|| {
-                let mut roads: Vec<&Road> = self.roads.iter().collect();
+                let mut roads: Vec<&XodrRoad> = self.roads.iter().collect();
                 roads.sort_by(|a, b| b.length_m().total_cmp(&a.length_m()));
                 let any_lane = |travel| {
                     roads
@@ -77,8 +77,8 @@ impl RoadNetwork {
     }
 
     /// By junction, the ends at which roads lead into it; true for a road's end, false for its start.
-    fn approaches(&self) -> BTreeMap<&str, Vec<(&Road, bool)>> {
-        let mut out: BTreeMap<&str, Vec<(&Road, bool)>> = BTreeMap::new();
+    fn approaches(&self) -> BTreeMap<&str, Vec<(&XodrRoad, bool)>> {
+        let mut out: BTreeMap<&str, Vec<(&XodrRoad, bool)>> = BTreeMap::new();
         for road in self.roads.iter().filter(|road| road.junction.is_none()) {
             for (end, is_end) in [(&road.successor, true), (&road.predecessor, false)] {
                 if let Some(RoadEnd::Junction(id)) = end {
@@ -118,7 +118,7 @@ impl RoadNetwork {
             return None;
         }
         let mut best: Option<LanePose> = None;
-        let mut roads: Vec<(f64, &Road)> = self
+        let mut roads: Vec<(f64, &XodrRoad)> = self
             .roads
             .iter()
             .map(|road| {
@@ -157,9 +157,9 @@ impl RoadNetwork {
 }
 
 /// The traffic lane farthest from the centre line that runs the given way (any way for `None`).
-fn outermost_lane(road: &Road, s_m: f64, travel: Option<Travel>) -> Option<(DVec2, f64)> {
+fn outermost_lane(road: &XodrRoad, s_m: f64, travel: Option<Travel>) -> Option<(DVec2, f64)> {
     let section: &LaneSection = road.section_at(s_m)?;
-    let row = Row::at(road, section, s_m);
+    let row = LaneEdges::at(road, section, s_m);
     let lanes = section.lanes_left_to_right().enumerate();
     let fits = |(i, lane): &(usize, &Lane)| {
         lane.kind == LaneKind::Driving

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Road;
+use super::XodrRoad;
 use super::geometry::CurvePoint;
 use super::lanes::{LaneSection, Travel};
 
@@ -17,22 +17,22 @@ pub(super) const BUDGET: usize = 1_000_000;
 
 /// The edges of all lanes at one place of a road.
 #[derive(Clone, Debug)]
-pub(super) struct Row {
+pub(super) struct LaneEdges {
     pub s_m: f64,
     pub base: CurvePoint,
     /// Lateral positions in the plan, from the leftmost edge to the rightmost.
     pub t_m: Vec<f64>,
 }
 
-impl Row {
+impl LaneEdges {
     /// At `s_m`, by the records that hold there.
-    pub fn at(road: &Road, section: &LaneSection, s_m: f64) -> Self {
+    pub fn at(road: &XodrRoad, section: &LaneSection, s_m: f64) -> Self {
         Self::held(road, section, s_m, s_m)
     }
 
     /// At `s_m`, by the records that hold at `held_m`: at the end of a step that is the step's middle, as
     /// offsets and widths may jump where the next record begins.
-    fn held(road: &Road, section: &LaneSection, s_m: f64, held_m: f64) -> Self {
+    fn held(road: &XodrRoad, section: &LaneSection, s_m: f64, held_m: f64) -> Self {
         let mut t_m = Vec::with_capacity(section.lane_count() + 1);
         section.borders_m(lane_offset(road, s_m, held_m), s_m, held_m, &mut t_m);
         let record = road.reference.record_at(held_m);
@@ -68,7 +68,7 @@ impl Row {
 }
 
 /// The shift of the lanes at `s_m`, kept finite.
-fn lane_offset(road: &Road, s_m: f64, held_m: f64) -> f64 {
+fn lane_offset(road: &XodrRoad, s_m: f64, held_m: f64) -> f64 {
     let offset = road.lane_offset.at(s_m, held_m);
     if offset.is_finite() {
         offset.clamp(-1e4, 1e4)
@@ -78,7 +78,7 @@ fn lane_offset(road: &Road, s_m: f64, held_m: f64) -> f64 {
 }
 
 /// How far the lanes of a section may lie from the reference line, m.
-fn reach_m(road: &Road, section: &LaneSection) -> f64 {
+fn reach_m(road: &XodrRoad, section: &LaneSection) -> f64 {
     let (from, to) = (section.start_s_m, section.end_s_m);
     let starts = inside(&road.lane_offset.0, section, |p| p.s_m)
         .iter()
@@ -102,12 +102,12 @@ fn inside<'a, T>(list: &'a [T], section: &LaneSection, s_m: impl Fn(&T) -> f64) 
 /// Visits consecutive steps `(from, to)` of one section, skipping steps that cannot come within `radius_m` of
 /// `center_m`. A visit that returns a radius sets it anew, so that a search may shrink it. Stops at a budget of 0.
 pub(super) fn walk(
-    road: &Road,
+    road: &XodrRoad,
     section: &LaneSection,
     center_m: DVec2,
     mut radius_m: f64,
     budget: &mut usize,
-    mut visit: impl FnMut(&Row, &Row, &mut usize) -> Option<f64>,
+    mut visit: impl FnMut(&LaneEdges, &LaneEdges, &mut usize) -> Option<f64>,
 ) {
     let reach = reach_m(road, section);
     let mut breaks = section.breaks_m();
@@ -125,7 +125,7 @@ pub(super) fn walk(
     let mut stack: Vec<(f64, f64)> = Vec::new();
     for ends in breaks.windows(2).filter(|ends| ends[1] - ends[0] > 1e-9) {
         stack.push((ends[0], ends[1]));
-        let mut before: Option<Row> = None; // not over to the next record
+        let mut before: Option<LaneEdges> = None; // not over to the next record
         while let Some((from, to)) = stack.pop() {
             *budget = budget.saturating_sub(1);
             if *budget == 0 {
@@ -147,8 +147,8 @@ pub(super) fn walk(
             let start = before
                 .take()
                 .filter(|row| row.s_m == from)
-                .unwrap_or_else(|| Row::held(road, section, from, middle));
-            let end = Row::held(road, section, to, middle);
+                .unwrap_or_else(|| LaneEdges::held(road, section, from, middle));
+            let end = LaneEdges::held(road, section, to, middle);
             if let Some(closer) = visit(&start, &end, budget) {
                 radius_m = closer;
             }

@@ -4,7 +4,7 @@ use scene::background::{LineKind, PostKind, TreeKind};
 
 /// Kind of an object that stands beside the road.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standing {
+pub enum RoadsideObject {
     /// A building.
     Building,
     /// A tree.
@@ -21,7 +21,7 @@ pub enum Standing {
     Signal(PostKind),
 }
 
-impl Standing {
+impl RoadsideObject {
     /// In words.
     pub fn name(self) -> &'static str {
         match self {
@@ -85,34 +85,55 @@ mod tests {
 
     #[test]
     fn names_of_the_standard_and_of_real_files() {
-        let of = |kind, subtype, name| Standing::from_names(kind, subtype, name);
-        assert_eq!(of("building", "", "x"), Some(Standing::Building));
+        let of = |kind, subtype, name| RoadsideObject::from_names(kind, subtype, name);
+        assert_eq!(of("building", "", "x"), Some(RoadsideObject::Building));
         assert_eq!(
             of("building", "busstop", ""),
-            Some(Standing::Post(PostKind::BusStop))
+            Some(RoadsideObject::Post(PostKind::BusStop))
         );
-        assert_eq!(of("tree", "needle", ""), Some(Standing::Tree(TreeKind::Conifer)));
-        assert_eq!(of("vegetation", "bush", ""), Some(Standing::Shrubs));
+        assert_eq!(
+            of("tree", "needle", ""),
+            Some(RoadsideObject::Tree(TreeKind::Conifer))
+        );
+        assert_eq!(of("vegetation", "bush", ""), Some(RoadsideObject::Shrubs));
         assert_eq!(
             of("vegetation", "hedge", ""),
-            Some(Standing::Line(LineKind::Hedge))
+            Some(RoadsideObject::Line(LineKind::Hedge))
         );
-        assert_eq!(of("barrier", "", ""), Some(Standing::Line(LineKind::GuardRail)));
-        assert_eq!(of("barrier", "wall", ""), Some(Standing::Line(LineKind::Wall)));
-        assert_eq!(of("soundbarrier", "", ""), Some(Standing::Line(LineKind::Wall)));
-        assert_eq!(of("railing", "", ""), Some(Standing::Line(LineKind::Fence)));
-        assert_eq!(of("railpole", "", ""), Some(Standing::Post(PostKind::Bollard)));
-        assert_eq!(of("guidepost", "", ""), Some(Standing::Post(PostKind::Bollard)));
+        assert_eq!(
+            of("barrier", "", ""),
+            Some(RoadsideObject::Line(LineKind::GuardRail))
+        );
+        assert_eq!(
+            of("barrier", "wall", ""),
+            Some(RoadsideObject::Line(LineKind::Wall))
+        );
+        assert_eq!(
+            of("soundbarrier", "", ""),
+            Some(RoadsideObject::Line(LineKind::Wall))
+        );
+        assert_eq!(of("railing", "", ""), Some(RoadsideObject::Line(LineKind::Fence)));
+        assert_eq!(
+            of("railpole", "", ""),
+            Some(RoadsideObject::Post(PostKind::Bollard))
+        );
+        assert_eq!(
+            of("guidepost", "", ""),
+            Some(RoadsideObject::Post(PostKind::Bollard))
+        );
         assert_eq!(
             of("pole", "streetlamp", ""),
-            Some(Standing::Post(PostKind::StreetLight))
+            Some(RoadsideObject::Post(PostKind::StreetLight))
         );
         assert_eq!(
             of("streetlamp", "", ""),
-            Some(Standing::Post(PostKind::StreetLight))
+            Some(RoadsideObject::Post(PostKind::StreetLight))
         );
-        assert_eq!(of("pole", "", ""), Some(Standing::Post(PostKind::Pole)));
-        assert_eq!(of("", "", "oaktree"), Some(Standing::Tree(TreeKind::Broadleaf)));
+        assert_eq!(of("pole", "", ""), Some(RoadsideObject::Post(PostKind::Pole)));
+        assert_eq!(
+            of("", "", "oaktree"),
+            Some(RoadsideObject::Tree(TreeKind::Broadleaf))
+        );
         for kind in ["parkingspace", "trafficisland", "crosswalk", "patch", "car", ""] {
             assert_eq!(of(kind, "", ""), None, "{kind}");
         }

@@ -2,12 +2,12 @@
 
 use glam::DVec2;
 
-use super::Road;
+use super::XodrRoad;
 use super::layout::MapCut;
 use super::objects::{Copy, ObjectKind, Repeat, RoadObject, shoelace_m2};
-use super::standing::Standing;
+use super::standing::RoadsideObject;
 use super::xml::{Skipped, count};
-use scene::background::{Building, Facade, Line, LineKind, Post, PostKind, Roof, Shrubs, Tree};
+use scene::background::{Building, Facade, LineKind, Post, PostKind, Roof, SceneryLine, Shrubs, Tree};
 use scene::{BevLayer, BevLayout, Form};
 
 /// Things of one window, at most.
@@ -24,18 +24,18 @@ const ONE_PLACE_M: f64 = 0.5;
 const SHRUBS_PER_M2: f64 = 0.6;
 
 /// Things while they are collected.
-pub(super) struct Things<'a> {
+pub(super) struct SceneryCollector<'a> {
     pub window: MapCut,
     pub layout: &'a BevLayout,
     pub forms: Vec<Form>,
     pub budget: usize,
 }
 
-impl Things<'_> {
+impl SceneryCollector<'_> {
     /// Adds the copies of one object that reach into the window; `is_on_ground` tells of a place along the road.
     pub fn object(
         &mut self,
-        road: &Road,
+        road: &XodrRoad,
         object: &RoadObject,
         is_on_ground: &dyn Fn(f64) -> bool,
         skipped: &mut Skipped,
@@ -44,7 +44,7 @@ impl Things<'_> {
             return;
         };
         let mut budget = self.budget;
-        if let Standing::Line(_) | Standing::Shrubs = standing {
+        if let RoadsideObject::Line(_) | RoadsideObject::Shrubs = standing {
             for row in object.repeats.iter().filter(|r| r.distance_m <= 0.0) {
                 self.along_road(road, object, row, standing, is_on_ground, &mut budget, skipped);
             }
@@ -71,10 +71,12 @@ impl Things<'_> {
                 if !reaches_in(&self.window, &form) {
                     continue;
                 }
-                if matches!(standing, Standing::Signal(_)) && copy.lift_m > OVERHEAD_M && self.over_road(at_m)
+                if matches!(standing, RoadsideObject::Signal(_))
+                    && copy.lift_m > OVERHEAD_M
+                    && self.over_road(at_m)
                 {
                     count(skipped, "signal that hangs over the road");
-                } else if copy.lift_m > HANGS_M && !matches!(standing, Standing::Signal(_)) {
+                } else if copy.lift_m > HANGS_M && !matches!(standing, RoadsideObject::Signal(_)) {
                     count(
                         skipped,
                         format!("{} that does not stand on the ground", standing.name()),
@@ -103,16 +105,16 @@ impl Things<'_> {
     #[allow(clippy::too_many_arguments)] // all are needed, none belong together
     fn along_road(
         &mut self,
-        road: &Road,
+        road: &XodrRoad,
         object: &RoadObject,
         row: &Repeat,
-        standing: Standing,
+        standing: RoadsideObject,
         is_on_ground: &dyn Fn(f64) -> bool,
         budget: &mut usize,
         skipped: &mut Skipped,
     ) {
         let kind = match standing {
-            Standing::Line(kind) => kind,
+            RoadsideObject::Line(kind) => kind,
             _ => LineKind::Hedge,
         };
         let from = row.s_m.max(0.0);
@@ -185,13 +187,13 @@ fn shares_place(form: &Form, post: &Post) -> bool {
 
 /// A line of these sizes; a size that is not given is the usual one of its kind. A barrier too high or wide for a rail
 /// is a wall.
-fn line(kind: LineKind, points_m: Vec<DVec2>, height_m: f64, width_m: f64) -> Line {
+fn line(kind: LineKind, points_m: Vec<DVec2>, height_m: f64, width_m: f64) -> SceneryLine {
     let kind = match kind {
         LineKind::GuardRail if height_m > 1.3 || width_m > 0.8 => LineKind::Wall,
         kind => kind,
     };
-    let usual = Line::typical(kind, points_m);
-    Line {
+    let usual = SceneryLine::typical(kind, points_m);
+    SceneryLine {
         height_m: if height_m > 0.0 { height_m } else { usual.height_m },
         width_m: if width_m > 0.0 { width_m } else { usual.width_m },
         ..usual
@@ -199,7 +201,13 @@ fn line(kind: LineKind, points_m: Vec<DVec2>, height_m: f64, width_m: f64) -> Li
 }
 
 /// The forms of one copy in the ego frame; none if it has no usable size.
-fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, window: MapCut) -> Vec<Form> {
+fn forms(
+    road: &XodrRoad,
+    object: &RoadObject,
+    standing: RoadsideObject,
+    copy: &Copy,
+    window: MapCut,
+) -> Vec<Form> {
     let base = road.reference.at(copy.s_m);
     let position_m = window.to_ego(base.offset(copy.t_m));
     let heading_rad = window.heading_to_ego(base.heading_rad);
@@ -239,9 +247,9 @@ fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, wind
     };
     match standing {
         // A building of unknown height says too little.
-        Standing::Building if copy.height_m > 0.0 => buildings(copy.height_m),
-        Standing::Building => Vec::new(),
-        Standing::Tree(kind) => {
+        RoadsideObject::Building if copy.height_m > 0.0 => buildings(copy.height_m),
+        RoadsideObject::Building => Vec::new(),
+        RoadsideObject::Tree(kind) => {
             let height_m = given(copy.height_m + copy.lift_m.min(0.0), 7.0);
             let across_m = copy.size_m[0].min(copy.size_m[1]);
             // A radius below half a metre is the trunk's.
@@ -257,7 +265,7 @@ fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, wind
                 kind,
             })]
         }
-        Standing::Shrubs => {
+        RoadsideObject::Shrubs => {
             let height_m = given(copy.height_m, 1.2);
             let shrubs = |outline_m| {
                 Form::Shrubs(Shrubs {
@@ -268,8 +276,8 @@ fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, wind
             };
             areas().into_iter().map(shrubs).collect()
         }
-        Standing::Line(kind) => lines(road, object, kind, copy, window),
-        Standing::Obstacle => match buildings(given(copy.height_m, 1.0)) {
+        RoadsideObject::Line(kind) => lines(road, object, kind, copy, window),
+        RoadsideObject::Obstacle => match buildings(given(copy.height_m, 1.0)) {
             none if none.is_empty() => {
                 let height_m = given(copy.height_m, PostKind::Bin.typical_height_m());
                 vec![Form::Post(Post {
@@ -281,7 +289,7 @@ fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, wind
             }
             some => some,
         },
-        Standing::Post(kind) => {
+        RoadsideObject::Post(kind) => {
             // Most files give no heading: then it faces the road.
             let to_road_rad = heading_rad - copy.t_m.signum() * std::f64::consts::FRAC_PI_2;
             let yaw_rad = match object.heading_rad {
@@ -295,7 +303,7 @@ fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, wind
                 height_m: given(copy.height_m + copy.lift_m.min(0.0), kind.typical_height_m()),
             })]
         }
-        Standing::Signal(kind) => {
+        RoadsideObject::Signal(kind) => {
             let top_m = copy.lift_m + copy.height_m;
             vec![Form::Post(Post {
                 kind,
@@ -313,7 +321,7 @@ fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, wind
 
 /// A wall, fence or rail: along the longer side of a slim outline, around a wide one; without an outline along its
 /// heading, as long as it is.
-fn lines(road: &Road, object: &RoadObject, kind: LineKind, copy: &Copy, window: MapCut) -> Vec<Form> {
+fn lines(road: &XodrRoad, object: &RoadObject, kind: LineKind, copy: &Copy, window: MapCut) -> Vec<Form> {
     let mut out = Vec::new();
     for area in object.areas_m(&road.reference, copy) {
         let area: Vec<DVec2> = area.into_iter().map(|p| window.to_ego(p)).collect();

@@ -13,21 +13,21 @@ const STILL_S: f64 = 10.0;
 
 /// Pose of a participant's reference point.
 #[derive(Clone, Copy, PartialEq)]
-struct Place {
+struct ActorPose {
     at_m: DVec3,
     /// Heading, pitch and roll about z, y and x, rad.
     turn_rad: [f64; 3],
 }
 
 /// Place of a participant at a time, and its speed along the heading, m/s; `None` while it is not there.
-fn place(scene: &Scene, actor: &Actor, time_s: f64) -> Option<(Place, f64)> {
+fn place(scene: &Scene, actor: &Actor, time_s: f64) -> Option<(ActorPose, f64)> {
     let (clip, canvas) = (scene.clip(), scene.canvas());
     let relief = &canvas.layout.relief;
     let of_box = |b: &SceneBox| {
         let h = b.heading();
         let ahead = h * actor.center_m.x + h.perp() * actor.center_m.y;
         let at_m = b.center_m - ahead.extend(actor.center_m.z);
-        let place = Place {
+        let place = ActorPose {
             at_m,
             turn_rad: [wrapped(b.yaw_rad), 0.0, 0.0],
         };
@@ -45,7 +45,7 @@ fn place(scene: &Scene, actor: &Actor, time_s: f64) -> Option<(Place, f64)> {
                 None if clip.stands() => scene.rig.ego_speed_mps,
                 None => 0.0,
             };
-            let place = Place {
+            let place = ActorPose {
                 at_m: pose.translation_m,
                 turn_rad: [heading, pitch, roll],
             };
@@ -58,7 +58,7 @@ fn wrapped(rad: f64) -> f64 {
     (rad + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI
 }
 
-impl Place {
+impl ActorPose {
     fn element(&self) -> String {
         let [h, p, r] = self.turn_rad.map(number);
         format!(
@@ -72,13 +72,13 @@ impl Place {
 
 /// The frames of a clip at which a participant is there, with its places. Between the first and the last, a frame is
 /// left out if the place is the same before and behind it.
-fn trajectory(scene: &Scene, actor: &Actor) -> Vec<(f64, Place, f64)> {
+fn trajectory(scene: &Scene, actor: &Actor) -> Vec<(f64, ActorPose, f64)> {
     let clip = scene.clip();
     let all = (0..clip.frames()).filter_map(|frame| {
         let time_s = clip.time_of(frame);
         place(scene, actor, time_s).map(|(place, speed)| (time_s, place, speed))
     });
-    let mut out: Vec<(f64, Place, f64)> = Vec::new();
+    let mut out: Vec<(f64, ActorPose, f64)> = Vec::new();
     for here in all {
         let n = out.len();
         if n >= 2 && out[n - 1].1 == here.1 && out[n - 2].1 == here.1 {
@@ -186,7 +186,7 @@ fn visibility(out: &mut String, name: &str, what: &str, time_s: f64, is_there: b
     );
 }
 
-fn follow(out: &mut String, name: &str, path: &[(f64, Place, f64)]) {
+fn follow(out: &mut String, name: &str, path: &[(f64, ActorPose, f64)]) {
     let _ = writeln!(
         out,
         "            <Event name=\"{name} moves\" priority=\"parallel\" maximumExecutionCount=\"1\">\n              \

@@ -5,14 +5,14 @@ use std::sync::{Arc, Mutex};
 
 use png::{BitDepth, ColorType, Writer};
 
-use super::Encoder;
+use super::FrameEncoder;
 use crate::error::FormatError;
 
 /// Bytes that the encoder has written; it does not give them back itself.
 #[derive(Clone, Default)]
-struct Written(Arc<Mutex<Vec<u8>>>);
+struct EncodedBytes(Arc<Mutex<Vec<u8>>>);
 
-impl io::Write for Written {
+impl io::Write for EncodedBytes {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let mut all = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         all.extend_from_slice(bytes);
@@ -25,13 +25,13 @@ impl io::Write for Written {
 }
 
 pub(super) struct Apng {
-    written: Written,
-    writer: Writer<Written>,
+    written: EncodedBytes,
+    writer: Writer<EncodedBytes>,
 }
 
 impl Apng {
     pub(super) fn new([width, height]: [u32; 2], frames: u32, rate_hz: f64) -> Result<Self, FormatError> {
-        let written = Written::default();
+        let written = EncodedBytes::default();
         let mut encoder = png::Encoder::new(written.clone(), width, height);
         encoder.set_color(ColorType::Rgba);
         encoder.set_depth(BitDepth::Eight);
@@ -46,7 +46,7 @@ impl Apng {
     }
 }
 
-impl Encoder for Apng {
+impl FrameEncoder for Apng {
     fn frame(&mut self, rgba: &[u8]) -> Result<(), FormatError> {
         self.writer.write_image_data(rgba).map_err(FormatError::new)
     }

@@ -2,7 +2,7 @@
 
 use gif::{Encoder as GifEncoder, Frame, Repeat};
 
-use super::Encoder;
+use super::FrameEncoder;
 use crate::error::FormatError;
 
 /// How coarsely the palette is searched for, 1 to 30: colours of a rendered scene are few.
@@ -28,7 +28,7 @@ impl Gif {
     }
 }
 
-impl Encoder for Gif {
+impl FrameEncoder for Gif {
     fn frame(&mut self, rgba: &[u8]) -> Result<(), FormatError> {
         let mut pixels = rgba.to_vec();
         let mut frame = Frame::from_rgba_speed(self.size[0], self.size[1], &mut pixels, SPEED);

@@ -44,7 +44,7 @@ impl VideoKind {
 }
 
 /// Takes frames one after the other.
-trait Encoder: Send {
+trait FrameEncoder: Send {
     /// The next frame, RGBA8 of the size that was named.
     fn frame(&mut self, rgba: &[u8]) -> Result<(), FormatError>;
     /// The whole file.
@@ -54,7 +54,7 @@ trait Encoder: Send {
 /// A file of moving pictures that is being made. Equal frames give equal bytes.
 pub struct VideoWriter {
     size: [u32; 2],
-    encoder: Box<dyn Encoder>,
+    encoder: Box<dyn FrameEncoder>,
 }
 
 impl VideoWriter {
@@ -79,7 +79,7 @@ impl VideoWriter {
                 Self::MAX_FRAMES
             )));
         }
-        let encoder: Box<dyn Encoder> = match kind {
+        let encoder: Box<dyn FrameEncoder> = match kind {
             VideoKind::Gif => Box::new(gif::Gif::new(size, rate_hz)?),
             VideoKind::Apng => Box::new(apng::Apng::new(size, frames, rate_hz)?),
             VideoKind::Mp4 => Box::new(mp4::Mp4::new(size, rate_hz)?),

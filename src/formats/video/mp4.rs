@@ -9,7 +9,7 @@ use openh264::encoder::{
 };
 use openh264::formats::{RgbaSliceU8, YUVBuffer};
 
-use super::Encoder;
+use super::FrameEncoder;
 use crate::error::FormatError;
 
 /// Units of time in a second, as the file counts them.
@@ -85,7 +85,7 @@ fn bare(unit: &[u8]) -> &[u8] {
     unit.get(zeros + 1..).unwrap_or_default()
 }
 
-impl Encoder for Mp4 {
+impl FrameEncoder for Mp4 {
     fn frame(&mut self, rgba: &[u8]) -> Result<(), FormatError> {
         let size = (self.size[0] as usize, self.size[1] as usize);
         let yuv = YUVBuffer::from_rgba8_source(RgbaSliceU8::new(rgba, size));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use scene::classes::Palette;
 use scene::{Class, Extent, VoxelGrid};
 
-use super::read::{File, Model, NO_TURN, Node};
+use super::read::{Model, NO_TURN, VoxFile, VoxNode};
 use super::{OWN_NAME, middle};
 
 /// Most nodes that are visited: one that lies in itself, or in many others, would never end.
@@ -18,7 +18,7 @@ const COLUMNS_PER_VOXEL: usize = 256;
 
 /// A map, and counts of the parts of the file that it leaves out.
 #[derive(Debug)]
-pub(crate) struct Placed {
+pub(crate) struct VoxMap {
     pub grid: VoxelGrid,
     pub skipped: BTreeMap<String, usize>,
 }
@@ -58,7 +58,7 @@ impl Stand<'_> {
 
 /// The map that a file shows. Its columns are those of the networks' window and of the models around it. In a file that
 /// this program wrote they are those of the models alone.
-pub(crate) fn place(file: &File<'_>) -> Result<Placed, String> {
+pub(crate) fn place(file: &VoxFile<'_>) -> Result<VoxMap, String> {
     let mut skipped = BTreeMap::new();
     let mut count = |what: &str, n: usize| {
         if n > 0 {
@@ -78,7 +78,7 @@ pub(crate) fn place(file: &File<'_>) -> Result<Placed, String> {
     let is_own = file
         .nodes
         .values()
-        .any(|node| matches!(node, Node::Transform { name: Some(name), .. } if name == OWN_NAME));
+        .any(|node| matches!(node, VoxNode::Transform { name: Some(name), .. } if name == OWN_NAME));
     let extent = extent(&stands, is_own, voxels)?;
     let classes = file.colors.as_deref().map(classes).unwrap_or_default();
     let mut grid = VoxelGrid::over(extent);
@@ -110,12 +110,12 @@ pub(crate) fn place(file: &File<'_>) -> Result<Placed, String> {
     count("voxels of colours that no class has, taken as others", unknown);
     match grid.count_set() {
         0 if !is_own => Err(format!("none of {voxels} voxels is from 0 to 15 high")),
-        _ => Ok(Placed { grid, skipped }),
+        _ => Ok(VoxMap { grid, skipped }),
     }
 }
 
 /// Models and where they stand, in the order of the nodes.
-fn stands<'a>(file: &'a File<'a>, count: &mut impl FnMut(&str, usize)) -> Result<Vec<Stand<'a>>, String> {
+fn stands<'a>(file: &'a VoxFile<'a>, count: &mut impl FnMut(&str, usize)) -> Result<Vec<Stand<'a>>, String> {
     if file.nodes.is_empty() {
         // As the editor shows them: each in the middle, on the ground.
         let stand = |model: &'a Model<'a>| Stand {
@@ -137,12 +137,12 @@ fn stands<'a>(file: &'a File<'a>, count: &mut impl FnMut(&str, usize)) -> Result
             ));
         }
         match file.nodes.get(&number) {
-            Some(Node::Transform { layer, is_hidden, .. })
+            Some(VoxNode::Transform { layer, is_hidden, .. })
                 if *is_hidden || file.hidden_layers.contains(layer) =>
             {
                 count("hidden parts", 1);
             }
-            Some(Node::Transform {
+            Some(VoxNode::Transform {
                 child,
                 turn: own,
                 move_by,
@@ -155,10 +155,10 @@ fn stands<'a>(file: &'a File<'a>, count: &mut impl FnMut(&str, usize)) -> Result
                 );
                 open.push((*child, product(&turn, own), moved(&turn, move_by, &at)));
             }
-            Some(Node::Group(children)) => {
+            Some(VoxNode::Group(children)) => {
                 open.extend(children.iter().rev().map(|child| (*child, turn, at)));
             }
-            Some(Node::Shape(models)) => {
+            Some(VoxNode::Shape(models)) => {
                 count(
                     "models of an animation after the first",
                     models.len().saturating_sub(1),

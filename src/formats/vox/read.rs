@@ -9,9 +9,9 @@ use super::LONGEST;
 
 /// The parts of a file that are used here.
 #[derive(Debug, Default)]
-pub(crate) struct File<'a> {
+pub(crate) struct VoxFile<'a> {
     pub models: Vec<Model<'a>>,
-    pub nodes: BTreeMap<i32, Node>,
+    pub nodes: BTreeMap<i32, VoxNode>,
     /// Red, green, blue of colours 1 to 255.
     pub colors: Option<Vec<[u8; 3]>>,
     pub hidden_layers: BTreeSet<i32>,
@@ -30,7 +30,7 @@ pub(crate) struct Model<'a> {
 
 /// A node of the graph.
 #[derive(Debug, PartialEq)]
-pub(crate) enum Node {
+pub(crate) enum VoxNode {
     /// Turns and moves its child.
     Transform {
         name: Option<String>,
@@ -55,7 +55,7 @@ pub(crate) const NO_TURN: [[i64; 3]; 3] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 /// A chunk: its name, its content and its children.
 type Chunk<'a> = ([u8; 4], &'a [u8], &'a [u8]);
 
-impl<'a> File<'a> {
+impl<'a> VoxFile<'a> {
     /// Reads the chunks of a file.
     pub fn read(bytes: &'a [u8]) -> Result<Self, String> {
         let mut all = Bytes { left: bytes };
@@ -67,7 +67,7 @@ impl<'a> File<'a> {
         if id != *b"MAIN" || !content.is_empty() {
             return Err(format!("a first chunk {}, expected MAIN", name(&id)));
         }
-        let mut file = File::default();
+        let mut file = VoxFile::default();
         let mut size = None;
         let mut chunks = Bytes { left: children };
         while !chunks.left.is_empty() {
@@ -167,7 +167,7 @@ impl<'a> Bytes<'a> {
     }
 
     /// The number of a node and the node.
-    fn node(&mut self, id: &[u8; 4]) -> Result<(i32, Node), String> {
+    fn node(&mut self, id: &[u8; 4]) -> Result<(i32, VoxNode), String> {
         let number = self.i32()?;
         let dict = self.dict()?;
         let node = match id {
@@ -179,7 +179,7 @@ impl<'a> Bytes<'a> {
                 } else {
                     Dict::default()
                 };
-                Node::Transform {
+                VoxNode::Transform {
                     name: dict.name,
                     child,
                     layer,
@@ -189,7 +189,7 @@ impl<'a> Bytes<'a> {
                     moments,
                 }
             }
-            b"nGRP" => Node::Group(self.numbers(4)?),
+            b"nGRP" => VoxNode::Group(self.numbers(4)?),
             _ => {
                 // Behind each number a dictionary, of 4 bytes at least.
                 let count = self.counted(8)?;
@@ -198,7 +198,7 @@ impl<'a> Bytes<'a> {
                     models.push(self.i32()?);
                     self.dict()?;
                 }
-                Node::Shape(models)
+                VoxNode::Shape(models)
             }
         };
         Ok((number, node))

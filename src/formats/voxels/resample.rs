@@ -9,7 +9,7 @@ use super::{Lattice, Physical};
 
 /// A cell of a lattice and its class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Cell {
+pub(crate) struct LabelledCell {
     /// Along x, y, z.
     pub at: [u16; 3],
     /// Label value of [`Class`].
@@ -19,7 +19,7 @@ pub(crate) struct Cell {
 /// The cells of a lattice that are not free, sorted by place. A cell no larger than a voxel has the class of the voxel that
 /// holds its middle. A larger one has the most frequent class of the voxels that are not free and have their middle in it; if
 /// there is none, that of the voxel that holds its own middle.
-pub(crate) fn cells_of(physical: &Physical, lattice: &Lattice, ego_from_lattice: &Pose) -> Vec<Cell> {
+pub(crate) fn cells_of(physical: &Physical, lattice: &Lattice, ego_from_lattice: &Pose) -> Vec<LabelledCell> {
     let extent = physical.extent();
     let finer = lattice.cell_m <= Extent::VOXEL_M;
     let overlap = Overlap::new(lattice, ego_from_lattice);
@@ -37,22 +37,22 @@ pub(crate) fn cells_of(physical: &Physical, lattice: &Lattice, ego_from_lattice:
         });
     }
     votes.sort_unstable();
-    let mut winners: Vec<Cell> = votes.chunk_by(|a, b| a.at == b.at).filter_map(winner).collect();
+    let mut winners: Vec<LabelledCell> = votes.chunk_by(|a, b| a.at == b.at).filter_map(winner).collect();
     found.retain(|cell| winners.binary_search_by_key(&cell.at, |w| w.at).is_err());
     found.append(&mut winners);
     found.sort_unstable();
     found
 }
 
-fn cell_of(at: [usize; 3], class: u8) -> Cell {
-    Cell {
+fn cell_of(at: [usize; 3], class: u8) -> LabelledCell {
+    LabelledCell {
         at: at.map(|v| v as u16),
         class,
     }
 }
 
 /// The most frequent class of sorted votes on one place; of equally many the lowest, "others" last.
-fn winner(votes: &[Cell]) -> Option<Cell> {
+fn winner(votes: &[LabelledCell]) -> Option<LabelledCell> {
     let of_one = votes.chunk_by(|a, b| a.class == b.class);
     let best = of_one.max_by_key(|v| {
         let class = v[0].class;
@@ -103,7 +103,7 @@ impl<'a> Overlap<'a> {
 }
 
 /// Cells of a lattice that are to become voxels.
-pub(crate) struct Cells<'a> {
+pub(crate) struct VoxelVotes<'a> {
     lattice: &'a Lattice,
     ego_from_lattice: &'a Pose,
     extent: Extent,
@@ -117,7 +117,7 @@ pub(crate) struct Cells<'a> {
 /// Classes that a number can hold beside its voxel.
 const CLASSES: u32 = 32;
 
-impl<'a> Cells<'a> {
+impl<'a> VoxelVotes<'a> {
     /// Holds no cells yet. Errors in one line if the lattice lies nowhere near the ego vehicle.
     pub fn new(lattice: &'a Lattice, ego_from_lattice: &'a Pose) -> Result<Self, String> {
         let corners = lattice.corners_m().map(|corner| ego_from_lattice.apply(corner));
@@ -235,8 +235,8 @@ mod tests {
         }
     }
 
-    fn back(lattice: &Lattice, pose: &Pose, cells: &[Cell]) -> Physical {
-        let mut all = Cells::new(lattice, pose).expect("around the vehicle");
+    fn back(lattice: &Lattice, pose: &Pose, cells: &[LabelledCell]) -> Physical {
+        let mut all = VoxelVotes::new(lattice, pose).expect("around the vehicle");
         for cell in cells {
             all.add(cell.at.map(usize::from), cell.class);
         }
@@ -297,7 +297,7 @@ mod tests {
     fn the_most_frequent_class_wins_and_others_yields() {
         let pose = Pose::IDENTITY;
         let class = |classes: &[u8]| {
-            let mut all = Cells::new(&FINE, &pose).expect("around the vehicle");
+            let mut all = VoxelVotes::new(&FINE, &pose).expect("around the vehicle");
             // Eight cells of the voxel at 0..0.4 m on each axis, if its z begins at -0.2 m.
             for (i, class) in classes.iter().enumerate() {
                 all.add([256 + (i & 1), 256 + (i >> 1 & 1), 24 + (i >> 2)], *class);

@@ -19,7 +19,7 @@ pub(crate) struct Corner {
 }
 
 /// The picture in the making.
-pub(crate) struct Canvas {
+pub(crate) struct MultisamplePicture {
     width: usize,
     height: usize,
     /// Samples, row by row.
@@ -27,7 +27,7 @@ pub(crate) struct Canvas {
     distance_m: Vec<f32>,
 }
 
-impl Canvas {
+impl MultisamplePicture {
     /// A black picture of this size in pixels.
     pub(crate) fn new(width: u32, height: u32) -> Self {
         let (width, height) = (width as usize * SAMPLES, height as usize * SAMPLES);
@@ -157,7 +157,7 @@ mod tests {
         }
     }
 
-    fn red(canvas: &Canvas, u: usize, v: usize) -> u8 {
+    fn red(canvas: &MultisamplePicture, u: usize, v: usize) -> u8 {
         canvas.rgba()[(v * canvas.width / SAMPLES + u) * 4]
     }
 
@@ -174,7 +174,7 @@ mod tests {
             corner(0.0, 40.0, 5.0, 90.0),
         ];
         for order in [[&near, &far], [&far, &near]] {
-            let mut canvas = Canvas::new(20, 20);
+            let mut canvas = MultisamplePicture::new(20, 20);
             order.into_iter().for_each(|t| canvas.triangle(t));
             assert_eq!(
                 (red(&canvas, 4, 4), red(&canvas, 17, 17), red(&canvas, 0, 0)),
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn colour_runs_evenly_and_edges_are_smooth() {
-        let mut canvas = Canvas::new(30, 10);
+        let mut canvas = MultisamplePicture::new(30, 10);
         let [a, b, c, d] = [
             corner(0.0, 0.0, 1.0, 0.0),
             corner(30.0, 0.0, 1.0, 240.0),
@@ -203,7 +203,7 @@ mod tests {
 
     #[test]
     fn a_line_is_as_wide_as_asked_upright_and_thinner_level() {
-        let mut canvas = Canvas::new(80, 40);
+        let mut canvas = MultisamplePicture::new(80, 40);
         let line =
             |x0: f64, y0: f64, x1: f64, y1: f64| [corner(x0, y0, 1.0, 255.0), corner(x1, y1, 1.0, 255.0)];
         canvas.line(&line(20.0, 10.0, 20.0, 30.0), 8.0);

@@ -7,11 +7,11 @@ use std::f64::consts::FRAC_PI_2;
 use glam::DVec3;
 use scene::{Pose, SceneBox};
 
-use super::draw::{Canvas, Corner};
+use super::draw::{Corner, MultisamplePicture};
 use super::draw_lines::{DOUBLE_M, LONG_DASH_M, beside, dashes, triangles};
 use super::ftheta::FTheta;
-use super::map::{Map, Marking};
-use super::{Kind, category};
+use super::map::{Marking, ScenarioMap};
+use super::{ObjectCategory, category};
 
 /// Farthest distance that is drawn, m; colours go to black up to there.
 const FARTHEST_M: f64 = 200.0;
@@ -35,7 +35,7 @@ const EDGE: [u8; 3] = [200, 200, 200];
 const LINES_IN_FRONT: f64 = 0.998;
 const AREAS_BEHIND: f64 = 1.05;
 
-impl Kind {
+impl ObjectCategory {
     /// Colours in front and behind.
     fn colors(self) -> [[u8; 3]; 2] {
         match self {
@@ -49,14 +49,14 @@ impl Kind {
 }
 
 /// The map as lines and areas of one colour each, in the frame of the scenario.
-pub(crate) struct Painted {
+pub(crate) struct ColoredMap {
     lines: Vec<([u8; 3], Vec<DVec3>)>,
     areas: Vec<[DVec3; 3]>,
 }
 
-impl Painted {
+impl ColoredMap {
     /// The lines and areas of a map.
-    pub(crate) fn of(map: &Map) -> Self {
+    pub(crate) fn of(map: &ScenarioMap) -> Self {
         let mut lines = Vec::new();
         for (marking, line) in &map.lines {
             match marking {
@@ -83,7 +83,7 @@ impl Painted {
 
 /// A camera at a moment, and the picture that it takes.
 pub(crate) struct Shot<'a> {
-    pub(crate) canvas: &'a mut Canvas,
+    pub(crate) canvas: &'a mut MultisamplePicture,
     pub(crate) model: &'a FTheta,
     /// Where the camera is (optical axes) in the frame of the scenario.
     pub(crate) scenario_from_camera: Pose,
@@ -91,7 +91,7 @@ pub(crate) struct Shot<'a> {
 
 impl Shot<'_> {
     /// Draws all that is seen.
-    pub(crate) fn draw(&mut self, painted: &Painted, boxes: &[SceneBox]) {
+    pub(crate) fn draw(&mut self, painted: &ColoredMap, boxes: &[SceneBox]) {
         self.canvas.begin(self.model.width, self.model.height);
         let camera_from_scenario = self.scenario_from_camera.inverse();
         let eye = Eye {
@@ -145,7 +145,7 @@ impl Eye<'_> {
         (0.06 * distance_m).clamp(0.04, longest_m)
     }
 
-    fn line(&self, canvas: &mut Canvas, ends: [DVec3; 2], color: [u8; 3], width_px: f64) {
+    fn line(&self, canvas: &mut MultisamplePicture, ends: [DVec3; 2], color: [u8; 3], width_px: f64) {
         let color = DVec3::from_array(color.map(f64::from));
         let [a, b] = ends;
         let length_m = a.distance(b);
@@ -173,7 +173,7 @@ impl Eye<'_> {
     }
 
     /// A triangle on the ground, parted until its parts are small.
-    fn area(&self, canvas: &mut Canvas, [a, b, c]: &[DVec3; 3], color: [u8; 3], depth: usize) {
+    fn area(&self, canvas: &mut MultisamplePicture, [a, b, c]: &[DVec3; 3], color: [u8; 3], depth: usize) {
         const DEEPEST: usize = 16;
         let sides = [(*a, *b, *c), (*b, *c, *a), (*c, *a, *b)];
         let longest = sides
@@ -199,7 +199,7 @@ impl Eye<'_> {
         }
     }
 
-    fn cuboid(&self, canvas: &mut Canvas, b: &SceneBox) {
+    fn cuboid(&self, canvas: &mut MultisamplePicture, b: &SceneBox) {
         let half = b.size_m / 2.0;
         let eye = b.to_local(self.at_m);
         let nearest_m = (eye - eye.clamp(-half, half)).length();
@@ -239,7 +239,7 @@ impl Eye<'_> {
     /// A face of a box, parted so that its parts are small.
     fn face(
         &self,
-        canvas: &mut Canvas,
+        canvas: &mut MultisamplePicture,
         b: &SceneBox,
         axis: usize,
         side: f64,

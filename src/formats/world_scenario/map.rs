@@ -35,13 +35,13 @@ impl Marking {
 
 /// Mark on the edge of a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Edge {
+pub(crate) enum LaneEdgeMark {
     Line(Marking),
     Boundary,
     Nothing,
 }
 
-impl Edge {
+impl LaneEdgeMark {
     /// Colour and style in the tables.
     pub(crate) fn names(self) -> (&'static str, &'static str) {
         match self {
@@ -57,12 +57,12 @@ impl Edge {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rail {
     pub(crate) points_m: Vec<DVec3>,
-    pub(crate) edges: Vec<Edge>,
+    pub(crate) edges: Vec<LaneEdgeMark>,
 }
 
 /// The elements of a scene's map, in the frame of the scenario, m.
 #[derive(Debug, Default)]
-pub(crate) struct Map {
+pub(crate) struct ScenarioMap {
     /// Left and right edge of each lane, in driving direction.
     pub(crate) lanes: Vec<[Rail; 2]>,
     pub(crate) lines: Vec<(Marking, Vec<DVec3>)>,
@@ -83,7 +83,7 @@ fn tilt(corners: &mut [DVec3]) {
     }
 }
 
-impl Map {
+impl ScenarioMap {
     /// The map of a scene. Points that are not finite are left out.
     pub(crate) fn of(scene: &Scene, scenario_from_world: &Pose) -> Self {
         let layout = &scene.canvas().layout;
@@ -176,11 +176,11 @@ fn beside(line: &[DVec2], offset_m: f64) -> Vec<DVec2> {
 }
 
 /// The mark on a lane's edge at a point, told by the layers around it.
-fn edge(layout: &BevLayout, at_m: DVec2) -> Edge {
+fn edge(layout: &BevLayout, at_m: DVec2) -> LaneEdgeMark {
     let extent = layout.extent();
     let reach = (NEAR_M * 2.5).round() as i64;
     let Some([x, y]) = extent.column_at(at_m.x, at_m.y) else {
-        return Edge::Nothing;
+        return LaneEdgeMark::Nothing;
     };
     let around = (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| (x as i64 + i, y as i64 + j)));
     let cells = around.filter_map(|(i, j)| {
@@ -194,10 +194,10 @@ fn edge(layout: &BevLayout, at_m: DVec2) -> Edge {
         off_road |= cell & (BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit()) == 0;
     }
     match () {
-        () if divider => Edge::Line(Marking::Divider),
-        () if lane_divider => Edge::Line(Marking::LaneDivider),
-        () if off_road => Edge::Boundary,
-        () => Edge::Nothing,
+        () if divider => LaneEdgeMark::Line(Marking::Divider),
+        () if lane_divider => LaneEdgeMark::Line(Marking::LaneDivider),
+        () if off_road => LaneEdgeMark::Boundary,
+        () => LaneEdgeMark::Nothing,
     }
 }
 

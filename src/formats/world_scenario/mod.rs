@@ -74,7 +74,7 @@ pub(crate) fn boxes_at(scene: &Scene, time_s: f64, scenario_from_world: &Pose) -
 
 /// The five kinds of objects that the models tell apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum ObjectCategory {
     Car,
     Truck,
     Pedestrian,
@@ -83,15 +83,15 @@ pub(crate) enum Kind {
 }
 
 /// The category of a class in the tables, and the kind that readers make of it.
-pub(crate) fn category(class: Class) -> (&'static str, Kind) {
+pub(crate) fn category(class: Class) -> (&'static str, ObjectCategory) {
     match class {
-        Class::Car => ("automobile", Kind::Car),
-        Class::Truck | Class::ConstructionVehicle => ("heavy_truck", Kind::Truck),
-        Class::Bus => ("bus", Kind::Truck),
-        Class::Trailer => ("trailer", Kind::Truck),
-        Class::Bicycle | Class::Motorcycle => ("rider", Kind::Cyclist),
-        Class::Pedestrian => ("person", Kind::Pedestrian),
-        _ => ("protruding_object", Kind::Others),
+        Class::Car => ("automobile", ObjectCategory::Car),
+        Class::Truck | Class::ConstructionVehicle => ("heavy_truck", ObjectCategory::Truck),
+        Class::Bus => ("bus", ObjectCategory::Truck),
+        Class::Trailer => ("trailer", ObjectCategory::Truck),
+        Class::Bicycle | Class::Motorcycle => ("rider", ObjectCategory::Cyclist),
+        Class::Pedestrian => ("person", ObjectCategory::Pedestrian),
+        _ => ("protruding_object", ObjectCategory::Others),
     }
 }
 

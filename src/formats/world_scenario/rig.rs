@@ -21,7 +21,7 @@ const KNOWN: [(&str, f64, f64); 7] = [
 const AWAY_DEG: f64 = 50.0;
 
 /// A camera under its name in the scenario.
-pub(crate) struct Named {
+pub(crate) struct ScenarioCamera {
     pub(crate) name: String,
     pub(crate) camera: Camera,
     pub(crate) model: FTheta,
@@ -29,7 +29,7 @@ pub(crate) struct Named {
     pub(crate) added: bool,
 }
 
-impl Named {
+impl ScenarioCamera {
     /// The name as used in names of files.
     pub(crate) fn file_name(&self) -> String {
         self.name.replace(':', "_")
@@ -38,7 +38,7 @@ impl Named {
 
 /// The cameras of a rig, in its order. Each of the known names goes to the camera that looks most nearly that way; others keep
 /// their own. Names that no camera got follow, so that readers find all seven; a rig without cameras stays so.
-pub(crate) fn named(rig: &SensorRig) -> Vec<Named> {
+pub(crate) fn named(rig: &SensorRig) -> Vec<ScenarioCamera> {
     let mut names: Vec<Option<String>> = vec![None; rig.cameras.len()];
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for (i, camera) in rig.cameras.iter().enumerate() {
@@ -59,7 +59,7 @@ pub(crate) fn named(rig: &SensorRig) -> Vec<Named> {
             taken[k] = true;
         }
     }
-    let mut out: Vec<Named> = Vec::new();
+    let mut out: Vec<ScenarioCamera> = Vec::new();
     for (camera, name) in rig.cameras.iter().zip(names) {
         let name = name.unwrap_or_else(|| own_name(&camera.name));
         let is_new = |name: &str| out.iter().all(|n| n.name != name);
@@ -70,7 +70,7 @@ pub(crate) fn named(rig: &SensorRig) -> Vec<Named> {
                 .find(|n| is_new(n))
                 .unwrap_or(name),
         };
-        out.push(Named {
+        out.push(ScenarioCamera {
             name,
             camera: camera.clone(),
             model: FTheta::of(camera),
@@ -78,14 +78,14 @@ pub(crate) fn named(rig: &SensorRig) -> Vec<Named> {
         });
     }
     let missing = KNOWN.iter().zip(taken).filter(|(_, taken)| !taken);
-    let added: Vec<Named> = missing.filter_map(|(known, _)| substitute(rig, *known)).collect();
+    let added: Vec<ScenarioCamera> = missing.filter_map(|(known, _)| substitute(rig, *known)).collect();
     out.extend(added);
     out
 }
 
 /// A pinhole camera of the heading and width that belong to a known name, where the camera of the rig stands that looks most
 /// nearly that way.
-fn substitute(rig: &SensorRig, (name, yaw_deg, fov_deg): (&str, f64, f64)) -> Option<Named> {
+fn substitute(rig: &SensorRig, (name, yaw_deg, fov_deg): (&str, f64, f64)) -> Option<ScenarioCamera> {
     let away_deg = |c: &Camera| ((c.aim().yaw_deg - yaw_deg + 180.0).rem_euclid(360.0) - 180.0).abs();
     let nearest = rig
         .cameras
@@ -98,7 +98,7 @@ fn substitute(rig: &SensorRig, (name, yaw_deg, fov_deg): (&str, f64, f64)) -> Op
         pitch_deg: 0.0,
         roll_deg: 0.0,
     });
-    Some(Named {
+    Some(ScenarioCamera {
         name: name.to_owned(),
         model: FTheta::of(&camera),
         camera,
@@ -126,7 +126,7 @@ pub(crate) fn to_json(rig: &SensorRig) -> String {
     json!({"rig": {"sensors": sensors, "vehicle": {}}, "version": 8}).to_string()
 }
 
-fn sensor(named: &Named) -> Value {
+fn sensor(named: &ScenarioCamera) -> Value {
     let (camera, model) = (&named.camera, &named.model);
     let origin = if named.added { "added" } else { "sceneloom" };
     let polynomial: Vec<String> = model.angle_of_px.iter().map(|k| format!("{k:e}")).collect();
@@ -217,7 +217,7 @@ mod tests {
         ];
         assert_eq!(names, expected);
         // The five names that nobody got: readers look for all seven.
-        let added: Vec<&Named> = all.iter().filter(|n| n.added).collect();
+        let added: Vec<&ScenarioCamera> = all.iter().filter(|n| n.added).collect();
         assert_eq!(added.len(), 5);
         for (name, yaw_deg, fov_deg) in KNOWN {
             assert_eq!(all.iter().filter(|n| n.name == name).count(), 1, "{name}");

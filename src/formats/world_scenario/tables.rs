@@ -3,10 +3,10 @@
 use glam::DVec3;
 use scene::{Pose, Scene, SceneBox};
 
-use super::map::{Map, Rail};
+use super::map::{Rail, ScenarioMap};
 use super::{TABLE_HZ, boxes_at, category, clip_id, ego_at, rig, scenario_from_world, times_s};
 use crate::FormatError;
-use crate::table::{Field, Values, to_bytes, vectors};
+use crate::table::{ColumnValues, ParquetField, to_bytes, vectors};
 
 /// Version of the rows; readers ignore it.
 const VERSION: u64 = 1;
@@ -31,7 +31,7 @@ pub(crate) fn tables(scene: &Scene) -> Result<Vec<(&'static str, Vec<u8>)>, Form
             egomotion(scene, &to_scenario, &id, &times_us)?,
         ),
     ];
-    let map = Map::of(scene, &to_scenario);
+    let map = ScenarioMap::of(scene, &to_scenario);
     let optional = [
         ("lane", map.lanes.len(), lane(&map)),
         ("lane_line", map.lines.len(), lane_line(&map)),
@@ -41,7 +41,11 @@ pub(crate) fn tables(scene: &Scene) -> Result<Vec<(&'static str, Vec<u8>)>, Form
     ];
     for (name, rows, fields) in optional {
         if rows > 0 {
-            let fields = [map_key(&id, rows), Field::Group(name, fields), version(rows)];
+            let fields = [
+                map_key(&id, rows),
+                ParquetField::Group(name, fields),
+                version(rows),
+            ];
             out.push((name, to_bytes(rows, &fields)?));
         }
     }
@@ -54,16 +58,16 @@ fn moments(scene: &Scene) -> Vec<(f64, i64)> {
     times_s(scene, TABLE_HZ).into_iter().map(|t| (t, us(t))).collect()
 }
 
-fn version(rows: usize) -> Field {
-    Field::Values("version", Values::Unsigned(vec![VERSION; rows]))
+fn version(rows: usize) -> ParquetField {
+    ParquetField::Values("version", ColumnValues::Unsigned(vec![VERSION; rows]))
 }
 
-fn texts(name: &'static str, text: &str, rows: usize) -> Field {
-    Field::Values(name, Values::Text(vec![text.to_owned(); rows]))
+fn texts(name: &'static str, text: &str, rows: usize) -> ParquetField {
+    ParquetField::Values(name, ColumnValues::Text(vec![text.to_owned(); rows]))
 }
 
-fn map_key(id: &str, rows: usize) -> Field {
-    Field::Group(
+fn map_key(id: &str, rows: usize) -> ParquetField {
+    ParquetField::Group(
         "key",
         vec![
             texts("clip_id", id, rows),
@@ -74,12 +78,14 @@ fn map_key(id: &str, rows: usize) -> Field {
     )
 }
 
-fn quaternions(of: &[glam::DQuat]) -> Field {
-    let part = |i: usize| Values::Number(of.iter().map(|q| q.to_array()[i]).collect());
+fn quaternions(of: &[glam::DQuat]) -> ParquetField {
+    let part = |i: usize| ColumnValues::Number(of.iter().map(|q| q.to_array()[i]).collect());
     let names = ["x", "y", "z", "w"].into_iter().enumerate();
-    Field::Group(
+    ParquetField::Group(
         "orientation",
-        names.map(|(i, name)| Field::Values(name, part(i))).collect(),
+        names
+            .map(|(i, name)| ParquetField::Values(name, part(i)))
+            .collect(),
     )
 }
 
@@ -101,22 +107,22 @@ fn obstacle(
     let ids = boxes.iter().map(|b| b.id.0.to_string()).collect();
     let categories = boxes.iter().map(|b| category(b.class).0.to_owned()).collect();
     let fields = [
-        Field::Group(
+        ParquetField::Group(
             "key",
             vec![
                 texts("clip_id", id, rows),
-                Field::Values("timestamp_micros", Values::Integer(times_us)),
+                ParquetField::Values("timestamp_micros", ColumnValues::Integer(times_us)),
                 texts("label_class_id", "sceneloom", rows),
             ],
         ),
-        Field::Group(
+        ParquetField::Group(
             "obstacle",
             vec![
-                Field::Values("trackline_id", Values::Text(ids)),
+                ParquetField::Values("trackline_id", ColumnValues::Text(ids)),
                 vectors("center", &each(|b| b.center_m)),
                 vectors("size", &each(|b| b.size_m)),
                 quaternions(&boxes.iter().map(turn).collect::<Vec<_>>()),
-                Field::Values("category", Values::Text(categories)),
+                ParquetField::Values("category", ColumnValues::Text(categories)),
             ],
         ),
         version(rows),
@@ -126,14 +132,14 @@ fn obstacle(
 
 fn calibration(scene: &Scene, id: &str) -> Result<Vec<u8>, FormatError> {
     let fields = [
-        Field::Group(
+        ParquetField::Group(
             "key",
             vec![
                 texts("clip_id", id, 1),
-                Field::Values("timestamp_micros", Values::Integer(vec![-1])),
+                ParquetField::Values("timestamp_micros", ColumnValues::Integer(vec![-1])),
             ],
         ),
-        Field::Group(
+        ParquetField::Group(
             "calibration_estimate",
             vec![
                 texts("name", &scene.rig.name, 1),
@@ -157,17 +163,17 @@ fn egomotion(
         .collect();
     let rows = poses.len();
     let fields = [
-        Field::Group(
+        ParquetField::Group(
             "key",
             vec![
                 texts("clip_id", id, rows),
-                Field::Values(
+                ParquetField::Values(
                     "timestamp_micros",
-                    Values::Integer(times.iter().map(|t| t.1).collect()),
+                    ColumnValues::Integer(times.iter().map(|t| t.1).collect()),
                 ),
             ],
         ),
-        Field::Group(
+        ParquetField::Group(
             "egomotion_estimate",
             vec![
                 texts("name", "sceneloom", rows),
@@ -183,7 +189,7 @@ fn egomotion(
     to_bytes(rows, &fields)
 }
 
-fn lane(map: &Map) -> Vec<Field> {
+fn lane(map: &ScenarioMap) -> Vec<ParquetField> {
     let rows = map.lanes.len();
     let mut out = Vec::new();
     for (side, [rail, styles, colors]) in [
@@ -196,62 +202,62 @@ fn lane(map: &Map) -> Vec<Field> {
         let rails: Vec<&Rail> = map.lanes.iter().map(|lane| &lane[side]).collect();
         let names = |of: fn((&'static str, &'static str)) -> &'static str| {
             let each = |rail: &&Rail| rail.edges.iter().map(|e| of(e.names()).to_owned()).collect();
-            Values::Texts(rails.iter().map(each).collect())
+            ColumnValues::Texts(rails.iter().map(each).collect())
         };
         let points = rails.iter().map(|rail| rail.points_m.clone()).collect();
-        out.push(Field::Values(rail, Values::Points(points)));
-        out.push(Field::Values(styles, names(|(_, style)| style)));
-        out.push(Field::Values(colors, names(|(color, _)| color)));
+        out.push(ParquetField::Values(rail, ColumnValues::Points(points)));
+        out.push(ParquetField::Values(styles, names(|(_, style)| style)));
+        out.push(ParquetField::Values(colors, names(|(color, _)| color)));
     }
     out.extend([
-        Field::Values("lane_direction", Values::UnknownText(rows)),
-        Field::Values("speed_limit", Values::UnknownNumber(rows)),
-        Field::Values("vehicle_types", Values::Texts(vec![Vec::new(); rows])),
+        ParquetField::Values("lane_direction", ColumnValues::UnknownText(rows)),
+        ParquetField::Values("speed_limit", ColumnValues::UnknownNumber(rows)),
+        ParquetField::Values("vehicle_types", ColumnValues::Texts(vec![Vec::new(); rows])),
     ]);
     out
 }
 
-fn lane_line(map: &Map) -> Vec<Field> {
+fn lane_line(map: &ScenarioMap) -> Vec<ParquetField> {
     let rows = map.lines.len();
     let each = |of: fn((&'static str, &'static str)) -> &'static str| {
         let lists = map
             .lines
             .iter()
             .map(|(marking, points)| vec![of(marking.names()).to_owned(); points.len()]);
-        Values::Texts(lists.collect())
+        ColumnValues::Texts(lists.collect())
     };
     vec![
-        Field::Values(
+        ParquetField::Values(
             "line_rail",
-            Values::Points(map.lines.iter().map(|(_, points)| points.clone()).collect()),
+            ColumnValues::Points(map.lines.iter().map(|(_, points)| points.clone()).collect()),
         ),
-        Field::Values("styles", each(|(_, style)| style)),
-        Field::Values("colors", each(|(color, _)| color)),
-        Field::Values("left_driving_direction", Values::UnknownText(rows)),
-        Field::Values("right_driving_direction", Values::UnknownText(rows)),
+        ParquetField::Values("styles", each(|(_, style)| style)),
+        ParquetField::Values("colors", each(|(color, _)| color)),
+        ParquetField::Values("left_driving_direction", ColumnValues::UnknownText(rows)),
+        ParquetField::Values("right_driving_direction", ColumnValues::UnknownText(rows)),
     ]
 }
 
-fn road_boundary(map: &Map) -> Vec<Field> {
+fn road_boundary(map: &ScenarioMap) -> Vec<ParquetField> {
     vec![
         texts("category", "road_boundary", map.boundaries.len()),
-        Field::Values("location", Values::Points(map.boundaries.clone())),
+        ParquetField::Values("location", ColumnValues::Points(map.boundaries.clone())),
     ]
 }
 
-fn crosswalk(map: &Map) -> Vec<Field> {
+fn crosswalk(map: &ScenarioMap) -> Vec<ParquetField> {
     vec![
         texts("category", "PEDESTRIAN", map.crossings.len()),
-        Field::Values("location", Values::Points(map.crossings.clone())),
+        ParquetField::Values("location", ColumnValues::Points(map.crossings.clone())),
     ]
 }
 
-fn wait_line(map: &Map) -> Vec<Field> {
+fn wait_line(map: &ScenarioMap) -> Vec<ParquetField> {
     let rows = map.stop_lines.len();
     vec![
         texts("category", "STOP", rows),
-        Field::Values("location", Values::Points(map.stop_lines.clone())),
-        Field::Values("is_implicit", Values::Flag(vec![false; rows])),
-        Field::Values("intersection_subtype", Values::UnknownText(rows)),
+        ParquetField::Values("location", ColumnValues::Points(map.stop_lines.clone())),
+        ParquetField::Values("is_implicit", ColumnValues::Flag(vec![false; rows])),
+        ParquetField::Values("intersection_subtype", ColumnValues::UnknownText(rows)),
     ]
 }

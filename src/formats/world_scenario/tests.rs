@@ -12,11 +12,11 @@ use scene::{
     Track,
 };
 
-use super::draw::Canvas;
-use super::draw_scene::{Painted, Shot};
+use super::draw::MultisamplePicture;
+use super::draw_scene::{ColoredMap, Shot};
 use super::ftheta::FTheta;
-use super::map::Map;
-use super::{Kind, boxes_at, category, clip_id, ego_at, scenario_from_world, tables, times_s};
+use super::map::ScenarioMap;
+use super::{ObjectCategory, boxes_at, category, clip_id, ego_at, scenario_from_world, tables, times_s};
 use crate::table_tests::{Small, random_scene};
 
 fn a_box(id: u32, class: Class, at: DVec3) -> SceneBox {
@@ -232,13 +232,13 @@ fn tables_are_the_same_bytes_and_bad_scenes_one_line() {
 
 #[test]
 fn every_class_has_a_category_that_readers_know() {
-    let kinds: Vec<Kind> = Class::OBJECTS.iter().map(|c| category(*c).1).collect();
+    let kinds: Vec<ObjectCategory> = Class::OBJECTS.iter().map(|c| category(*c).1).collect();
     for kind in [
-        Kind::Car,
-        Kind::Truck,
-        Kind::Pedestrian,
-        Kind::Cyclist,
-        Kind::Others,
+        ObjectCategory::Car,
+        ObjectCategory::Truck,
+        ObjectCategory::Pedestrian,
+        ObjectCategory::Cyclist,
+        ObjectCategory::Others,
     ] {
         assert!(kinds.contains(&kind), "{kind:?}");
     }
@@ -248,13 +248,13 @@ fn every_class_has_a_category_that_readers_know() {
 fn picture(scene: &Scene, time_s: f64, camera: &Camera) -> impl Fn(usize, usize) -> [u8; 3] + use<> {
     let model = FTheta::of(camera).resized(1280, 720);
     let to_scenario = scenario_from_world(scene);
-    let mut canvas = Canvas::new(1280, 720);
+    let mut canvas = MultisamplePicture::new(1280, 720);
     let mut shot = Shot {
         canvas: &mut canvas,
         model: &model,
         scenario_from_camera: to_scenario * ego_at(scene, time_s) * camera.ego_from_camera(),
     };
-    let painted = Painted::of(&Map::of(scene, &to_scenario));
+    let painted = ColoredMap::of(&ScenarioMap::of(scene, &to_scenario));
     shot.draw(&painted, &boxes_at(scene, time_s, &to_scenario));
     let rgba = canvas.rgba();
     assert_eq!(rgba.len(), 1280 * 720 * 4);

@@ -41,7 +41,7 @@ pub fn scene_of(path: &Path) -> anyhow::Result<Scene> {
 }
 
 /// The scene of [`scene_of`], with notes on how it was read.
-pub fn file(path: &Path) -> anyhow::Result<open::Opened> {
+pub fn file(path: &Path) -> anyhow::Result<open::OpenedScene> {
     match import::format_of(path).map(|importer| importer.id) {
         Ok("picture") => match import::read(path)?.1 {
             Content::Recipe(recipe) => again(&recipe)

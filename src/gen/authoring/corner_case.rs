@@ -69,7 +69,7 @@ impl Vary {
 
 /// Sensors of the network that is to miss the object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum Sensor {
+pub enum NetworkSensors {
     /// The cameras'.
     #[default]
     Cameras,
@@ -79,7 +79,7 @@ pub enum Sensor {
     Both,
 }
 
-impl Sensor {
+impl NetworkSensors {
     /// All values, with their names.
     pub const ALL: [(Self, &'static str); 3] = [
         (Self::Cameras, "Cameras"),
@@ -109,9 +109,9 @@ impl Sensor {
 
 /// How well an object is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub struct ObjectVisibility {
     /// The sensors.
-    pub by: Sensor,
+    pub by: NetworkSensors,
     /// Pixels that show it in the camera that shows most of it, returns on it, or its voxels if a sensor sees it
     /// plainly.
     pub visible: usize,
@@ -120,7 +120,7 @@ pub struct Sight {
     pub share: f64,
 }
 
-impl Sight {
+impl ObjectVisibility {
     /// True if there is enough of it to be judged.
     pub fn is_judged(&self) -> bool {
         self.visible >= self.by.least()
@@ -134,7 +134,7 @@ impl Sight {
 
 /// Difference of a variation from the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Change {
+pub enum SceneVariation {
     /// No difference.
     None,
     /// Distance of the object from the ego vehicle, m.
@@ -151,17 +151,17 @@ pub enum Change {
     Speed(f64),
 }
 
-impl std::fmt::Display for Change {
+impl std::fmt::Display for SceneVariation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Change::None => write!(f, "as it is"),
-            Change::Away(m) => write!(f, "{m:.1} m from the ego vehicle"),
-            Change::Aside(m) if *m < 0.0 => write!(f, "{:.1} m to the right", -m),
-            Change::Aside(m) => write!(f, "{m:.1} m to the left"),
-            Change::Visibility(m) => write!(f, "visibility {m:.0} m"),
-            Change::Time(time) => write!(f, "{}", time.name()),
-            Change::Weather(weather) => write!(f, "{}", weather.name()),
-            Change::Speed(mps) => write!(f, "{mps:.1} m/s"),
+            SceneVariation::None => write!(f, "as it is"),
+            SceneVariation::Away(m) => write!(f, "{m:.1} m from the ego vehicle"),
+            SceneVariation::Aside(m) if *m < 0.0 => write!(f, "{:.1} m to the right", -m),
+            SceneVariation::Aside(m) => write!(f, "{m:.1} m to the left"),
+            SceneVariation::Visibility(m) => write!(f, "visibility {m:.0} m"),
+            SceneVariation::Time(time) => write!(f, "{}", time.name()),
+            SceneVariation::Weather(weather) => write!(f, "{}", weather.name()),
+            SceneVariation::Speed(mps) => write!(f, "{mps:.1} m/s"),
         }
     }
 }
@@ -170,9 +170,9 @@ impl std::fmt::Display for Change {
 #[derive(Clone, Copy, Debug)]
 pub struct Tried {
     /// Its difference from the scene.
-    pub change: Change,
+    pub change: SceneVariation,
     /// The sight of the object in it.
-    pub sight: Sight,
+    pub sight: ObjectVisibility,
 }
 
 /// Result of a search.
@@ -195,7 +195,7 @@ pub fn search(
     scene: &Scene,
     id: BoxId,
     vary: Vary,
-    by: Sensor,
+    by: NetworkSensors,
     mut watch: impl FnMut(&Tried, [usize; 2]) -> ControlFlow<()>,
 ) -> Result<Search> {
     let b = scene.frame().boxes.get(&id);
@@ -216,7 +216,7 @@ pub fn search(
         stopped: false,
     };
     let mut refused = None;
-    let as_it_is = std::iter::once((Change::None, Vec::new()));
+    let as_it_is = std::iter::once((SceneVariation::None, Vec::new()));
     for (change, edits) in as_it_is.chain(steps) {
         let mut document = Document::new(scene.clone());
         // A place where the box cannot stand is skipped.
@@ -255,20 +255,20 @@ pub fn search(
 }
 
 /// How a scene's cameras, its LiDAR or both see a box. Errors if the network fails.
-pub fn sight(scene: &Scene, id: BoxId, by: Sensor) -> Result<Sight> {
+pub fn sight(scene: &Scene, id: BoxId, by: NetworkSensors) -> Result<ObjectVisibility> {
     match by {
-        Sensor::Cameras => in_cameras(scene, id),
-        Sensor::Lidar => {
+        NetworkSensors::Cameras => in_cameras(scene, id),
+        NetworkSensors::Lidar => {
             let seen = perceived_sweep::sight(scene, id)?;
-            Ok(Sight {
+            Ok(ObjectVisibility {
                 by,
                 visible: seen.map_or(0, |s| s.returns),
                 share: seen.and_then(|s| s.score).map_or(0.0, f64::from),
             })
         }
-        Sensor::Both => {
+        NetworkSensors::Both => {
             let seen = perceived_voxels::sight(scene, id)?;
-            Ok(Sight {
+            Ok(ObjectVisibility {
                 by,
                 visible: seen.map_or(0, |s| s.voxels),
                 share: seen.map_or(0.0, |s| s.share),
@@ -277,11 +277,11 @@ pub fn sight(scene: &Scene, id: BoxId, by: Sensor) -> Result<Sight> {
     }
 }
 
-fn in_cameras(scene: &Scene, id: BoxId) -> Result<Sight> {
+fn in_cameras(scene: &Scene, id: BoxId) -> Result<ObjectVisibility> {
     let placed = scene.with_rig_in_world();
     let (frame, rig) = (placed.frame(), &placed.rig);
-    let mut best = Sight {
-        by: Sensor::Cameras,
+    let mut best = ObjectVisibility {
+        by: NetworkSensors::Cameras,
         visible: 0,
         share: 0.0,
     };
@@ -310,7 +310,7 @@ fn may_see(camera: &Camera, b: &SceneBox) -> bool {
 }
 
 /// The variations, mildest first, and the edits that lead there.
-fn steps(scene: &Scene, b: &SceneBox, vary: Vary) -> Vec<(Change, Vec<Edit>)> {
+fn steps(scene: &Scene, b: &SceneBox, vary: Vary) -> Vec<(SceneVariation, Vec<Edit>)> {
     let ego = scene.frame().world_from_ego.translation_m.truncate();
     let off = b.center_m.truncate() - ego;
     let ahead = off.try_normalize().unwrap_or(DVec2::X);
@@ -328,12 +328,12 @@ fn steps(scene: &Scene, b: &SceneBox, vary: Vary) -> Vec<(Change, Vec<Edit>)> {
         Vary::Distance => (1..=AWAY_M.1)
             .map(|k| {
                 let by_m = AWAY_M.0 * k as f64;
-                (Change::Away(off.length() + by_m), moved(ahead * by_m))
+                (SceneVariation::Away(off.length() + by_m), moved(ahead * by_m))
             })
             .collect(),
         Vary::Offset => (1..=(ASIDE_M.1 / ASIDE_M.0) as usize)
             .flat_map(|k| [1.0, -1.0].map(|side| side * ASIDE_M.0 * k as f64))
-            .map(|by_m| (Change::Aside(by_m), moved(ahead.perp() * by_m)))
+            .map(|by_m| (SceneVariation::Aside(by_m), moved(ahead.perp() * by_m)))
             .collect(),
         Vary::Fog => {
             let start = now.visibility_m.min(CLEAR_M);
@@ -344,26 +344,26 @@ fn steps(scene: &Scene, b: &SceneBox, vary: Vary) -> Vec<(Change, Vec<Edit>)> {
                     visibility_m,
                     ..now.under(Weather::Fog)
                 };
-                (Change::Visibility(visibility_m), lit(conditions))
+                (SceneVariation::Visibility(visibility_m), lit(conditions))
             })
             .collect()
         }
         Vary::Time => TimeOfDay::ALL
             .into_iter()
             .filter(|time| *time != now.time)
-            .map(|time| (Change::Time(time), lit(now.at(time))))
+            .map(|time| (SceneVariation::Time(time), lit(now.at(time))))
             .collect(),
         Vary::Weather => Weather::ALL
             .into_iter()
             .filter(|weather| *weather != now.weather)
-            .map(|weather| (Change::Weather(weather), lit(now.under(weather))))
+            .map(|weather| (SceneVariation::Weather(weather), lit(now.under(weather))))
             .collect(),
         Vary::Speed => {
             let now_mps = b.velocity_mps.length();
             let faster = (1..).map(|k| now_mps + FASTER_MPS.0 * f64::from(k));
             let faster = faster.take_while(|mps| *mps <= FASTER_MPS.1);
             faster
-                .map(|mps| (Change::Speed(mps), driving(scene, b, mps)))
+                .map(|mps| (SceneVariation::Speed(mps), driving(scene, b, mps)))
                 .collect()
         }
     }
@@ -431,7 +431,7 @@ mod tests {
         let mut boxes: Vec<&SceneBox> = scene.frame().boxes.values().collect();
         boxes.sort_by(|a, b| near(a).total_cmp(&near(b)));
         let seen = boxes.into_iter().find(|b| {
-            let sight = sight(scene, b.id, Sensor::Cameras).expect("the shipped network");
+            let sight = sight(scene, b.id, NetworkSensors::Cameras).expect("the shipped network");
             sight.visible > 200 && !sight.is_missed()
         });
         seen.expect("a box that is seen").id
@@ -442,11 +442,17 @@ mod tests {
         let scene = open::from_template("t-junction", 1).expect("a template");
         let id = seen_box(&scene);
         let mut heard = 0;
-        let found = search(&scene, id, Vary::Fog, Sensor::Cameras, |tried, [k, most]| {
-            heard += 1;
-            assert!(k == heard && k <= most && (k == 1) == (tried.change == Change::None));
-            ControlFlow::Continue(())
-        });
+        let found = search(
+            &scene,
+            id,
+            Vary::Fog,
+            NetworkSensors::Cameras,
+            |tried, [k, most]| {
+                heard += 1;
+                assert!(k == heard && k <= most && (k == 1) == (tried.change == SceneVariation::None));
+                ControlFlow::Continue(())
+            },
+        );
         let found = found.expect("the shipped network");
         let (last, before) = found.tried.split_last().expect("tries");
         assert!(before.iter().all(|t| !t.sight.is_missed()));
@@ -456,11 +462,11 @@ mod tests {
         let mut document = Document::new(scene.clone());
         document.apply_all("vary", &edits).expect("edits of the search");
         assert_eq!(
-            sight(document.scene(), id, Sensor::Cameras).expect("a sight"),
+            sight(document.scene(), id, NetworkSensors::Cameras).expect("a sight"),
             last.sight
         );
         // The search can be ended, and an unknown box is named in the error.
-        let ended = search(&scene, id, Vary::Offset, Sensor::Cameras, |_, _| {
+        let ended = search(&scene, id, Vary::Offset, NetworkSensors::Cameras, |_, _| {
             ControlFlow::Break(())
         });
         let ended = ended.expect("the shipped network");
@@ -474,15 +480,25 @@ mod tests {
         };
         document.apply("lock", &lock).expect("a box");
         let go_on = |_: &Tried, _: [usize; 2]| ControlFlow::Continue(());
-        let error = search(document.scene(), id, Vary::Distance, Sensor::Cameras, go_on);
+        let error = search(
+            document.scene(),
+            id,
+            Vary::Distance,
+            NetworkSensors::Cameras,
+            go_on,
+        );
         let error = error.expect_err("locked").to_string();
         assert!(
             error.starts_with("no change can be made: ") && error.contains("locked"),
             "{error}"
         );
-        let error = search(&scene, BoxId(9999), Vary::Time, Sensor::Cameras, |_, _| {
-            ControlFlow::Continue(())
-        });
+        let error = search(
+            &scene,
+            BoxId(9999),
+            Vary::Time,
+            NetworkSensors::Cameras,
+            |_, _| ControlFlow::Continue(()),
+        );
         assert_eq!(error.expect_err("no box").to_string(), "there is no box 9999");
     }
 
@@ -490,7 +506,7 @@ mod tests {
     fn a_lidar_loses_what_goes_away() {
         let scene = open::from_template("t-junction", 1).expect("a template");
         let seen = |b: &&SceneBox| {
-            let sight = sight(&scene, b.id, Sensor::Lidar).expect("the shipped network");
+            let sight = sight(&scene, b.id, NetworkSensors::Lidar).expect("the shipped network");
             sight.is_judged() && !sight.is_missed()
         };
         let b = scene
@@ -499,15 +515,15 @@ mod tests {
             .values()
             .find(seen)
             .expect("a box that the LiDAR sees");
-        let found = search(&scene, b.id, Vary::Distance, Sensor::Lidar, |_, _| {
+        let found = search(&scene, b.id, Vary::Distance, NetworkSensors::Lidar, |_, _| {
             ControlFlow::Continue(())
         });
         let found = found.expect("the shipped network");
         let last = found.tried.last().expect("tries").sight;
         // In the end it is missed, has too few returns to be judged, or was moved as far as the search goes.
         assert!(last.is_missed() || !last.is_judged() || found.tried.len() > 30);
-        assert!(found.tried[0].sight.visible > last.visible && last.by == Sensor::Lidar);
-        assert!(!Sensor::Lidar.varies().contains(&Vary::Fog));
+        assert!(found.tried[0].sight.visible > last.visible && last.by == NetworkSensors::Lidar);
+        assert!(!NetworkSensors::Lidar.varies().contains(&Vary::Fog));
     }
 
     #[test]
@@ -532,7 +548,7 @@ mod tests {
         assert_eq!(steps(&scene, b, Vary::Weather).len(), Weather::ALL.len() - 1);
         assert!(steps(&scene, b, Vary::Offset)[1].0.to_string() == "0.5 m to the right");
         let go_on = |_: &Tried, _| ControlFlow::Continue(());
-        let error = search(&scene, b.id, Vary::Speed, Sensor::Lidar, go_on).expect_err("it stands");
+        let error = search(&scene, b.id, Vary::Speed, NetworkSensors::Lidar, go_on).expect_err("it stands");
         assert!(error.to_string().contains("spin_hz is 0"), "{error}");
         let mut scene = scene.clone();
         let mut rig = (*scene.rig).clone();
@@ -563,9 +579,9 @@ mod tests {
                 .len()
         };
         assert!(sensors::rolling::is_rolling(&then) && sweep(&then) != sweep(&scene));
-        let error = search(&then, b.id, Vary::Speed, Sensor::Lidar, go_on).expect_err("it follows");
+        let error = search(&then, b.id, Vary::Speed, NetworkSensors::Lidar, go_on).expect_err("it follows");
         assert!(error.to_string().contains("follows a motion"), "{error}");
-        let driven = |change: Change| matches!(change, Change::Speed(mps) if (mps - after.velocity_mps.length()).abs() < 1e-6);
+        let driven = |change: SceneVariation| matches!(change, SceneVariation::Speed(mps) if (mps - after.velocity_mps.length()).abs() < 1e-6);
         assert!(driven(*change), "{change:?}");
         assert_eq!((after.center_m, after.label), (b.center_m, b.label));
         let fog = steps(&scene, b, Vary::Fog);

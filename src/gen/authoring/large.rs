@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::scenery_around::Taken;
+use super::scenery_around::OccupiedColumns;
 use scene::background::in_extent;
-use scene::moved::Columns;
+use scene::moved::ColumnShift;
 use scene::{Background, BevLayout, BoxId, Extent, Form, SceneBox, Thing, VoxelGrid, Window};
 use world::World;
 use world::draw::hash;
@@ -23,7 +23,7 @@ struct Tile {
     /// Its part of the map.
     extent: Extent,
     /// The move that brings it to the origin.
-    to_window: Columns,
+    to_window: ColumnShift,
 }
 
 /// The windows that cover a map, from its lower corner on. The order is fixed.
@@ -39,7 +39,7 @@ fn tiles(extent: Extent) -> Vec<Tile> {
         let middle = [0, 1].map(|axis| -(from[axis] - Extent::WINDOW.from()[axis]));
         Some(Tile {
             extent,
-            to_window: Columns(middle),
+            to_window: ColumnShift(middle),
         })
     };
     all.filter_map(tile).collect()
@@ -66,7 +66,7 @@ impl Tile {
             .collect()
     }
 
-    fn moved(&self, things: &[Thing], by: Columns) -> Background {
+    fn moved(&self, things: &[Thing], by: ColumnShift) -> Background {
         let pose = scene::Pose {
             rotation: glam::DQuat::IDENTITY,
             translation_m: by.way_m().extend(0.0),
@@ -102,7 +102,7 @@ pub fn scenery_over(
         })
         .collect();
     // Things of a window keep clear of those of the windows before it.
-    let mut taken = Taken::by(layout.extent(), there.iter().map(|t| &t.form));
+    let mut taken = OccupiedColumns::by(layout.extent(), there.iter().map(|t| &t.form));
     let mut forms: Vec<&Form> = Vec::new();
     for drawn in &drawn {
         let before = forms.len();

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::open;
 use formats::opendrive::{self, RoadNetwork};
-use graph_layout::memory::{Bank, Entry, RoadRef, VERSION};
+use graph_layout::memory::{Bank, RememberedScene, RoadRef, VERSION};
 use scene::{BevLayer, BevLayout, Window};
 use world::draw::{Draw, hash};
 use world::{template, traffic};
@@ -48,7 +48,7 @@ pub fn layout_of(road: &RoadRef) -> anyhow::Result<BevLayout> {
 }
 
 /// Entry `index` of the bank of `seed`: a street with traffic, a quarter of them on the project's own roads.
-fn entry(seed: u64, index: u64, networks: &[(&str, RoadNetwork)]) -> Option<Entry> {
+fn entry(seed: u64, index: u64, networks: &[(&str, RoadNetwork)]) -> Option<RememberedScene> {
     let seed = hash(hash(seed) ^ index);
     let mut draw = Draw::new(seed, "memory");
     let (layout, road) = if draw.chance(SHARE) && !networks.is_empty() {
@@ -81,7 +81,7 @@ fn entry(seed: u64, index: u64, networks: &[(&str, RoadNetwork)]) -> Option<Entr
         works: draw.range(0.0, 1.6),
     };
     let boxes = traffic::place(&layout, seed, &spec);
-    (drivable >= LEAST_DRIVABLE).then(|| Entry::new("", &layout, &boxes, road, seed))
+    (drivable >= LEAST_DRIVABLE).then(|| RememberedScene::new("", &layout, &boxes, road, seed))
 }
 
 /// A bank of `count` scenes; the same arguments give the same bank.
@@ -92,7 +92,7 @@ pub fn make_bank(count: usize, seed: u64) -> anyhow::Result<Bank> {
         .collect();
     let networks = networks?;
     // Some places have too little road: a third more places are tried.
-    let made: Vec<Option<Entry>> = (0..count + count / 3 + 1)
+    let made: Vec<Option<RememberedScene>> = (0..count + count / 3 + 1)
         .into_par_iter()
         .map(|i| entry(seed, i as u64, &networks))
         .collect();
@@ -103,7 +103,7 @@ pub fn make_bank(count: usize, seed: u64) -> anyhow::Result<Bank> {
 }
 
 /// Entries of every .loom file below a folder, and one line for each that could not be read.
-pub fn own_scenes(folder: &Path) -> (Vec<Entry>, Vec<String>) {
+pub fn own_scenes(folder: &Path) -> (Vec<RememberedScene>, Vec<String>) {
     let files = match open::files_below(folder, "loom", "scenes") {
         Ok(files) => files,
         Err(e) => return (Vec::new(), vec![format!("{e:#}")]),
@@ -114,7 +114,7 @@ pub fn own_scenes(folder: &Path) -> (Vec<Entry>, Vec<String>) {
             Ok(scene) => {
                 let (frame, path) = (scene.frame(), path.display().to_string());
                 let road = RoadRef::Scene { path };
-                entries.push(Entry::new(
+                entries.push(RememberedScene::new(
                     &scene.prompt,
                     &frame.layout,
                     &frame.boxes,

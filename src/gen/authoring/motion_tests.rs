@@ -2,7 +2,7 @@
 
 use scene::{BoxId, Class, Edit, Key, Motion, Scene, SceneBox};
 use words::describe::describe;
-use words::hear::{By, Heard};
+use words::hear::{By, CheckedReading};
 use words::notation::parse;
 
 use super::*;
@@ -50,7 +50,7 @@ fn a_motion_of_ours_is_kept() {
     let (scene, _) = made_of("road straight ; add 1 bus ( ahead ego 20m )", 2);
     let say = |scene: &Scene| {
         let line = "go the bus pull_out gap 10m";
-        let heard = Heard {
+        let heard = CheckedReading {
             reading: parse(line).expect("notation"),
             by: By::Hand,
             other: None,
@@ -168,8 +168,8 @@ fn what_cannot_be_is_said_and_the_rest_is_done() {
     assert!(still.clip().is_still());
 }
 
-fn by_hand(line: &str) -> Heard {
-    Heard {
+fn by_hand(line: &str) -> CheckedReading {
+    CheckedReading {
         reading: parse(line).expect("notation"),
         by: By::Hand,
         other: None,

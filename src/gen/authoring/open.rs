@@ -12,7 +12,7 @@ use formats::import::{self, Content};
 use formats::opendrive::RoadNetwork;
 use formats::{atomic, input, loom};
 use scene::{Extent, Frame, Scene, SensorRig, draft};
-use world::scenery::{self, Setting, Side, Style};
+use world::scenery::{self, RoadsideKind, RoadsideStyle, Style};
 use world::terrain::Terrain;
 use world::voxelize::{Vertical, complete};
 use world::{World, template, traffic};
@@ -44,14 +44,14 @@ pub fn save_rig(rig: &SensorRig, path: &Path) -> anyhow::Result<()> {
 }
 
 /// A scene from a file, with notes for the user on how it was read.
-pub struct Opened {
+pub struct OpenedScene {
     /// The scene.
     pub scene: Scene,
     /// Changes made without being asked for, one line each.
     pub notes: Vec<String>,
 }
 
-impl From<Scene> for Opened {
+impl From<Scene> for OpenedScene {
     fn from(scene: Scene) -> Self {
         Self {
             scene,
@@ -66,9 +66,9 @@ pub fn scene(path: &Path) -> anyhow::Result<Scene> {
 }
 
 /// The scene of a file, with notes on how it was read.
-pub fn file(path: &Path) -> anyhow::Result<Opened> {
+pub fn file(path: &Path) -> anyhow::Result<OpenedScene> {
     match import::read(path)?.1 {
-        Content::Scene(loaded) => Ok(Opened {
+        Content::Scene(loaded) => Ok(OpenedScene {
             scene: loaded.scene,
             notes: loaded.notes,
         }),
@@ -308,12 +308,17 @@ pub fn from_template(name: &str, seed: u64) -> Option<Scene> {
 }
 
 /// A complete procedural world of a template, in a setting (none: one that suits the road) and on a terrain.
-pub fn from_template_on(name: &str, seed: u64, setting: Option<Setting>, terrain: Terrain) -> Option<Scene> {
+pub fn from_template_on(
+    name: &str,
+    seed: u64,
+    setting: Option<RoadsideKind>,
+    terrain: Terrain,
+) -> Option<Scene> {
     let mut layout = template::layout(name, seed)?;
     layout.relief = terrain.relief(&layout, seed);
     let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
     let style = match setting {
-        Some(setting) => Style::both(Side::usual(setting)),
+        Some(setting) => Style::both(RoadsideStyle::usual(setting)),
         None => Style::drawn(&layout, seed),
     };
     let background = scenery::background_of(&layout, &boxes, &style, seed);

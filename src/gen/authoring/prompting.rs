@@ -29,7 +29,7 @@ use scene::{BevLayout, BoxId, SceneBox};
 /// Method that places the objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
-pub enum Placer {
+pub enum PlacementMethod {
     /// Rules: every object takes the best free place that what was said allows.
     #[default]
     Rules,
@@ -54,7 +54,7 @@ pub enum Keep {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct How {
     /// Method that places the objects.
-    pub placer: Placer,
+    pub placer: PlacementMethod,
     /// True if open parts of a prompt are filled in from remembered scenes.
     pub memory: bool,
     /// A folder of the user's own scenes, which are remembered too.
@@ -74,7 +74,7 @@ impl How {
     /// were asked for by name are not replaced by others.
     pub fn check(&self) -> anyhow::Result<()> {
         match (self.placer, &self.weights) {
-            (Placer::Diffusion, Some(_)) => network(self).map(drop),
+            (PlacementMethod::Diffusion, Some(_)) => network(self).map(drop),
             _ => Ok(()),
         }
     }
@@ -179,8 +179,8 @@ pub fn lay_out_graph(
         }
     }
     let net = match how.placer {
-        Placer::Rules => None,
-        Placer::Diffusion => match network(how) {
+        PlacementMethod::Rules => None,
+        PlacementMethod::Diffusion => match network(how) {
             Ok(net) => Some(net),
             Err(error) => {
                 notes.push(format!("placed by rules: {error:#}"));
@@ -260,7 +260,7 @@ fn road_for(
         Keep::Objects(boxes) => {
             let first = graphed.graph.nodes.iter().map(|n| n.id + 1).max().unwrap_or(1);
             for (k, b) in boxes.values().enumerate() {
-                graphed.graph.nodes.push(scene::graph::Node {
+                graphed.graph.nodes.push(scene::graph::GraphNode {
                     id: first + k as u32,
                     kind: node_of(b.class),
                     locked: Some(Locked::Box(*b)),
@@ -449,7 +449,7 @@ mod tests {
     #[test]
     fn the_network_places_what_was_said() {
         let how = How {
-            placer: Placer::Diffusion,
+            placer: PlacementMethod::Diffusion,
             ..How::default()
         };
         let said = described("add 3 car ( ahead ego ) and 1 bus ( behind ego )").expect("valid");
@@ -479,6 +479,6 @@ mod tests {
             labels.sort();
             labels
         };
-        assert_eq!(names(Placer::Diffusion), names(Placer::Rules));
+        assert_eq!(names(PlacementMethod::Diffusion), names(PlacementMethod::Rules));
     }
 }

@@ -15,9 +15,9 @@ const TRIES: usize = 4;
 
 /// Road networks to draw places from.
 #[derive(Default)]
-pub struct Roads(Vec<RoadNetwork>);
+pub struct RoadNetworkPool(Vec<RoadNetwork>);
 
-impl Roads {
+impl RoadNetworkPool {
     /// Reads every `.xodr` file below a folder.
     pub fn open(dir: &Path) -> anyhow::Result<Self> {
         let files = open::files_below(dir, "xodr", "OpenDRIVE roads")?;
@@ -61,9 +61,9 @@ mod tests {
     #[test]
     fn a_third_of_the_seeds_stands_on_imported_roads() {
         let dir = tempfile::tempdir().unwrap();
-        assert!(Roads::open(dir.path()).is_err(), "an empty folder");
+        assert!(RoadNetworkPool::open(dir.path()).is_err(), "an empty folder");
         std::fs::write(dir.path().join("a.xodr"), ROAD).unwrap();
-        let roads = Roads::open(dir.path()).unwrap();
+        let roads = RoadNetworkPool::open(dir.path()).unwrap();
         let found: Vec<_> = (0..60).map(|seed| roads.layout(seed)).collect();
         let layouts = found.iter().flatten().count();
         assert!((10..30).contains(&layouts), "{layouts} of 60");
@@ -71,7 +71,7 @@ mod tests {
         assert_eq!(found[..10], (0..10).map(|s| roads.layout(s)).collect::<Vec<_>>());
         let climbing = ROAD.replace("<lanes>", "<elevationProfile><elevation s=\"0\" a=\"9\" b=\"0.05\" c=\"0\" d=\"0\"/></elevationProfile><lanes>");
         std::fs::write(dir.path().join("a.xodr"), climbing).unwrap();
-        let roads = Roads::open(dir.path()).unwrap();
+        let roads = RoadNetworkPool::open(dir.path()).unwrap();
         for layout in (0..20).filter_map(|seed| roads.layout(seed)) {
             let at = |x: f64| layout.relief.height_m(glam::DVec2::new(x, 0.0));
             let grade = (at(8.0) - at(-8.0)) / 16.0;
@@ -80,6 +80,6 @@ mod tests {
                 "the relief comes along: {grade}"
             );
         }
-        assert!((0..60).all(|seed| Roads::default().layout(seed).is_none()));
+        assert!((0..60).all(|seed| RoadNetworkPool::default().layout(seed).is_none()));
     }
 }

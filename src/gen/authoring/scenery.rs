@@ -9,7 +9,7 @@ use job::pipeline::windows_over;
 use nets::scenery::SceneryNet;
 use scene::raster::box_cells;
 use scene::{Background, BevLayer, Class, Extent, Form, Scene, Thing, ThingId, Window};
-use world::scenery::{self, Setting, Side, Style};
+use world::scenery::{self, RoadsideKind, RoadsideStyle, Style};
 
 use super::scenery_around;
 
@@ -20,17 +20,17 @@ pub const TYPICAL_BUILDING: f64 = 0.6;
 
 /// Method that draws scenery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drawer {
+pub enum SceneryMethod {
     /// The rules of the procedural worlds, for a kind of place; none: one that suits the road.
-    Rules(Option<Setting>),
+    Rules(Option<RoadsideKind>),
     /// A small diffusion network that has seen such worlds and looks at the road and at what stays.
     Network,
 }
 
-impl Drawer {
+impl SceneryMethod {
     /// All methods, in the order of lists.
     pub fn all() -> impl Iterator<Item = Self> {
-        let settings = Setting::ALL.map(|setting| Self::Rules(Some(setting)));
+        let settings = RoadsideKind::ALL.map(|setting| Self::Rules(Some(setting)));
         [Self::Rules(None), Self::Network].into_iter().chain(settings)
     }
 
@@ -50,7 +50,7 @@ pub struct SceneryWish {
     /// Fixes every random draw.
     pub seed: u64,
     /// Method that draws it.
-    pub by: Drawer,
+    pub by: SceneryMethod,
     /// Number of plants, 1 = usual there; 0 is none.
     pub green: f64,
     /// Number of buildings, 1 = usual there; 0 is none.
@@ -64,7 +64,7 @@ impl SceneryWish {
     pub fn of_seed(seed: u64) -> Self {
         Self {
             seed,
-            by: Drawer::Rules(None),
+            by: SceneryMethod::Rules(None),
             green: 1.0,
             built: 1.0,
             region: InpaintMask::default(),
@@ -168,11 +168,11 @@ impl SceneryWish {
             }
         }
         let drawn = match self.by {
-            Drawer::Rules(setting) => {
+            SceneryMethod::Rules(setting) => {
                 let style = self.style(scene, setting);
                 scenery::background_of(&frame.layout, &frame.boxes, &style, self.seed)
             }
-            Drawer::Network => self.by_network(scene, columns)?,
+            SceneryMethod::Network => self.by_network(scene, columns)?,
         };
         let drawn: Background = drawn.iter().filter(|t| comes(&t.form)).cloned().collect();
         let known = stays.len();
@@ -200,14 +200,14 @@ impl SceneryWish {
         Ok(drawn.iter().filter(|t| fits(&t.form)).cloned().collect())
     }
 
-    fn style(&self, scene: &Scene, setting: Option<Setting>) -> Style {
-        let wanted = |side: Side| Side {
+    fn style(&self, scene: &Scene, setting: Option<RoadsideKind>) -> Style {
+        let wanted = |side: RoadsideStyle| RoadsideStyle {
             green: side.green * self.green,
             built: side.built * self.built,
             ..side
         };
         let style = match setting {
-            Some(setting) => Style::both(Side::usual(setting)),
+            Some(setting) => Style::both(RoadsideStyle::usual(setting)),
             None => Style::drawn(&scene.frame().layout, self.seed),
         };
         Style {
@@ -298,7 +298,7 @@ mod tests {
     fn wish(seed: u64) -> SceneryWish {
         SceneryWish {
             seed,
-            by: Drawer::Rules(Some(Setting::OldTown)),
+            by: SceneryMethod::Rules(Some(RoadsideKind::OldTown)),
             green: 1.0,
             built: 1.0,
             region: InpaintMask::default(),
@@ -414,7 +414,7 @@ mod tests {
         let nothing = SceneryWish {
             green: 0.0,
             built: 0.0,
-            by: Drawer::Rules(Some(Setting::Country)),
+            by: SceneryMethod::Rules(Some(RoadsideKind::Country)),
             ..wish(3)
         };
         let mut document = Document::new(scene);
@@ -483,7 +483,7 @@ mod tests {
         let scene = open::from_template("straight", 7).expect("a template");
         let region = InpaintMask::of_rect(Extent::WINDOW, DVec2::new(-40.0, -40.0), DVec2::new(10.0, 40.0));
         let by_network = |seed, green| SceneryWish {
-            by: Drawer::Network,
+            by: SceneryMethod::Network,
             green,
             region: region.clone(),
             ..wish(seed)

@@ -9,12 +9,12 @@ use scene::{Background, Extent, Form};
 const ROOM_M: f64 = 1.0;
 
 /// The columns of a map that things stand on, with some room around them.
-pub struct Taken {
+pub struct OccupiedColumns {
     extent: Extent,
     is_taken: Vec<bool>,
 }
 
-impl Taken {
+impl OccupiedColumns {
     /// The columns taken by some forms.
     pub fn by<'a>(extent: Extent, forms: impl IntoIterator<Item = &'a Form>) -> Self {
         let mut out = Self {
@@ -43,7 +43,7 @@ impl Taken {
 
 /// The things that are there, and those of the things drawn on a map that keep clear of them.
 pub fn merged(extent: Extent, there: Background, drawn: &Background) -> Background {
-    let taken = Taken::by(extent, there.iter().map(|t| &t.form));
+    let taken = OccupiedColumns::by(extent, there.iter().map(|t| &t.form));
     let mut out = there;
     for thing in drawn.iter().filter(|t| taken.is_free(&t.form)) {
         out.add(thing.form.clone());

@@ -19,14 +19,14 @@ use words::beside::wishes::scenery;
 use words::carry_out::carry_out;
 use words::conditions::of_style;
 use words::describe::{Described, describe};
-use words::hear::{Heard, hear, hear_objects};
+use words::hear::{CheckedReading, hear, hear_objects};
 use words::reader::Mode;
 use words::reading::Reading;
-use words::stage::{OpenScene, Outcome};
+use words::stage::{OpenScene, ReadingOutcome};
 use world::World;
 
 /// A scene made from a description.
-pub struct Made {
+pub struct DraftedScene {
     /// The scene, its occupancy drafted.
     pub scene: Scene,
     /// Graph, road and places, with how they were made.
@@ -56,14 +56,14 @@ pub fn title(words: &str) -> String {
 #[derive(Clone, Debug)]
 pub struct Prompted {
     /// Result of the readers for the prompt, with its doubts; the reading may have been changed by hand since.
-    pub heard: Heard,
+    pub heard: CheckedReading,
     /// The description of the scene.
     pub described: Described,
 }
 
 impl Prompted {
     /// The description of a reading.
-    pub fn new(heard: Heard) -> Self {
+    pub fn new(heard: CheckedReading) -> Self {
         let described = describe(&heard.reading);
         Self { heard, described }
     }
@@ -90,7 +90,7 @@ impl Prompted {
 }
 
 /// Doubts about how a text was read, one line each.
-pub fn doubts(heard: &Heard) -> Vec<String> {
+pub fn doubts(heard: &CheckedReading) -> Vec<String> {
     use words::answer::sentence;
     let mut out = Vec::new();
     let unsure = heard.unsure.iter().filter_map(|i| heard.reading.acts.get(*i));
@@ -132,12 +132,12 @@ pub fn read(prompt: &str) -> anyhow::Result<Prompted> {
 
 /// Road, objects and ego for a description, all drawn from `seed`. The occupancy is that of a procedural world, as made
 /// by `sceneloom new`.
-pub fn make(prompt: &str, description: &Description, seed: u64, how: &How) -> Made {
+pub fn make(prompt: &str, description: &Description, seed: u64, how: &How) -> DraftedScene {
     made(lay_out(prompt, description, seed, how), seed)
 }
 
 /// A scene of a layout from words; unmet wishes for its background are added to those for the road.
-pub fn made(mut laid: Laid, seed: u64) -> Made {
+pub fn made(mut laid: Laid, seed: u64) -> DraftedScene {
     let relief = &laid.road.layout.relief;
     for b in &mut laid.placement.boxes {
         // On a road that was kept; boxes that were kept too are on its ground already.
@@ -159,7 +159,7 @@ pub fn made(mut laid: Laid, seed: u64) -> Made {
     laid.notes.extend(off.into_iter().chain(told(&clashes(&scene))));
     let edits = beside_new_ground(&before, &scene);
     laid.road.missing.extend(take_over(&edits, &mut scene));
-    Made { scene, laid }
+    DraftedScene { scene, laid }
 }
 
 /// Applies all edits on new ground, or none of them and returns the reason.
@@ -176,9 +176,9 @@ fn take_over(edits: &[Edit], scene: &mut Scene) -> Option<String> {
 #[derive(Clone, Debug)]
 pub struct Edited {
     /// Result of the readers for the text, with its doubts.
-    pub heard: Heard,
+    pub heard: CheckedReading,
     /// Result of the acts: changes, questions, remarks.
-    pub outcome: Outcome,
+    pub outcome: ReadingOutcome,
     /// Result of the clauses on scenery.
     pub things: ThingOutcome,
 }
@@ -248,7 +248,7 @@ pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> anyhow::Result<Edite
 }
 
 /// Carries out a given reading, in the frame of the ego vehicle at the moment that is shown.
-pub fn edited(heard: Heard, scene: &Scene, seed: u64) -> Edited {
+pub fn edited(heard: CheckedReading, scene: &Scene, seed: u64) -> Edited {
     let ego = scene.in_ego();
     let frame = ego.frame();
     let mut outcome = carry_out(&heard.reading, &open_scene(&ego, scene.clip()), seed);

@@ -28,7 +28,7 @@ const MARGIN_M: f64 = 0.3;
 /// The program's LiDAR that made a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Source {
+pub enum SweepSource {
     /// Exact surfaces with the noise, echo strengths and lost echoes of a sensor.
     Surfaces = 0,
     /// The learned LiDAR over the voxels.
@@ -51,7 +51,7 @@ pub struct Return {
 /// One frame.
 pub struct PerceptionFrame {
     /// The LiDAR that made the sweep.
-    pub source: Source,
+    pub source: SweepSource,
     /// The returns in the window.
     pub points: Vec<Return>,
     /// Boxes whose centre lies in the window, each with the number of returns on it.
@@ -72,13 +72,14 @@ pub fn perception_frame(seed: u64, index: u64, roads: impl Fn(u64) -> Option<Bev
 pub(super) fn swept(world: &World, grid: &VoxelGrid, seed: u64) -> PerceptionFrame {
     let mut draw = Draw::new(seed, "perception");
     let rig = mounted(&mut draw);
-    let wanted = [Source::Surfaces, Source::Learned, Source::Voxels][draw.weighted(&[0.5, 0.33, 0.17])];
+    let wanted =
+        [SweepSource::Surfaces, SweepSource::Learned, SweepSource::Voxels][draw.weighted(&[0.5, 0.33, 0.17])];
     let (source, points) = match wanted {
-        Source::Surfaces => (wanted, surfaces(world, &rig.lidars[0], seed)),
-        Source::Voxels => (wanted, voxels(grid, &rig)),
-        Source::Learned => match learned_returns(grid, &rig, seed) {
+        SweepSource::Surfaces => (wanted, surfaces(world, &rig.lidars[0], seed)),
+        SweepSource::Voxels => (wanted, voxels(grid, &rig)),
+        SweepSource::Learned => match learned_returns(grid, &rig, seed) {
             Some(points) => (wanted, points),
-            None => (Source::Voxels, voxels(grid, &rig)),
+            None => (SweepSource::Voxels, voxels(grid, &rig)),
         },
     };
     PerceptionFrame::new(source, points, &world.boxes, grid)
@@ -152,7 +153,7 @@ fn of_point(point: &LidarPoint) -> Return {
 impl PerceptionFrame {
     /// A frame of a sweep in a scene; returns and boxes outside the window are left out.
     pub fn new(
-        source: Source,
+        source: SweepSource,
         mut points: Vec<Return>,
         boxes: &BTreeMap<BoxId, SceneBox>,
         grid: &VoxelGrid,

@@ -90,7 +90,7 @@ pub enum ScheduleError {
 
 /// One noise level: a state there is `alpha * data + sigma * noise` with alpha^2 + sigma^2 = 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Level {
+pub struct NoiseLevel {
     /// The training step that a network is told; -1 for clean data.
     pub t: f64,
     /// log(alpha^2); 0 for clean data, minus infinity for pure noise.
@@ -101,9 +101,9 @@ pub struct Level {
     pub sigma: f64,
 }
 
-impl Level {
+impl NoiseLevel {
     /// Clean data.
-    pub const CLEAN: Level = Level {
+    pub const CLEAN: NoiseLevel = NoiseLevel {
         t: -1.0,
         log_alpha_bar: 0.0,
         alpha: 1.0,
@@ -111,8 +111,8 @@ impl Level {
     };
 
     /// The level of log(alpha^2), which is at most 0 and may be minus infinity.
-    pub fn from_log_alpha_bar(t: f64, log_alpha_bar: f64) -> Level {
-        Level {
+    pub fn from_log_alpha_bar(t: f64, log_alpha_bar: f64) -> NoiseLevel {
+        NoiseLevel {
             t,
             log_alpha_bar,
             alpha: (0.5 * log_alpha_bar).exp(),
@@ -164,8 +164,8 @@ impl Schedule {
     }
 
     /// The level of training step `t`. Panics if `t` is not below [`Schedule::train_steps`].
-    pub fn level(&self, t: usize) -> Level {
-        Level::from_log_alpha_bar(t as f64, self.log_alpha_bar[t])
+    pub fn level(&self, t: usize) -> NoiseLevel {
+        NoiseLevel::from_log_alpha_bar(t as f64, self.log_alpha_bar[t])
     }
 
     /// The training steps of `n` sampling steps, strictly decreasing.
@@ -202,7 +202,7 @@ impl Schedule {
     }
 
     /// `n` levels spaced evenly over the training steps below `top`, noisiest first, then clean data.
-    pub fn levels_below(&self, top: usize, n: usize) -> Result<Vec<Level>, ScheduleError> {
+    pub fn levels_below(&self, top: usize, n: usize) -> Result<Vec<NoiseLevel>, ScheduleError> {
         let below = Self {
             log_alpha_bar: self.log_alpha_bar[..top.min(self.train_steps())].to_vec(),
         };
@@ -210,13 +210,13 @@ impl Schedule {
     }
 
     /// The `n + 1` levels that a sampler visits, from noise to clean data.
-    pub fn levels(&self, n: usize, spacing: Spacing) -> Result<Vec<Level>, ScheduleError> {
-        let mut levels: Vec<Level> = self
+    pub fn levels(&self, n: usize, spacing: Spacing) -> Result<Vec<NoiseLevel>, ScheduleError> {
+        let mut levels: Vec<NoiseLevel> = self
             .timesteps(n, spacing)?
             .into_iter()
             .map(|t| self.level(t))
             .collect();
-        levels.push(Level::CLEAN);
+        levels.push(NoiseLevel::CLEAN);
         Ok(levels)
     }
 }
@@ -291,7 +291,7 @@ mod tests {
     fn row_01_sigma_near_the_clean_end() {
         for exponent in 30..=80 {
             let log = -(10f64.powf(-f64::from(exponent) / 10.0));
-            let level = Level::from_log_alpha_bar(0.0, log);
+            let level = NoiseLevel::from_log_alpha_bar(0.0, log);
             // 1 - e^x = -x (1 + x/2 + x^2/6 + ...): all digits for small x.
             let series = 1.0
                 + log / 2.0 * (1.0 + log / 3.0 * (1.0 + log / 4.0 * (1.0 + log / 5.0 * (1.0 + log / 6.0))));

@@ -16,7 +16,7 @@ use nets::layout::input::{VALUES, box_of, input_of, kind_of, line_of, map_raster
 use nets::layout::net::{Embedded, LayoutNet, MOST_NODES};
 use nn::weights::WeightsError;
 use numeric::philox::{Stream, normal_field};
-use scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectState, SceneGraph};
+use scene::graph::{GraphEdge, LaneRole, Locked, NodeKind, ObjectState, SceneGraph};
 use scene::raster::{draw_polyline, line_cells};
 use scene::road_map::RoadMap;
 use scene::{BevLayer, BevLayout, BoxId, Class, Polyline, PolylineKind, SceneBox};
@@ -129,7 +129,7 @@ pub fn with_road(graph: &SceneGraph, road: &RoadMap) -> SceneGraph {
     add_road(&mut out, road);
     let mut same: BTreeMap<u32, u32> = BTreeMap::new();
     for said in &graph.nodes {
-        let fits = |found: &&scene::graph::Node| match (&said.kind, &found.kind) {
+        let fits = |found: &&scene::graph::GraphNode| match (&said.kind, &found.kind) {
             (NodeKind::Lane { role: a, polyline: p }, NodeKind::Lane { role: b, polyline: q }) => {
                 a == b && (p.is_none() || p == q)
             }
@@ -146,7 +146,7 @@ pub fn with_road(graph: &SceneGraph, road: &RoadMap) -> SceneGraph {
     out.nodes.retain(|n| !same.contains_key(&n.id));
     let of = |id: u32| same.get(&id).copied().unwrap_or(id);
     for e in &mut out.edges {
-        *e = Edge {
+        *e = GraphEdge {
             from: of(e.from),
             to: of(e.to),
             and: e.and.map(of),
@@ -213,7 +213,7 @@ pub fn place_with(
 
 /// Objects whose box is given.
 pub fn locked_objects(graph: &SceneGraph) -> BTreeSet<u32> {
-    let given = |n: &&scene::graph::Node| matches!(n.locked, Some(Locked::Box(_)));
+    let given = |n: &&scene::graph::GraphNode| matches!(n.locked, Some(Locked::Box(_)));
     graph.nodes.iter().filter(given).map(|n| n.id).collect()
 }
 

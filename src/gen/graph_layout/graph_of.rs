@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use scene::graph::{
-    Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
+    GraphEdge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
 };
 use scene::relations::{PlacedGraph, STANDING_MPS};
 use scene::road_map::RoadMap;
@@ -154,7 +154,7 @@ fn statements(
     boxes: &BTreeMap<u32, SceneBox>,
     road: &RoadMap,
     draw: &mut Draw,
-) -> Vec<Edge> {
+) -> Vec<GraphEdge> {
     let placed = PlacedGraph { graph, boxes, road };
     let surroundings: Vec<u32> = graph
         .nodes
@@ -171,19 +171,19 @@ fn statements(
             .collect();
         others.sort_by(|a, b| a.0.total_cmp(&b.0));
         let neighbours: Vec<u32> = others.iter().take(NEIGHBOURS).map(|o| o.1).collect();
-        let mut found: Vec<(f64, Edge)> = Vec::new();
+        let mut found: Vec<(f64, GraphEdge)> = Vec::new();
         for to in surroundings.iter().chain(&neighbours) {
             for relation in RelationKind::ALL {
-                let edge = Edge::new(*id, relation, *to);
+                let edge = GraphEdge::new(*id, relation, *to);
                 if relation != RelationKind::Between && placed.satisfied(&edge) {
                     found.push((weight(relation), edge));
                 }
             }
         }
         if let [a, c, ..] = neighbours[..] {
-            let edge = Edge {
+            let edge = GraphEdge {
                 and: Some(c),
-                ..Edge::new(*id, RelationKind::Between, a)
+                ..GraphEdge::new(*id, RelationKind::Between, a)
             };
             if placed.satisfied(&edge) {
                 found.push((1.0, edge));
@@ -212,7 +212,7 @@ fn statements(
 }
 
 /// The distance that the statement could state, m.
-fn measured(placed: &PlacedGraph<'_>, edge: &Edge) -> Option<f64> {
+fn measured(placed: &PlacedGraph<'_>, edge: &GraphEdge) -> Option<f64> {
     let (from, (to, at)) = (placed.thing(edge.from)?.0, placed.thing(edge.to)?);
     let (axis, d) = (scene::relations::course(&to), from.center_m.truncate() - at);
     Some(match edge.relation {

@@ -79,7 +79,7 @@ impl RoadRef {
 /// A remembered scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Entry {
+pub struct RememberedScene {
     /// Description as a person would give it.
     pub text: String,
     /// The facts of the description.
@@ -89,7 +89,7 @@ pub struct Entry {
     boxes: Vec<[f64; 9]>, // class id, x, y, z, length, width, height, yaw, speed
 }
 
-impl Entry {
+impl RememberedScene {
     /// An entry for a scene. `told` is its author's text; a description is added.
     pub fn new(
         told: &str,
@@ -170,7 +170,7 @@ pub struct Bank {
     /// The format: [`VERSION`].
     pub version: u32,
     /// Scenes.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<RememberedScene>,
 }
 
 impl Bank {
@@ -194,7 +194,7 @@ impl Bank {
 
 /// Statements of a prompt; parts that are `None` or absent are open.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Open {
+pub struct RetrievalQuery {
     /// The prompt.
     pub text: String,
     /// Kind of road.
@@ -240,16 +240,16 @@ pub struct Proposal {
 }
 
 /// Entries with their vectors.
-pub struct Memory {
+pub struct SceneMemory {
     encoder: Arc<TextEncoder>,
-    entries: Vec<Entry>,
+    entries: Vec<RememberedScene>,
     vectors: Vec<Vec<f32>>,
 }
 
-impl Memory {
+impl SceneMemory {
     /// The bundled bank with the shipped encoder, made once.
     pub fn bundled() -> Result<Arc<Self>, MemoryError> {
-        static MEMORY: OnceLock<Arc<Memory>> = OnceLock::new();
+        static MEMORY: OnceLock<Arc<SceneMemory>> = OnceLock::new();
         if let Some(memory) = MEMORY.get() {
             return Ok(memory.clone());
         }
@@ -258,7 +258,7 @@ impl Memory {
     }
 
     /// A memory of these entries. Errors, as in all functions below that encode a text, if the encoder cannot compute.
-    pub fn new(encoder: Arc<TextEncoder>, entries: Vec<Entry>) -> Result<Self, MemoryError> {
+    pub fn new(encoder: Arc<TextEncoder>, entries: Vec<RememberedScene>) -> Result<Self, MemoryError> {
         let vectors = entries.iter().map(|e| encoder.encode(&e.text));
         Ok(Self {
             vectors: vectors.collect::<Result<_, _>>()?,
@@ -268,14 +268,14 @@ impl Memory {
     }
 
     /// A memory of the entries and these in addition: the user's own scenes.
-    pub fn with(&self, more: Vec<Entry>) -> Result<Self, MemoryError> {
+    pub fn with(&self, more: Vec<RememberedScene>) -> Result<Self, MemoryError> {
         let mut entries = self.entries.clone();
         entries.extend(more);
         Self::new(self.encoder.clone(), entries)
     }
 
     /// All entries.
-    pub fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[RememberedScene] {
         &self.entries
     }
 
@@ -288,7 +288,7 @@ impl Memory {
         &self,
         text: &str,
         k: usize,
-        penalty: impl Fn(&Entry) -> f64,
+        penalty: impl Fn(&RememberedScene) -> f64,
     ) -> Result<Vec<Retrieved>, MemoryError> {
         let wanted = self.encoder.encode(text)?;
         let mut all: Vec<Retrieved> = self
@@ -313,7 +313,7 @@ impl Memory {
 
     /// Proposes the open parts of a prompt, from the [`NEAREST`] entries; the entry that gives the road is drawn from
     /// `seed` in proportion to exp(score / 0.1). `None` if the memory is empty.
-    pub fn fill_in(&self, open: &Open, seed: u64) -> Result<Option<Proposal>, MemoryError> {
+    pub fn fill_in(&self, open: &RetrievalQuery, seed: u64) -> Result<Option<Proposal>, MemoryError> {
         const SHARPNESS: f64 = 0.1;
         let from = self.ranked(&open.text, NEAREST, |e| contradictions(open, &e.facts))?;
         let Some(best) = from.first().map(|r| r.score) else {
@@ -378,7 +378,7 @@ impl Memory {
 }
 
 /// Penalty for the contradictions between an entry and the prompt.
-fn contradictions(open: &Open, facts: &Facts) -> f64 {
+fn contradictions(open: &RetrievalQuery, facts: &Facts) -> f64 {
     let mut out = 0.0;
     let mut against = |says: bool, weight: f64| out += if says { weight } else { 0.0 };
     against(open.road.is_some_and(|r| r != facts.road), 0.5);

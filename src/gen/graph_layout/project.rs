@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec2;
 use serde::Serialize;
 
-use scene::graph::{Edge, ObjectState, RelationKind, SceneGraph};
+use scene::graph::{GraphEdge, ObjectState, RelationKind, SceneGraph};
 use scene::relations::{PlacedGraph, ego_box, overlap_m};
 use scene::road_map::RoadMap;
 use scene::{BevLayer, Class, SceneBox};
@@ -43,7 +43,7 @@ pub struct Projection {
     /// Objects for which no place was left: they are removed, rather than overlap another.
     pub dropped: Vec<u32>,
     /// Statements that do not hold.
-    pub broken: Vec<Edge>,
+    pub broken: Vec<GraphEdge>,
     /// Number of statements that were judged.
     pub stated: usize,
 }
@@ -68,7 +68,7 @@ struct Repair<'a> {
     boxes: BTreeMap<u32, SceneBox>,
     locked: BTreeSet<u32>,
     /// Statements that name a node.
-    about: BTreeMap<u32, Vec<Edge>>,
+    about: BTreeMap<u32, Vec<GraphEdge>>,
     /// Faults that a search through all places could not repair: it is not repeated unless they become worse.
     exhausted: BTreeMap<u32, Fault>,
 }
@@ -136,7 +136,7 @@ pub fn project(
         }
     }
     let placed = repair.placed();
-    let judged = |e: &&Edge| graph.object(e.from).is_some();
+    let judged = |e: &&GraphEdge| graph.object(e.from).is_some();
     out.stated = graph.edges.iter().filter(judged).count();
     out.broken = graph
         .edges
@@ -149,8 +149,8 @@ pub fn project(
     out
 }
 
-fn about(graph: &SceneGraph) -> BTreeMap<u32, Vec<Edge>> {
-    let mut out: BTreeMap<u32, Vec<Edge>> = BTreeMap::new();
+fn about(graph: &SceneGraph) -> BTreeMap<u32, Vec<GraphEdge>> {
+    let mut out: BTreeMap<u32, Vec<GraphEdge>> = BTreeMap::new();
     for e in &graph.edges {
         let named: BTreeSet<u32> = [Some(e.from), Some(e.to), e.and].into_iter().flatten().collect();
         named
@@ -197,7 +197,7 @@ impl Repair<'_> {
         order
     }
 
-    fn edges(&self, id: u32) -> impl Iterator<Item = &Edge> {
+    fn edges(&self, id: u32) -> impl Iterator<Item = &GraphEdge> {
         self.about
             .get(&id)
             .into_iter()

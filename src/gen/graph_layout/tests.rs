@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use crate::diffuse::{lay_out, place_by_diffusion};
 use crate::facts::Facts;
-use crate::memory::{Memory, Open};
-use nets::layout::input::{EdgeInput, LayoutInput, NodeInput, Shape, VALUES};
+use crate::memory::{RetrievalQuery, SceneMemory};
+use nets::layout::input::{EdgeInput, LayoutInput, NodeGeometry, NodeInput, VALUES};
 use nets::layout::net::LayoutNet;
 use nets::text::{TOKENS, TextEncoder, cosine, token_ids};
 use safetensors::{Dtype, SafeTensors};
@@ -72,7 +72,7 @@ fn input(golden: &Golden, task: &str) -> LayoutInput {
             kind: n[0] as u8,
             state: n[1] as u8,
             size: n[2] as u8,
-            shape: [Shape::None, Shape::Box, Shape::Line][n[3] as usize],
+            shape: [NodeGeometry::None, NodeGeometry::Box, NodeGeometry::Line][n[3] as usize],
             locked: n[4] == 1,
             values: v.try_into().expect("24 values"),
         });
@@ -255,28 +255,28 @@ fn a_road_is_made_where_none_is_given() {
 
 #[test]
 fn memory_fills_in_what_is_left_open() {
-    let memory = Memory::bundled().expect("the shipped bank");
+    let memory = SceneMemory::bundled().expect("the shipped bank");
     assert!(memory.entries().len() >= 100);
     let nearest = memory
         .nearest("a roundabout at night in the rain", 8)
         .expect("encoded");
     assert!(nearest.windows(2).all(|w| w[0].score >= w[1].score));
-    let open = Open {
+    let open = RetrievalQuery {
         text: "roundabout, a bus".into(),
         night: Some(true),
         counts: BTreeMap::from([(Class::Bus, 1)]),
-        ..Open::default()
+        ..RetrievalQuery::default()
     };
-    let fill_in = |open: &Open, seed: u64| memory.fill_in(open, seed).expect("encoded");
+    let fill_in = |open: &RetrievalQuery, seed: u64| memory.fill_in(open, seed).expect("encoded");
     let proposal = fill_in(&open, 3).expect("entries");
     assert_eq!(fill_in(&open, 3), Some(proposal.clone()));
     assert!(proposal.night == Some(true) && !proposal.counts.contains_key(&Class::Bus));
     // Without being asked for, only objects that most of the retrieved scenes have are filled in.
     let (mut agreed, mut open_left) = (0, 0);
     for entry in memory.entries().iter().take(40) {
-        let open = Open {
+        let open = RetrievalQuery {
             text: entry.text.clone(),
-            ..Open::default()
+            ..RetrievalQuery::default()
         };
         let found = fill_in(&open, 3).expect("entries");
         let says = |f: &dyn Fn(&Facts) -> bool| {
@@ -292,9 +292,9 @@ fn memory_fills_in_what_is_left_open() {
     }
     assert!(agreed > 0 && open_left > 0, "{agreed} {open_left}");
     for text in ["", "🚌🚌🚌", &"very long ".repeat(2000), "zwei Busse im Regen"] {
-        let open = Open {
+        let open = RetrievalQuery {
             text: text.into(),
-            ..Open::default()
+            ..RetrievalQuery::default()
         };
         assert!(fill_in(&open, 1).is_some());
     }

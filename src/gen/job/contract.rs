@@ -16,7 +16,7 @@ use scene::{Scene, SceneRev, VoxelGrid};
 
 use crate::product::Event;
 
-pub use super::params::{GenParams, Named, Quality, RegionMode};
+pub use super::params::{ChosenDensities, GenParams, Quality, RegionMode};
 pub use nn::Precision;
 
 /// Input of a pipeline.

@@ -1,7 +1,7 @@
 //! Voxels that an edit invented: above the ground in the edited region, and in neither the source nor the request.
 
 use crate::region::Region;
-use crate::request::Request;
+use crate::request::VoxelRequest;
 use scene::{Class, Frame, VoxelGrid, Window};
 
 /// Counts of one edit, in voxels.
@@ -22,11 +22,11 @@ impl Invented {
     /// Counts the invented voxels of an edited frame with its occupancy after the edit; only the region's columns
     /// count.
     pub fn count(frame: &Frame, after: &VoxelGrid, region: &Region) -> Self {
-        Self::of_request(&Request::of(frame), frame, after, region)
+        Self::of_request(&VoxelRequest::of(frame), frame, after, region)
     }
 
     /// Counts as [`count`](Self::count), with a given request.
-    pub fn of_request(request: &Request<'_>, frame: &Frame, after: &VoxelGrid, region: &Region) -> Self {
+    pub fn of_request(request: &VoxelRequest<'_>, frame: &Frame, after: &VoxelGrid, region: &Region) -> Self {
         let source = &frame.source.occupancy;
         let mut out = Self::default();
         request.each_invented(after, region, |x, y, z, label| {
@@ -112,7 +112,7 @@ mod tests {
         let mut frame = removal();
         let region = Region::of_edit(&frame, 2);
         // A column of the region beside what was edited: nobody observed it, and the labels are free there.
-        let at = (0..Window::COLUMNS).find(|c| region.columns[*c] && !Request::of(&frame).edited(*c));
+        let at = (0..Window::COLUMNS).find(|c| region.columns[*c] && !VoxelRequest::of(&frame).edited(*c));
         let at = at.expect("the halo");
         let mut observed = vec![true; Window::VOXELS];
         (0..Window::NZ).for_each(|z| observed[at * Window::NZ + z] = false);

@@ -3,7 +3,7 @@
 
 use super::inpaint::InpaintMask;
 use super::region::Region;
-use super::request::{Request, stands};
+use super::request::{VoxelRequest, stands};
 use scene::{BevLayer, Class, Extent, Frame, VoxelGrid, Window, draft};
 
 /// Removes invented voxels (see [`Request::each_invented`]) from `generated` on roads and car parks, and where a box of
@@ -14,7 +14,7 @@ pub fn keep_clear(
     frame: &Frame,
     region: &Region,
     inpaint: &InpaintMask,
-    request: &Request<'_>,
+    request: &VoxelRequest<'_>,
     generated: &mut VoxelGrid,
 ) -> usize {
     let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
@@ -57,7 +57,7 @@ pub fn keep_unobserved(
     frame: &Frame,
     region: &Region,
     inpaint: &InpaintMask,
-    request: &Request<'_>,
+    request: &VoxelRequest<'_>,
     generated: &mut VoxelGrid,
 ) -> usize {
     let Some(unobserved) = &frame.inferred.unobserved else {
@@ -84,7 +84,7 @@ pub fn keep_unobserved(
 
 /// Observed voxels, as the decoder takes them (`Unobserved::observed`). In columns that the user edited and in cells of
 /// `inpaint` no voxel counts as observed. `None` if the frame has no masks.
-pub fn observed_still(frame: &Frame, inpaint: &InpaintMask, request: &Request<'_>) -> Option<Vec<u32>> {
+pub fn observed_still(frame: &Frame, inpaint: &InpaintMask, request: &VoxelRequest<'_>) -> Option<Vec<u32>> {
     let mut observed = frame.inferred.unobserved.as_ref()?.observed();
     for (c, told) in observed.iter_mut().enumerate() {
         let (x, y) = (c / Window::NY, c % Window::NY);
@@ -124,7 +124,7 @@ mod tests {
         (0..9).for_each(|z| generated.set(x, y, z, Class::Vegetation.id()));
         (0..4).for_each(|z| generated.set(hx, hy, z, Class::Manmade.id()));
         generated.set(x + 3, y, 2, Class::Car.id());
-        let request = Request::of(&frame);
+        let request = VoxelRequest::of(&frame);
         let none = InpaintMask::default();
         let before = Invented::of_request(&request, &frame, &generated, &region);
         assert_eq!(
@@ -171,13 +171,14 @@ mod tests {
         let mut generated = draft::draft(&frame.layout, frame.boxes.values());
         let ([x, y], [hx, hy]) = (at(10.0, 0.0), at(10.0, 1.9));
         assert!(
-            region.columns[hx * Window::NY + hy] && !Request::of(&frame).left_by_a_box(hx * Window::NY + hy)
+            region.columns[hx * Window::NY + hy]
+                && !VoxelRequest::of(&frame).left_by_a_box(hx * Window::NY + hy)
         );
         for (x, y) in [(x, y), (hx, hy)] {
             (0..5).for_each(|z| generated.set(x, y, z, Class::Vegetation.id()));
         }
         let none = InpaintMask::default();
-        let cleared = keep_clear(&frame, &region, &none, &Request::of(&frame), &mut generated);
+        let cleared = keep_clear(&frame, &region, &none, &VoxelRequest::of(&frame), &mut generated);
         assert_eq!(cleared, 5);
         assert_eq!(generated.get(x, y, 0), Class::Terrain.id());
         assert_eq!(generated.get(hx, hy, 2), Class::Vegetation.id());
@@ -193,7 +194,7 @@ mod tests {
         let clean = draft::draft(&frame.layout, frame.boxes.values());
         let mut masked = frame.clone();
         masked.inferred.unobserved = Unobserved::from_observed(&vec![false; Window::VOXELS]);
-        let request = Request::of(&masked);
+        let request = VoxelRequest::of(&masked);
         let none = InpaintMask::default();
         let halo = (0..Window::COLUMNS).filter(|c| region.columns[*c] && !request.edited(*c));
         let halo = halo.count();

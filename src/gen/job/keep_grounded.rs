@@ -3,7 +3,7 @@
 
 use super::composite::composite;
 use super::region::Region;
-use super::request::Request;
+use super::request::VoxelRequest;
 use scene::draft::{ground_bin, ground_class};
 use scene::raster::box_cells;
 use scene::support::{
@@ -29,7 +29,7 @@ pub fn keep_grounded(
     frame: &Frame,
     region: &Region,
     all: bool,
-    request: &Request<'_>,
+    request: &VoxelRequest<'_>,
     generated: &mut VoxelGrid,
 ) -> Grounded {
     let mut out = Grounded::default();
@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn what_hangs_gets_a_stem_or_goes_and_cars_need_a_box() {
         let (frame, mut generated, region) = scene();
-        let request = Request::of(&frame);
+        let request = VoxelRequest::of(&frame);
         let boxed = request_voxels(&frame, &generated);
         let found = keep_grounded(&frame, &region, false, &request, &mut generated);
         let stem = (1..7).filter(|z| generated.get(121, 121, *z) == Class::Vegetation.id());
@@ -174,7 +174,7 @@ mod tests {
     fn nothing_changes_outside_the_region() {
         let (frame, mut generated, _) = scene();
         let before = generated.clone();
-        let request = Request::of(&frame);
+        let request = VoxelRequest::of(&frame);
         let found = keep_grounded(&frame, &Region::empty(), false, &request, &mut generated);
         assert_eq!((found, generated), (Grounded::default(), before));
     }

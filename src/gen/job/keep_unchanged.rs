@@ -4,7 +4,7 @@
 
 use super::inpaint::InpaintMask;
 use super::region::Region;
-use super::request::Request;
+use super::request::VoxelRequest;
 use scene::raster::box_cells;
 use scene::{Extent, Frame, VoxelGrid, Window};
 
@@ -19,7 +19,7 @@ pub fn keep_unchanged(
     frame: &Frame,
     region: &Region,
     inpaint: &InpaintMask,
-    request: &Request<'_>,
+    request: &VoxelRequest<'_>,
     decoded: &VoxelGrid,
     generated: &mut VoxelGrid,
 ) -> usize {
@@ -76,7 +76,7 @@ mod tests {
         generated.set(90, 90, 1, Class::FREE); // a change: it stays
         generated.set(92, 90, 0, Class::DriveableSurface.id()); // so does what is in an edited column
         let region = Region::of_edit(&frame, 2);
-        let request = Request::of(&frame);
+        let request = VoxelRequest::of(&frame);
         let mut found = generated.clone();
         let none = InpaintMask::default();
         assert_eq!(

@@ -43,7 +43,7 @@ pub fn drawn_scenery(
     };
     let sampler = Sampler::standard(SolverKind::Ddim, STEPS, Guidance::NONE)?;
     let start = normal_field(seed, Stream::Scenery, CELLS, NUMBERS);
-    let mut drawing = Drawing {
+    let mut drawing = SceneryDenoiser {
         net: net.clone(),
         condition,
     };
@@ -97,12 +97,12 @@ fn extrude(numbers: &[f64], cell: usize, condition: &SceneryCondition, grid: &mu
 }
 
 /// The network as a sampler sees it.
-struct Drawing {
+struct SceneryDenoiser {
     net: Arc<SceneryNet>,
     condition: SceneryCondition,
 }
 
-impl Denoiser for Drawing {
+impl Denoiser for SceneryDenoiser {
     type Error = GenError;
 
     fn predict(&mut self, x: &[f64], t: f64, _: Branch) -> Result<Vec<f64>, GenError> {

@@ -36,7 +36,7 @@ pub enum Quality {
 /// scene the networks decide them (except completeness, which is 1 there).
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Named {
+pub struct ChosenDensities {
     /// Density of vegetation.
     pub vegetation: Option<f32>,
     /// Density of buildings.
@@ -47,7 +47,7 @@ pub struct Named {
     pub completeness: Option<f32>,
 }
 
-impl Named {
+impl ChosenDensities {
     /// The values in the networks' order.
     pub fn values(&self) -> [Option<f32>; 4] {
         [self.vegetation, self.building, self.clutter, self.completeness]
@@ -116,7 +116,7 @@ pub struct GenParams {
     /// Quality of the result.
     pub quality: Quality,
     /// Densities and completeness that the user chose.
-    pub named: Named,
+    pub named: ChosenDensities,
     /// True to correct the networks where they ignore the user: for example, puts in the draft of a placed box that is
     /// mostly missing.
     pub keep_objects: bool,
@@ -141,7 +141,7 @@ impl Default for GenParams {
             reuse_steps: 1,
             fine_steps: 2,
             quality: Quality::Final,
-            named: Named::default(),
+            named: ChosenDensities::default(),
             keep_objects: true,
         }
     }
@@ -161,9 +161,9 @@ impl GenParams {
             region: RegionMode::Full,
             steps: 20,
             guidance: 1.5,
-            named: Named {
+            named: ChosenDensities {
                 completeness: Some(1.0),
-                ..Named::default()
+                ..ChosenDensities::default()
             },
             ..Self::default()
         }

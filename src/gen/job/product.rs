@@ -91,12 +91,12 @@ impl Orders {
 }
 
 /// A job on its way to the thread.
-type Waiting<R> = (JobId, Handed<R>);
+type QueuedJob<R> = (JobId, Handed<R>);
 
 /// Owns the thread of one kind of product. Dropping it stops the running job and waits for the thread.
 pub struct Worker<R, U> {
     name: &'static str,
-    jobs: Option<Sender<Waiting<R>>>, // None only while dropping
+    jobs: Option<Sender<QueuedJob<R>>>, // None only while dropping
     updates: Receiver<Event<U>>,
     orders: Arc<Orders>,
     thread: Option<JoinHandle<()>>,
@@ -189,7 +189,7 @@ impl<U> Outbox<U> {
 }
 
 fn work<P: Product>(
-    jobs: &Receiver<Waiting<P::Request>>,
+    jobs: &Receiver<QueuedJob<P::Request>>,
     orders: &Orders,
     outbox: &Outbox<P::Update>,
     mut product: P,

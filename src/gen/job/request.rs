@@ -13,7 +13,7 @@ pub const OVERHANG_M: f64 = Window::VOXEL_M;
 const OBJECTS: usize = Class::OBJECTS.len();
 
 /// Voxels and columns of a frame that the user's boxes, paint and edits ask for.
-pub struct Request<'a> {
+pub struct VoxelRequest<'a> {
     frame: &'a Frame,
     /// `[x][y]`: number of bins from the lowest up that each object class (ids 1 to 10) may fill.
     heights: Vec<[u8; OBJECTS]>,
@@ -24,7 +24,7 @@ pub struct Request<'a> {
     edited: Vec<bool>,
 }
 
-impl<'a> Request<'a> {
+impl<'a> VoxelRequest<'a> {
     /// The request of a frame and its source.
     pub fn of(frame: &'a Frame) -> Self {
         let mut heights = vec![[0; OBJECTS]; Window::COLUMNS];
@@ -160,7 +160,7 @@ pub(crate) mod tests {
     fn boxes_and_paint_are_asked_for_and_what_was_removed_is_not() {
         let mut frame = removal();
         frame.painted.set(5, 5, 5, Class::Vegetation.id());
-        let request = Request::of(&frame);
+        let request = VoxelRequest::of(&frame);
         let [x, y] = Window::column_at(-10.0, 0.0).expect("inside");
         assert!(request.holds(x, y, 3, Class::Car.id()));
         assert!(!request.holds(x, y, 3, Class::Truck.id()), "a car was asked for");

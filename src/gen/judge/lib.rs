@@ -13,12 +13,12 @@ pub mod table;
 pub mod trials;
 
 /// Receives how far a measurement is.
-pub trait Progress: Sync {
+pub trait MeasurementProgress: Sync {
     /// `step` of `steps` of `stage` are done.
     fn at(&self, stage: &str, step: usize, steps: usize);
 }
 
 /// Implementation that ignores progress.
-impl Progress for () {
+impl MeasurementProgress for () {
     fn at(&self, _: &str, _: usize, _: usize) {}
 }

@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::origin::Origin;
-use crate::suite::{Options, Report, Suite};
+use crate::suite::{Options, Suite, SuiteReport};
 
 /// A figure of a suite.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct FigureRow {
     /// Name of the figure.
     pub figure: String,
     /// Its value; `None` if the run was too small to give one.
@@ -26,7 +26,7 @@ pub struct Row {
 }
 
 /// Outcome of a suite.
-pub struct Table {
+pub struct MeasuredSuite {
     /// Its name.
     pub name: &'static str,
     /// Its title.
@@ -36,11 +36,11 @@ pub struct Table {
     /// Time it took, s.
     pub wall_s: f64,
     /// Report and rows, or one line that says why it was not measured.
-    pub found: Result<(Report, Vec<Row>), String>,
+    pub found: Result<(SuiteReport, Vec<FigureRow>), String>,
 }
 
 /// The row of a value of a report: a number, a mean with the half width of its interval, or a share with its interval.
-fn row(figure: &str, value: Option<&Value>) -> Row {
+fn row(figure: &str, value: Option<&Value>) -> FigureRow {
     let number = |name: &str| value.and_then(|v| v.get(name)?.as_f64());
     let plain = value.and_then(Value::as_f64);
     let around = number("mean")
@@ -49,7 +49,7 @@ fn row(figure: &str, value: Option<&Value>) -> Row {
     let n = value.and_then(|v| v.get("n")?.as_u64());
     if n == Some(0) {
         // A mean over no values is left out.
-        return Row {
+        return FigureRow {
             figure: figure.to_owned(),
             value: None,
             interval: None,
@@ -57,7 +57,7 @@ fn row(figure: &str, value: Option<&Value>) -> Row {
             least: None,
         };
     }
-    Row {
+    FigureRow {
         figure: figure.to_owned(),
         value: plain.or_else(|| number("mean")).or_else(|| number("share")),
         interval: around.or_else(|| number("low").zip(number("high")).map(|(low, high)| [low, high])),
@@ -67,12 +67,12 @@ fn row(figure: &str, value: Option<&Value>) -> Row {
 }
 
 /// The figures of a suite that are shown, then its bars.
-fn rows(suite: &Suite, report: &Report) -> Vec<Row> {
+fn rows(suite: &Suite, report: &SuiteReport) -> Vec<FigureRow> {
     let shown = suite
         .figures
         .iter()
         .map(|(name, at)| row(name, report.json.pointer(at)));
-    let bars = report.bars.iter().map(|(name, found, least)| Row {
+    let bars = report.bars.iter().map(|(name, found, least)| FigureRow {
         figure: (*name).to_owned(),
         value: found.is_finite().then_some(*found),
         interval: None,
@@ -134,13 +134,13 @@ fn command(suite: &Suite, options: &Options) -> String {
 pub fn measure_all(
     suites: impl Iterator<Item = &'static Suite>,
     options: &dyn Fn(&Suite) -> Options,
-    progress: &dyn Progress,
-) -> Vec<Table> {
+    progress: &dyn MeasurementProgress,
+) -> Vec<MeasuredSuite> {
     let measure = |suite: &'static Suite| {
         let options = options(suite);
         let start = Instant::now();
         let found = suite.measure(&options, progress);
-        Table {
+        MeasuredSuite {
             name: suite.name,
             title: suite.title,
             command: command(suite, &options),
@@ -157,7 +157,7 @@ pub fn measure_all(
     suites.map(measure).collect()
 }
 
-impl Table {
+impl MeasuredSuite {
     /// JSON of the table for a report of all suites.
     pub fn json(&self) -> Value {
         let mut out = match &self.found {
@@ -187,7 +187,7 @@ fn cell(text: &str) -> String {
 }
 
 /// The figures as Markdown: where they come from, then a section a suite.
-pub fn markdown(origin: &Origin, tables: &[Table]) -> String {
+pub fn markdown(origin: &Origin, tables: &[MeasuredSuite]) -> String {
     let mut out = String::from("# Figures\n\n");
     let Origin {
         commit,
@@ -218,7 +218,7 @@ pub fn markdown(origin: &Origin, tables: &[Table]) -> String {
 }
 
 /// One line of a table.
-fn line(row: &Row) -> String {
+fn line(row: &FigureRow) -> String {
     let found = row.value.map_or("–".into(), number);
     let interval = row.interval.map_or(String::new(), |[low, high]| {
         format!("{} to {}", number(low), number(high))

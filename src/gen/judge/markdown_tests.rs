@@ -132,7 +132,7 @@ fn real_suites_fill_their_tables() {
         let report = suite.measure(&one(suite), &()).expect("measured");
         let rows = rows(suite, &report);
         assert_eq!(rows.len(), suite.figures.len() + report.bars.len());
-        let empty: Vec<&Row> = rows.iter().filter(|r| r.value.is_none()).collect();
+        let empty: Vec<&FigureRow> = rows.iter().filter(|r| r.value.is_none()).collect();
         // (a single world tells nothing of lost echoes)
         assert!(
             empty.iter().all(|r| r.figure.starts_with("lost echoes")),

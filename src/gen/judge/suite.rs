@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 pub use crate::options::Options;
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::TEST_SEED;
 use metrics::stats::mean_ci95;
 
@@ -13,7 +13,7 @@ use metrics::stats::mean_ci95;
 pub type Bar = (&'static str, f64, f64);
 
 /// A report with its bars.
-pub(crate) type Found = (Value, Vec<Bar>);
+pub(crate) type SuiteFigures = (Value, Vec<Bar>);
 
 /// Mean, half width of its 95 % interval and number of values, for a report.
 pub(crate) fn with_interval(values: &[f64]) -> Value {
@@ -38,11 +38,11 @@ pub struct Suite {
     /// The report as a table for a person, where JSON is hard to read.
     pub(crate) table: Option<fn(&Value) -> String>,
     /// Measures.
-    pub(crate) run: fn(&Options, &dyn Progress) -> anyhow::Result<Found>,
+    pub(crate) run: fn(&Options, &dyn MeasurementProgress) -> anyhow::Result<SuiteFigures>,
 }
 
 /// Outcome of a suite.
-pub struct Report {
+pub struct SuiteReport {
     /// The whole report, with `bars`, `seeds` and `n`.
     pub json: Value,
     /// Its bars.
@@ -54,7 +54,7 @@ fn is_missed((_, found, least): &Bar) -> bool {
     found.is_nan() || found < least
 }
 
-impl Report {
+impl SuiteReport {
     /// The bars that were missed, in words.
     pub fn missed(&self) -> Vec<String> {
         let missed = self.bars.iter().filter(|b| is_missed(b));
@@ -66,7 +66,11 @@ impl Report {
 
 impl Suite {
     /// Runs it. Errors are one line: weights, files or options that will not do.
-    pub fn measure(&self, options: &Options, progress: &dyn Progress) -> anyhow::Result<Report> {
+    pub fn measure(
+        &self,
+        options: &Options,
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<SuiteReport> {
         if options.frames == 0 {
             bail!("--frames is 0, expected at least 1");
         }
@@ -84,7 +88,7 @@ impl Suite {
             .iter()
             .map(|(name, found, least)| json!({ "name": name, "found": found, "least": least }))
             .collect();
-        Ok(Report { json, bars })
+        Ok(SuiteReport { json, bars })
     }
 
     /// The report for a person.

@@ -1,6 +1,6 @@
 //! The table of suites.
 
-use crate::suite::{Found, Options, Suite};
+use crate::suite::{Options, Suite, SuiteFigures};
 use crate::suites::{forecast, gaussians, map};
 use job::pipeline::OccPipeline;
 use nets::OccModels;
@@ -375,8 +375,8 @@ pub fn named(name: &str) -> Option<&'static Suite> {
 /// Runs `with` on the networks of the options. The report names the networks.
 fn with_pipeline(
     options: &Options,
-    with: impl FnOnce(&mut OccPipeline) -> anyhow::Result<Found>,
-) -> anyhow::Result<Found> {
+    with: impl FnOnce(&mut OccPipeline) -> anyhow::Result<SuiteFigures>,
+) -> anyhow::Result<SuiteFigures> {
     let mut pipeline = OccPipeline::new(OccModels::of(options.weights.as_deref())?);
     let (mut report, bars) = with(&mut pipeline)?;
     report["model"] = pipeline.models().card.name.clone().into();

@@ -9,7 +9,7 @@
 use serde::Deserialize;
 
 use nets::ModelError;
-use nets::encoder::Encoder;
+use nets::encoder::OccupancyEncoder;
 use nn::Cpu;
 use nn::map::CellRect;
 use nn::weights::{WeightFile, WeightsError};
@@ -24,7 +24,7 @@ struct Config {
 
 /// The extractor with its weights.
 pub struct Extractor {
-    encoder: Encoder,
+    encoder: OccupancyEncoder,
     side: usize,
 }
 
@@ -37,7 +37,7 @@ impl Extractor {
         if widths.len() != 3 || kernels.len() != 3 {
             return Err(file.config_error("config", "expected three levels".into()));
         }
-        let encoder = Encoder::new(&Cpu, &mut file, &widths, &kernels)?;
+        let encoder = OccupancyEncoder::new(&Cpu, &mut file, &widths, &kernels)?;
         file.finish()?;
         Ok(Self { encoder, side: 50 })
     }

@@ -48,7 +48,7 @@ impl Spread {
 
 /// One quantity of layouts and of real drives.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct LayoutQuantity {
     /// Name of the quantity.
     pub name: String,
     /// Spread over the layouts.
@@ -205,10 +205,10 @@ impl LayoutFigures {
     }
 
     /// Every quantity that has values and real figures, by name.
-    pub fn rows(&self) -> Vec<Row> {
+    pub fn rows(&self) -> Vec<LayoutQuantity> {
         let real = real_figures();
         let found = self.values.iter().filter_map(|(name, values)| {
-            Some(Row {
+            Some(LayoutQuantity {
                 name: name.clone(),
                 found: Spread::of(values)?,
                 real: real.get(name)?.clone(),
@@ -235,13 +235,13 @@ impl LayoutFigures {
 /// Figures of real drives by the names that [`LayoutFigures`] uses.
 pub fn real_figures() -> BTreeMap<String, Spread> {
     #[derive(Deserialize)]
-    struct File {
+    struct LayoutStatistics {
         sizes_m: BTreeMap<String, BTreeMap<String, Spread>>,
         #[serde(flatten)]
         rest: BTreeMap<String, serde_json::Value>,
     }
     let text = assets::statistics::LAYOUT;
-    let Ok(file) = serde_json::from_str::<File>(text) else {
+    let Ok(file) = serde_json::from_str::<LayoutStatistics>(text) else {
         return BTreeMap::new();
     };
     let mut out = BTreeMap::new();

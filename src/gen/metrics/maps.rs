@@ -20,12 +20,12 @@ pub struct MapAgreement {
     pixels: usize,
     same: usize,
     errors_m: Vec<f64>,
-    outlines: [Outline; 2],
+    outlines: [OutlineCounts; 2],
 }
 
 /// Numbers of outline pixels, and of those near the outline of the other map.
 #[derive(Clone, Copy, Debug, Default)]
-struct Outline {
+struct OutlineCounts {
     found: usize,
     found_right: usize,
     truth: usize,

@@ -12,7 +12,7 @@ const NEAREST_M: f64 = 0.1;
 
 /// A picture with its camera and depths.
 #[derive(Clone, Copy, Debug)]
-pub struct Taken<'a> {
+pub struct DepthPicture<'a> {
     /// The camera, a pinhole at the size of the picture.
     pub camera: &'a Camera,
     /// The picture.
@@ -23,15 +23,15 @@ pub struct Taken<'a> {
 
 /// Sum and number of differences.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Difference {
+pub struct PixelDifference {
     sum: f64,
     pixels: usize,
 }
 
-impl Difference {
+impl PixelDifference {
     /// Adds the pixels of `now` that `other` sees too. Their difference is the mean over red, green and blue of the
     /// differences of their colours, 0 to 1. Colours of `other` are interpolated between its pixels.
-    pub fn add(&mut self, now: &Taken<'_>, other: &Taken<'_>) {
+    pub fn add(&mut self, now: &DepthPicture<'_>, other: &DepthPicture<'_>) {
         let (width, from_camera) = (now.image.width, now.camera.ego_from_camera());
         let to_other = other.camera.ego_from_camera().inverse();
         for (at, depth) in now.depth_m.iter().enumerate().filter(|(_, d)| **d > 0.0) {
@@ -63,7 +63,7 @@ fn ray(camera: &Camera, u: f64, v: f64) -> DVec3 {
     DVec3::new((u - cx) / fx, (v - cy) / fy, 1.0)
 }
 
-impl Taken<'_> {
+impl DepthPicture<'_> {
     /// Red, green and blue, 0 to 255, of the surface at a point of the optical frame; `None` if another surface is seen
     /// there.
     fn color_at(&self, p: DVec3) -> Option<[f64; 3]> {
@@ -120,8 +120,8 @@ mod tests {
         (camera, image, vec![10.0; 64 * 32])
     }
 
-    fn taken((camera, image, depth_m): &(Camera, CameraImage, Vec<f32>)) -> Taken<'_> {
-        Taken {
+    fn taken((camera, image, depth_m): &(Camera, CameraImage, Vec<f32>)) -> DepthPicture<'_> {
+        DepthPicture {
             camera,
             image,
             depth_m,
@@ -132,18 +132,18 @@ mod tests {
     fn what_is_seen_from_two_places_is_compared_where_both_see_it() {
         let (a, b) = (wall(0.0), wall(1.0));
         let (here, there, mut lit) = (a, b.clone(), b);
-        let mut same = Difference::default();
+        let mut same = PixelDifference::default();
         same.add(&taken(&here), &taken(&there));
         assert!(same.mean() < 0.5 / 255.0, "{}", same.mean());
         assert!((1000..64 * 32).contains(&same.pixels()), "{}", same.pixels());
         // As much brighter everywhere.
         lit.1.rgba.iter_mut().for_each(|c| *c = c.saturating_add(51));
-        let mut brighter = Difference::default();
+        let mut brighter = PixelDifference::default();
         brighter.add(&taken(&here), &taken(&lit));
         assert!((brighter.mean() - 0.2).abs() < 0.01, "{}", brighter.mean());
         // Another surface, or nothing, is not compared.
         lit.2.fill(4.0);
-        let mut none = Difference::default();
+        let mut none = PixelDifference::default();
         none.add(&taken(&here), &taken(&lit));
         assert!(none.pixels() == 0 && none.mean().is_nan());
     }

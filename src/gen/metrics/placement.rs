@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::layout::{Diversity, LayoutFigures, Row, Soundness, diversity};
+use crate::layout::{Diversity, LayoutFigures, LayoutQuantity, Soundness, diversity};
 use crate::stats::mean_ci95;
 use dataset::layout::street;
 use graph_layout::diffuse::{PlacementError, PlacementReport, locked_objects};
@@ -18,7 +18,7 @@ use scene::{BevLayout, SceneBox, Window};
 use world::draw::{Draw, hash};
 
 /// A placer of the objects of a graph. Gives boxes in the order of `PlacementReport::nodes`.
-pub type Place<'a> =
+pub type ObjectPlacer<'a> =
     &'a dyn Fn(&SceneGraph, &BevLayout, u64) -> Result<(Vec<SceneBox>, PlacementReport), PlacementError>;
 
 /// Figures of one placer.
@@ -45,7 +45,7 @@ pub struct PlacementFigures {
     /// Overlaps, and vehicles off the road or against their lane.
     pub soundness: Soundness,
     /// Spacing, sizes and headings beside those of real drives.
-    pub rows: Vec<Row>,
+    pub rows: Vec<LayoutQuantity>,
     /// Diversity of four seeds on the first graphs: footprints (1 - IoU) and displacement.
     pub diversity: Diversity,
 }
@@ -64,7 +64,11 @@ pub fn held_out(seed: u64, index: u64) -> (SceneGraph, BevLayout) {
 }
 
 /// Places the graphs of `count` held-out streets.
-pub fn evaluate(place: Place<'_>, seed: u64, count: usize) -> Result<PlacementFigures, PlacementError> {
+pub fn evaluate(
+    place: ObjectPlacer<'_>,
+    seed: u64,
+    count: usize,
+) -> Result<PlacementFigures, PlacementError> {
     const DIVERSE: usize = 4;
     let (mut objects, mut dropped, mut statements, mut broken, mut moved, mut moves) =
         (0, 0, 0, 0, 0, Vec::new());

@@ -19,7 +19,7 @@ const RANGES_M: [f64; 6] = [3.0, 10.0, 20.0, 30.0, 40.0, 60.0];
 const SAMPLED: usize = 3;
 
 /// One echo for the predictor: its features, and whether it was lost.
-type Sample = (Vec<f64>, bool);
+type EchoSample = (Vec<f64>, bool);
 
 /// Sums over sweeps.
 #[derive(Clone, Debug, Default)]
@@ -34,7 +34,7 @@ pub struct SweepFigures {
     strengths_of: BTreeMap<u8, Vec<f64>>,
     lost_of: BTreeMap<u8, [usize; 2]>, // lost, all
     lost_at: [[usize; 2]; RANGES_M.len()],
-    halves: [Vec<Sample>; 2],
+    halves: [Vec<EchoSample>; 2],
     sweeps: usize,
 }
 

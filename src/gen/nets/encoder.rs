@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::ModelError;
 use nn::Cpu;
-use nn::map::{CellRect, Map};
+use nn::map::{CellRect, FeatureMap};
 use nn::ops::{Ops, OpsError};
 use nn::weights::{WeightFile, WeightsError};
 use scene::{Class, VoxelGrid, Window};
@@ -17,9 +17,9 @@ pub const OCCUPIED: usize = Class::FREE as usize;
 pub const PIECE: usize = 200;
 
 /// Residual blocks of one width.
-pub struct Level<B: Ops = Cpu>(Vec<B::Residual>);
+pub struct EncoderLevel<B: Ops = Cpu>(Vec<B::Residual>);
 
-impl<B: Ops> Level<B> {
+impl<B: Ops> EncoderLevel<B> {
     /// The blocks `name.blocks.0` and so on.
     pub fn new(
         ops: &B,
@@ -51,9 +51,9 @@ pub fn levels<B: Ops>(
     name: &str,
     widths: &[usize],
     kernels: &[Vec<usize>],
-) -> Result<Vec<Level<B>>, WeightsError> {
+) -> Result<Vec<EncoderLevel<B>>, WeightsError> {
     let each = widths.iter().zip(kernels).enumerate();
-    each.map(|(i, (width, kernels))| Level::new(ops, w, &format!("{name}.{i}"), *width, kernels))
+    each.map(|(i, (width, kernels))| EncoderLevel::new(ops, w, &format!("{name}.{i}"), *width, kernels))
         .collect()
 }
 
@@ -114,15 +114,15 @@ impl<B: Ops> VoxelTable<B> {
 }
 
 /// The encoder: labels to one vector per latent cell.
-pub struct Encoder<B: Ops = Cpu> {
+pub struct OccupancyEncoder<B: Ops = Cpu> {
     width: usize,
     embed: VoxelTable<B>,
-    levels: Vec<Level<B>>, // finest first
+    levels: Vec<EncoderLevel<B>>, // finest first
     down: Vec<B::Linear>,
     norm: B::Norm,
 }
 
-impl<B: Ops> Encoder<B> {
+impl<B: Ops> OccupancyEncoder<B> {
     /// Takes the encoder's tensors of a file; `widths` and `kernels` are of every level, finest first.
     pub fn new(
         ops: &B,
@@ -152,7 +152,7 @@ impl<B: Ops> Encoder<B> {
     pub fn features(&self, ops: &B, grid: &VoxelGrid, window: CellRect) -> Result<B::Tensor, ModelError> {
         let per_cell = Window::NX / window.side;
         let (rows, columns, width) = (window.rows * per_cell, window.columns * per_cell, self.width);
-        let map = ops.upload(Map {
+        let map = ops.upload(FeatureMap {
             data: vec![0.0; rows * columns * width],
             rows,
             columns,

@@ -36,7 +36,7 @@ pub(crate) use error::{check_finite, check_length};
 pub use latent::{CELLS, CHANNELS, LATENT, SIDE};
 pub use nn::map::CellRect;
 pub use occ_dit::{
-    DitCondition, DitConfig, KeysValues, Middle, OccDit, OccDitTime, Prepared, TimeConfig, tokens_of,
+    BlockReuse, DitCondition, DitConfig, KeysValues, OccDit, OccDitTime, Prepared, TimeConfig, tokens_of,
 };
 pub use occ_vae::{DecoderInput, OccVae, VaeConfig};
 pub use refiner::Refiner;

@@ -6,10 +6,10 @@ use std::sync::{Arc, OnceLock};
 
 use serde::Deserialize;
 
-use super::encoder::{Level, PIECE};
+use super::encoder::{EncoderLevel, PIECE};
 use super::occ_dit::timestep_embedding;
 use super::{CHANNELS, ModelError, OccVae, check_finite, check_length, fine_file};
-use nn::map::{CellRect, Map};
+use nn::map::{CellRect, FeatureMap};
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 
@@ -71,11 +71,11 @@ pub struct Refiner<B: Ops = Cpu> {
     time1: B::Linear,
     time2: B::Linear,
     tell: [B::Linear; 3],
-    enter: Level<B>,
+    enter: EncoderLevel<B>,
     down: B::Linear,
-    middle: Level<B>,
+    middle: EncoderLevel<B>,
     up: B::Linear,
-    leave: Level<B>,
+    leave: EncoderLevel<B>,
     norm: B::Norm,
     head: B::Linear,
 }
@@ -161,11 +161,11 @@ impl<B: Ops + Clone> Refiner<B> {
             time1,
             time2,
             tell,
-            enter: Level::new(&ops, w, "enter", fine, &config.kernels[0])?,
+            enter: EncoderLevel::new(&ops, w, "enter", fine, &config.kernels[0])?,
             down,
-            middle: Level::new(&ops, w, "middle", wide, &config.kernels[1])?,
+            middle: EncoderLevel::new(&ops, w, "middle", wide, &config.kernels[1])?,
             up,
-            leave: Level::new(&ops, w, "leave", fine, &config.kernels[0])?,
+            leave: EncoderLevel::new(&ops, w, "leave", fine, &config.kernels[0])?,
             norm: ops.load_norm(w, "norm", fine)?,
             ops,
             config,
@@ -211,13 +211,13 @@ impl<B: Ops + Clone> Refiner<B> {
         let time = ops.silu(ops.apply(&self.time2, &time, 1)?)?;
         let told = |i: usize| ops.apply(&self.tell[i], &time, 1);
 
-        let features = ops.upload(Map {
+        let features = ops.upload(FeatureMap {
             data: features,
             rows,
             columns,
             width: 3 * latent,
         })?;
-        let hint = ops.upload(Map {
+        let hint = ops.upload(FeatureMap {
             data: rough.coarse.to_vec(),
             rows: rough.window.rows,
             columns: rough.window.columns,

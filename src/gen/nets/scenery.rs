@@ -6,10 +6,10 @@ use std::sync::{Arc, OnceLock};
 
 use serde::Deserialize;
 
-use super::encoder::{Level, PIECE, levels, steps};
+use super::encoder::{EncoderLevel, PIECE, levels, steps};
 use super::occ_dit::timestep_embedding;
 use super::{ColumnHeights, ModelError, check_finite, check_length};
-use nn::map::Map;
+use nn::map::FeatureMap;
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 use scene::Window;
@@ -134,11 +134,11 @@ pub struct SceneryNet<B: Ops = Cpu> {
     time2: B::Linear,
     named: B::Linear,
     tell: Vec<B::Linear>,
-    enter: Vec<Level<B>>,
+    enter: Vec<EncoderLevel<B>>,
     down: Vec<B::Linear>,
-    middle: Level<B>,
+    middle: EncoderLevel<B>,
     up: Vec<B::Linear>,
-    leave: Vec<Level<B>>,
+    leave: Vec<EncoderLevel<B>>,
     norm: B::Norm,
     head: B::Linear,
 }
@@ -181,7 +181,7 @@ impl<B: Ops> SceneryNet<B> {
             named: ops.linear(w, "named", [2 * NAMED, wide], &[])?,
             enter: levels(&ops, w, "enter", &widths[..coarsest], &config.kernels)?,
             down: steps(&ops, w, "down", downwards)?,
-            middle: Level::new(&ops, w, "middle", wide, &config.kernels[coarsest])?,
+            middle: EncoderLevel::new(&ops, w, "middle", wide, &config.kernels[coarsest])?,
             up: steps(&ops, w, "up", upwards)?,
             leave: levels(&ops, w, "leave", &back, &back_kernels)?,
             norm: ops.load_norm(w, "norm", widths[0])?,
@@ -201,7 +201,7 @@ impl<B: Ops> SceneryNet<B> {
             return Err(ModelError::Timestep(t));
         }
         let ops = &self.ops;
-        let features = ops.upload(Map {
+        let features = ops.upload(FeatureMap {
             data: condition.features(x)?,
             rows: SIDE,
             columns: SIDE,

@@ -164,7 +164,7 @@ impl CellBlock {
     fn apply(&self, frames: &mut [Vec<f32>], between: &Between, heads: usize) {
         let piece = piece_of(CELLS);
         let width = self.q.outputs();
-        let told: Vec<Told> = frames.iter().map(|cells| self.told(cells, piece)).collect();
+        let told: Vec<CellProjections> = frames.iter().map(|cells| self.told(cells, piece)).collect();
         for (f, cells) in frames.iter_mut().enumerate() {
             let pieces = cells.par_chunks_mut(piece * width).enumerate();
             pieces.for_each(|(at, x)| {
@@ -185,10 +185,10 @@ impl CellBlock {
         }
     }
 
-    fn told(&self, cells: &[f32], piece: usize) -> Told {
+    fn told(&self, cells: &[f32], piece: usize) -> CellProjections {
         let mut normed = vec![0.0; cells.len()];
         self.norm1.rows(cells, &mut normed);
-        Told {
+        CellProjections {
             queries: self.q.parallel(&normed, piece),
             keys_values: self.kv.parallel(&normed, piece),
             asked: self.q_offset.parallel(&normed, piece),
@@ -198,7 +198,7 @@ impl CellBlock {
     /// Attention of one cell to its place in all frames, head by head.
     fn attend(
         &self,
-        told: &[Told],
+        told: &[CellProjections],
         between: &Between,
         (frame, cell): (usize, usize),
         heads: usize,
@@ -242,7 +242,7 @@ impl CellBlock {
 }
 
 /// Projections of the cells of a frame, for attention.
-struct Told {
+struct CellProjections {
     queries: Vec<f32>,
     keys_values: Vec<f32>,
     /// Weights of the offsets in the scores, for each query.

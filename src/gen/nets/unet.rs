@@ -2,8 +2,8 @@
 //! which take in the features of the way down.
 
 use crate::ModelError;
-use crate::encoder::{Level, PIECE, levels, steps};
-use nn::map::Map;
+use crate::encoder::{EncoderLevel, PIECE, levels, steps};
+use nn::map::FeatureMap;
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 
@@ -11,9 +11,9 @@ use nn::{Cpu, Ops};
 /// squares of 2 x 2 places.
 pub struct UNet<B: Ops = Cpu> {
     stem: B::Linear,
-    enter: Vec<Level<B>>, // finest first
+    enter: Vec<EncoderLevel<B>>, // finest first
     down: Vec<B::Linear>,
-    leave: Vec<Level<B>>, // coarsest first
+    leave: Vec<EncoderLevel<B>>, // coarsest first
     up: Vec<B::Linear>,
 }
 
@@ -38,7 +38,7 @@ impl<B: Ops> UNet<B> {
 
     /// Features of the levels on the way down, the finest first: at a half, a quarter and an eighth of the map's sides,
     /// which are multiples of 8.
-    pub fn seen(&self, ops: &B, map: Map) -> Result<[B::Tensor; 3], ModelError> {
+    pub fn seen(&self, ops: &B, map: FeatureMap) -> Result<[B::Tensor; 3], ModelError> {
         let squares = ops.fold(&ops.upload(map)?)?;
         let fine = self.enter[0].apply(ops, ops.apply(&self.stem, &squares, PIECE)?)?;
         let below = |i: usize, finer: &B::Tensor| {
@@ -51,7 +51,7 @@ impl<B: Ops> UNet<B> {
     }
 
     /// Goes down and up again: gives a map of half the sides, as wide as the finest level.
-    pub fn apply(&self, ops: &B, map: Map) -> Result<B::Tensor, ModelError> {
+    pub fn apply(&self, ops: &B, map: FeatureMap) -> Result<B::Tensor, ModelError> {
         let [fine, middle, mut map] = self.seen(ops, map)?;
         for ((up, level), before) in self.up.iter().zip(&self.leave).zip([&middle, &fine]) {
             let wide = ops.unfold(&ops.apply(up, &map, PIECE)?)?;

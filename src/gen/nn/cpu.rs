@@ -7,12 +7,12 @@ use crate::Precision;
 use crate::graph;
 use crate::kernels;
 use crate::layers::{Linear, NORM_EPS, Norm, ResBlock};
-use crate::map::Map;
-use crate::ops::{BlockParts, Edge, MessageParts, NodeBlockParts, Ops, OpsError, Values};
+use crate::map::FeatureMap;
+use crate::ops::{BackendTensor, BlockParts, MessageEdge, MessageParts, NodeBlockParts, Ops, OpsError};
 use crate::ring::{RingBlock, RingBlockParts};
 use crate::rules::RuleBook;
-use crate::sparse::{Convolution, Residual};
-use crate::transformer::Block;
+use crate::sparse::{Convolution, SiteResidual};
+use crate::transformer::TransformerBlock;
 
 /// Rows of a map that are normed in one piece.
 const PIECE: usize = 200;
@@ -22,12 +22,12 @@ const PIECE: usize = 200;
 pub struct Cpu;
 
 /// Vectors of a table.
-pub struct Table {
+pub struct EmbeddingTable {
     entries: Vec<f32>, // [entry][width]
     width: usize,
 }
 
-impl Values for Map {
+impl BackendTensor for FeatureMap {
     fn rows(&self) -> usize {
         self.rows
     }
@@ -40,30 +40,30 @@ impl Values for Map {
 }
 
 /// A map of the same places with other values.
-fn with(map: &Map, data: Vec<f32>, width: usize) -> Map {
-    Map { data, width, ..*map }
+fn with(map: &FeatureMap, data: Vec<f32>, width: usize) -> FeatureMap {
+    FeatureMap { data, width, ..*map }
 }
 
 impl Ops for Cpu {
     const NAME: &'static str = "cpu";
-    type Tensor = Map;
+    type Tensor = FeatureMap;
     type Linear = Linear;
     type Norm = Norm;
     type Residual = ResBlock;
-    type Table = Table;
-    type Block = Block;
+    type Table = EmbeddingTable;
+    type Block = TransformerBlock;
     type SparseConvolution = Convolution;
-    type SparseResidual = Residual;
+    type SparseResidual = SiteResidual;
     type Room = Vec<f32>;
     type Messages = MessageParts<Linear>;
     type NodeBlock = NodeBlockParts<Linear>;
     type RingBlock = RingBlock;
 
-    fn upload(&self, map: Map) -> Result<Map, OpsError> {
+    fn upload(&self, map: FeatureMap) -> Result<FeatureMap, OpsError> {
         Ok(map)
     }
 
-    fn download(&self, x: Map) -> Result<Map, OpsError> {
+    fn download(&self, x: FeatureMap) -> Result<FeatureMap, OpsError> {
         Ok(x)
     }
 
@@ -86,12 +86,12 @@ impl Ops for Cpu {
         Ok(ResBlock::from_parts(norm, weight, bias, kernel, second))
     }
 
-    fn table_from(&self, entries: Vec<f32>, width: usize) -> Result<Table, OpsError> {
-        Ok(Table { entries, width })
+    fn table_from(&self, entries: Vec<f32>, width: usize) -> Result<EmbeddingTable, OpsError> {
+        Ok(EmbeddingTable { entries, width })
     }
 
-    fn block_from(&self, parts: BlockParts<Linear>) -> Result<Block, OpsError> {
-        Ok(Block::new(parts))
+    fn block_from(&self, parts: BlockParts<Linear>) -> Result<TransformerBlock, OpsError> {
+        Ok(TransformerBlock::new(parts))
     }
 
     fn sparse_from(&self, weight: &[f32], bias: Vec<f32>, taps: usize) -> Result<Convolution, OpsError> {
@@ -103,8 +103,8 @@ impl Ops for Cpu {
         norm: Norm,
         convolution: Convolution,
         linear: Linear,
-    ) -> Result<Residual, OpsError> {
-        Ok(Residual::from_parts(norm, convolution, linear))
+    ) -> Result<SiteResidual, OpsError> {
+        Ok(SiteResidual::from_parts(norm, convolution, linear))
     }
 
     fn messages_from(&self, parts: MessageParts<Linear>) -> Result<MessageParts<Linear>, OpsError> {
@@ -119,7 +119,7 @@ impl Ops for Cpu {
         Ok(RingBlock::new(parts))
     }
 
-    fn apply(&self, linear: &Linear, x: &Map, piece: usize) -> Result<Map, OpsError> {
+    fn apply(&self, linear: &Linear, x: &FeatureMap, piece: usize) -> Result<FeatureMap, OpsError> {
         // One piece is not worth waking other threads for.
         let data = match x.rows * x.columns <= piece {
             true => linear.vector(&x.data),
@@ -128,12 +128,12 @@ impl Ops for Cpu {
         Ok(with(x, data, linear.outputs()))
     }
 
-    fn apply_each(&self, layers: &[&Linear], x: &Map) -> Result<Vec<Map>, OpsError> {
+    fn apply_each(&self, layers: &[&Linear], x: &FeatureMap) -> Result<Vec<FeatureMap>, OpsError> {
         let each = layers.par_iter();
         Ok(each.map(|l| with(x, l.vector(&x.data), l.outputs())).collect())
     }
 
-    fn norm(&self, norm: &Norm, mut x: Map) -> Result<Map, OpsError> {
+    fn norm(&self, norm: &Norm, mut x: FeatureMap) -> Result<FeatureMap, OpsError> {
         // In place: fresh memory costs as much as what is written into it.
         let pieces = x.data.par_chunks_mut(PIECE * x.width);
         pieces.for_each_init(Vec::new, |before: &mut Vec<f32>, x| {
@@ -144,7 +144,7 @@ impl Ops for Cpu {
         Ok(x)
     }
 
-    fn modulate(&self, x: &Map, ada: &Map) -> Result<Map, OpsError> {
+    fn modulate(&self, x: &FeatureMap, ada: &FeatureMap) -> Result<FeatureMap, OpsError> {
         let (shift, scale) = ada.data.split_at(x.width);
         let scale: Vec<f32> = scale.iter().map(|s| 1.0 + s).collect();
         let mut out = vec![0.0; x.data.len()];
@@ -154,7 +154,7 @@ impl Ops for Cpu {
         Ok(with(x, out, x.width))
     }
 
-    fn residual(&self, block: &ResBlock, mut x: Map) -> Result<Map, OpsError> {
+    fn residual(&self, block: &ResBlock, mut x: FeatureMap) -> Result<FeatureMap, OpsError> {
         block.apply(&mut x);
         Ok(x)
     }
@@ -165,10 +165,10 @@ impl Ops for Cpu {
 
     fn bag<I: Iterator<Item = usize>>(
         &self,
-        table: &Table,
-        mut x: Map,
+        table: &EmbeddingTable,
+        mut x: FeatureMap,
         entries: impl Fn(usize, usize) -> I + Sync,
-    ) -> Result<Map, OpsError> {
+    ) -> Result<FeatureMap, OpsError> {
         let width = table.width;
         x.data
             .par_chunks_mut(x.columns * width)
@@ -184,19 +184,19 @@ impl Ops for Cpu {
         Ok(x)
     }
 
-    fn ada(block: &Block) -> &Linear {
+    fn ada(block: &TransformerBlock) -> &Linear {
         &block.ada
     }
 
     fn block(
         &self,
-        block: &Block,
-        mut x: Map,
-        ada: &Map,
+        block: &TransformerBlock,
+        mut x: FeatureMap,
+        ada: &FeatureMap,
         places: &[usize],
-        keys_values: &mut Map,
+        keys_values: &mut FeatureMap,
         precision: Precision,
-    ) -> Result<Map, OpsError> {
+    ) -> Result<FeatureMap, OpsError> {
         block.apply(&mut x.data, &ada.data, places, &mut keys_values.data, precision);
         Ok(x)
     }
@@ -204,7 +204,7 @@ impl Ops for Cpu {
     fn likeliest(
         &self,
         head: &Linear,
-        x: &Map,
+        x: &FeatureMap,
         places: &[usize],
         voxels: usize,
         piece: usize,
@@ -226,9 +226,14 @@ impl Ops for Cpu {
         Ok(labels)
     }
 
-    fn sparse(&self, convolution: &Convolution, x: &Map, rules: &RuleBook) -> Result<Map, OpsError> {
+    fn sparse(
+        &self,
+        convolution: &Convolution,
+        x: &FeatureMap,
+        rules: &RuleBook,
+    ) -> Result<FeatureMap, OpsError> {
         let data = convolution.apply(&x.data, rules);
-        Ok(Map {
+        Ok(FeatureMap {
             data,
             rows: rules.rows(),
             columns: 1,
@@ -239,26 +244,31 @@ impl Ops for Cpu {
     fn sparse_onto(
         &self,
         convolution: &Convolution,
-        x: &Map,
+        x: &FeatureMap,
         rules: &RuleBook,
-        mut onto: Map,
-    ) -> Result<Map, OpsError> {
+        mut onto: FeatureMap,
+    ) -> Result<FeatureMap, OpsError> {
         convolution.add(&x.data, rules, &mut onto.data);
         Ok(onto)
     }
 
     fn sparse_residual(
         &self,
-        block: &Residual,
-        mut x: Map,
+        block: &SiteResidual,
+        mut x: FeatureMap,
         rules: &RuleBook,
         room: &mut Vec<f32>,
-    ) -> Result<Map, OpsError> {
+    ) -> Result<FeatureMap, OpsError> {
         block.apply(&mut x.data, rules, room);
         Ok(x)
     }
 
-    fn messages(&self, round: &MessageParts<Linear>, mut x: Map, edges: &[Edge]) -> Result<Map, OpsError> {
+    fn messages(
+        &self,
+        round: &MessageParts<Linear>,
+        mut x: FeatureMap,
+        edges: &[MessageEdge],
+    ) -> Result<FeatureMap, OpsError> {
         graph::messages(round, &mut x.data, x.width, edges);
         Ok(x)
     }
@@ -266,42 +276,47 @@ impl Ops for Cpu {
     fn node_block(
         &self,
         block: &NodeBlockParts<Linear>,
-        mut x: Map,
-        ada: &Map,
-        context: Option<&Map>,
-        bias: &Map,
-    ) -> Result<Map, OpsError> {
+        mut x: FeatureMap,
+        ada: &FeatureMap,
+        context: Option<&FeatureMap>,
+        bias: &FeatureMap,
+    ) -> Result<FeatureMap, OpsError> {
         let context = context.map_or(&[][..], |c| &c.data);
         graph::block(block, &mut x.data, &ada.data, context, &bias.data);
         Ok(x)
     }
 
-    fn ring_block(&self, block: &RingBlock, mut maps: Vec<Map>, ada: &[Map]) -> Result<Vec<Map>, OpsError> {
+    fn ring_block(
+        &self,
+        block: &RingBlock,
+        mut maps: Vec<FeatureMap>,
+        ada: &[FeatureMap],
+    ) -> Result<Vec<FeatureMap>, OpsError> {
         block.apply(&mut maps, ada);
         Ok(maps)
     }
 
-    fn relu(&self, mut x: Map) -> Result<Map, OpsError> {
+    fn relu(&self, mut x: FeatureMap) -> Result<FeatureMap, OpsError> {
         x.data.iter_mut().for_each(|v| *v = v.max(0.0));
         Ok(x)
     }
 
-    fn gelu(&self, mut x: Map) -> Result<Map, OpsError> {
+    fn gelu(&self, mut x: FeatureMap) -> Result<FeatureMap, OpsError> {
         kernels::gelu_all(&mut x.data);
         Ok(x)
     }
 
-    fn tanh(&self, mut x: Map) -> Result<Map, OpsError> {
+    fn tanh(&self, mut x: FeatureMap) -> Result<FeatureMap, OpsError> {
         x.data.iter_mut().for_each(|v| *v = v.tanh());
         Ok(x)
     }
 
-    fn silu(&self, mut x: Map) -> Result<Map, OpsError> {
+    fn silu(&self, mut x: FeatureMap) -> Result<FeatureMap, OpsError> {
         x.data.iter_mut().for_each(|v| *v = kernels::silu(*v));
         Ok(x)
     }
 
-    fn add(&self, mut x: Map, y: &Map) -> Result<Map, OpsError> {
+    fn add(&self, mut x: FeatureMap, y: &FeatureMap) -> Result<FeatureMap, OpsError> {
         let add = |x: &mut [f32]| x.iter_mut().zip(&y.data).for_each(|(x, y)| *x += y);
         match y.data.len() == x.data.len() {
             true => add(&mut x.data),
@@ -310,16 +325,16 @@ impl Ops for Cpu {
         Ok(x)
     }
 
-    fn subtract(&self, x: &Map, y: &Map) -> Result<Map, OpsError> {
+    fn subtract(&self, x: &FeatureMap, y: &FeatureMap) -> Result<FeatureMap, OpsError> {
         let data = x.data.iter().zip(&y.data).map(|(x, y)| x - y).collect();
         Ok(with(x, data, x.width))
     }
 
-    fn fold(&self, x: &Map) -> Result<Map, OpsError> {
+    fn fold(&self, x: &FeatureMap) -> Result<FeatureMap, OpsError> {
         Ok(x.fold())
     }
 
-    fn unfold(&self, x: &Map) -> Result<Map, OpsError> {
+    fn unfold(&self, x: &FeatureMap) -> Result<FeatureMap, OpsError> {
         Ok(x.unfold())
     }
 }

@@ -4,14 +4,14 @@
 use rayon::prelude::*;
 
 use crate::kernels;
-use crate::layers::{Linear, NORM_EPS, View, matmul};
-use crate::ops::{Edge, MessageParts, NodeBlockParts};
+use crate::layers::{Linear, MatrixView, NORM_EPS, matmul};
+use crate::ops::{MessageEdge, MessageParts, NodeBlockParts};
 
 /// Rows that go through a layer in one piece.
 const PIECE: usize = 32;
 
 /// Applies a round of messages in place over the nodes `h`, see [`Ops::messages`](crate::Ops::messages).
-pub(crate) fn messages(round: &MessageParts<Linear>, h: &mut [f32], width: usize, edges: &[Edge]) {
+pub(crate) fn messages(round: &MessageParts<Linear>, h: &mut [f32], width: usize, edges: &[MessageEdge]) {
     let n = h.len() / width;
     let y = modulated(h, &vec![0.0; width], &vec![0.0; width]);
     let (source, target) = (round.source.parallel(&y, PIECE), round.target.parallel(&y, PIECE));
@@ -88,12 +88,12 @@ fn attention(qkv: &[f32], context: &[f32], bias: &[f32], width: usize, heads: us
         let nodes = |part: usize| &qkv[part * width + head * d..];
         let map = |part: usize| &context[part * width + head * d..];
         let (q, keys) = (
-            View::rows(nodes(0), 3 * width),
-            View::columns(nodes(1), 3 * width),
+            MatrixView::rows(nodes(0), 3 * width),
+            MatrixView::columns(nodes(1), 3 * width),
         );
         matmul(&mut scores, all, false, q, keys, [n, n, d]);
         if tokens > 0 {
-            let keys = View::columns(map(0), 2 * width);
+            let keys = MatrixView::columns(map(0), 2 * width);
             matmul(&mut scores[n..], all, false, q, keys, [n, tokens, d]);
         }
         for (i, scores) in scores.chunks_exact_mut(all).enumerate() {
@@ -105,10 +105,20 @@ fn attention(qkv: &[f32], context: &[f32], bias: &[f32], width: usize, heads: us
             let sum: f32 = scores.iter().sum();
             scores.iter_mut().for_each(|s| *s /= sum);
         }
-        let values = View::rows(nodes(2), 3 * width);
-        matmul(&mut mixed, d, false, View::rows(&scores, all), values, [n, d, n]);
+        let values = MatrixView::rows(nodes(2), 3 * width);
+        matmul(
+            &mut mixed,
+            d,
+            false,
+            MatrixView::rows(&scores, all),
+            values,
+            [n, d, n],
+        );
         if tokens > 0 {
-            let (scores, values) = (View::rows(&scores[n..], all), View::rows(map(1), 2 * width));
+            let (scores, values) = (
+                MatrixView::rows(&scores[n..], all),
+                MatrixView::rows(map(1), 2 * width),
+            );
             matmul(&mut mixed, d, true, scores, values, [n, d, tokens]);
         }
         mixed

@@ -5,7 +5,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::view::View;
+use super::view::MatrixView;
 use crate::vectorised;
 
 /// Columns of a vector of 32-bit sums.
@@ -24,11 +24,11 @@ const MOST_INPUTS: usize = 65_000;
 /// Four rows of sixteen columns, column after column.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, align(64))]
-struct Line([i8; GROUP * LANES]);
+struct Int8Tile([i8; GROUP * LANES]);
 
 /// A matrix `[k][n]` in eight bits; panels of 48 columns, each holding its rows in fours.
 pub struct Int8Matrix {
-    data: Vec<Line>,
+    data: Vec<Int8Tile>,
     k: usize,
     n: usize,
     /// Value of one step in each column.
@@ -39,10 +39,10 @@ pub struct Int8Matrix {
 
 impl Int8Matrix {
     /// Quantises the first `k` rows and `n` columns of `matrix`, which are finite.
-    pub fn new(matrix: View<'_>, k: usize, n: usize) -> Self {
+    pub fn new(matrix: MatrixView<'_>, k: usize, n: usize) -> Self {
         assert!(k <= MOST_INPUTS);
         let groups = k.div_ceil(GROUP);
-        let mut data = vec![Line([0; GROUP * LANES]); groups * n.div_ceil(LANES)];
+        let mut data = vec![Int8Tile([0; GROUP * LANES]); groups * n.div_ceil(LANES)];
         let (mut scales, mut offsets) = (vec![0.0; n], vec![0; n]);
         for column in 0..n {
             let largest = (0..k).fold(0.0f32, |m, row| m.max(matrix.at(row, column).abs()));
@@ -68,7 +68,7 @@ impl Int8Matrix {
     pub fn of_columns(rows: &[f32], stride: usize, width: usize) -> Self {
         let n = rows.len().div_ceil(stride);
         let (groups, mut quantised) = (width.div_ceil(GROUP), vec![0u8; width.next_multiple_of(GROUP)]);
-        let mut data = vec![Line([0; GROUP * LANES]); groups * n.div_ceil(LANES)];
+        let mut data = vec![Int8Tile([0; GROUP * LANES]); groups * n.div_ceil(LANES)];
         let (mut scales, mut offsets) = (vec![0.0; n], vec![0; n]);
         for (token, row) in rows.chunks(stride).enumerate() {
             quantise_rows(&row[..width], width, &mut quantised, &mut scales[token..=token]);
@@ -96,7 +96,7 @@ impl Int8Matrix {
         let k = rows.len().div_ceil(stride);
         assert!(k <= MOST_INPUTS);
         let groups = k.div_ceil(GROUP);
-        let mut data = vec![Line([0; GROUP * LANES]); groups * width.div_ceil(LANES)];
+        let mut data = vec![Int8Tile([0; GROUP * LANES]); groups * width.div_ceil(LANES)];
         let mut largest = vec![0.0f32; width];
         let mut bad = vec![false; width];
         for row in rows.chunks(stride) {
@@ -258,7 +258,7 @@ pub fn fast_here() -> bool {
 }
 
 /// Sums of up to eight rows against one panel.
-fn tile(a: &[u8], groups: usize, lines: &[Line], vectors: usize, sums: &mut [[i32; VECTORS * LANES]]) {
+fn tile(a: &[u8], groups: usize, lines: &[Int8Tile], vectors: usize, sums: &mut [[i32; VECTORS * LANES]]) {
     assert!(a.len() == sums.len() * groups * GROUP && lines.len() == groups * vectors && vectors <= VECTORS);
     #[cfg(target_arch = "x86_64")]
     if fast_here() {
@@ -269,7 +269,13 @@ fn tile(a: &[u8], groups: usize, lines: &[Line], vectors: usize, sums: &mut [[i3
     plain_tile(a, groups, lines, vectors, sums);
 }
 
-fn plain_tile(a: &[u8], groups: usize, lines: &[Line], vectors: usize, sums: &mut [[i32; VECTORS * LANES]]) {
+fn plain_tile(
+    a: &[u8],
+    groups: usize,
+    lines: &[Int8Tile],
+    vectors: usize,
+    sums: &mut [[i32; VECTORS * LANES]],
+) {
     for (row, sums) in a.chunks_exact(groups * GROUP).zip(sums) {
         sums.fill(0);
         for (four, lines) in row.chunks_exact(GROUP).zip(lines.chunks_exact(vectors)) {
@@ -293,7 +299,7 @@ mod vnni {
         _mm512_storeu_si512,
     };
 
-    use super::{GROUP, LANES, Line, ROWS, VECTORS};
+    use super::{GROUP, Int8Tile, LANES, ROWS, VECTORS};
 
     /// # Safety
     /// AVX-512F and VNNI; `a` holds `sums.len()` (1 to 8) rows of `groups` fours, `lines` `groups` times `vectors` lines.
@@ -301,7 +307,7 @@ mod vnni {
     pub unsafe fn tile(
         a: &[u8],
         groups: usize,
-        lines: &[Line],
+        lines: &[Int8Tile],
         vectors: usize,
         sums: &mut [[i32; VECTORS * LANES]],
     ) {
@@ -334,7 +340,7 @@ mod vnni {
     unsafe fn tile_of<const R: usize, const V: usize>(
         a: &[u8],
         groups: usize,
-        lines: &[Line],
+        lines: &[Int8Tile],
         sums: &mut [[i32; VECTORS * LANES]],
     ) {
         let mut held: [[__m512i; V]; R] = [[_mm512_setzero_si512(); V]; R];
@@ -389,7 +395,7 @@ mod tests {
             x.iter_mut()
                 .enumerate()
                 .for_each(|(i, v)| *v *= [1e9, 1.0, 1e-9, 1e-40][i / k % 4]);
-            let packed = Int8Matrix::new(View::rows(&w, n), k, n);
+            let packed = Int8Matrix::new(MatrixView::rows(&w, n), k, n);
             let mut out = vec![f32::NAN; m * n];
             packed.multiply(&x, &bias, &mut out);
             let largest = |v: &mut dyn Iterator<Item = f32>| f64::from(v.fold(0.0f32, |m, v| m.max(v.abs())));
@@ -421,8 +427,8 @@ mod tests {
     fn the_portable_sums_are_the_same() {
         for (rows, groups, vectors) in [(1, 1, 1), (8, 48, 3), (5, 7, 2)] {
             let a: Vec<u8> = (0..rows * groups * GROUP).map(|i| (i * 37 % 256) as u8).collect();
-            let lines: Vec<Line> = (0..groups * vectors)
-                .map(|i| Line(std::array::from_fn(|j| ((i * 64 + j) * 91 % 255) as u8 as i8)))
+            let lines: Vec<Int8Tile> = (0..groups * vectors)
+                .map(|i| Int8Tile(std::array::from_fn(|j| ((i * 64 + j) * 91 % 255) as u8 as i8)))
                 .collect();
             let mut found = vec![[0; VECTORS * LANES]; rows];
             let mut plain = found.clone();
@@ -435,7 +441,7 @@ mod tests {
     /// Row 16, for eight bits: what is not finite stays so, zeros stay zeros.
     #[test]
     fn row_16_int8_inputs() {
-        let packed = Int8Matrix::new(View::rows(&[0.0, 1.0, 0.0, -2.0], 2), 2, 2);
+        let packed = Int8Matrix::new(MatrixView::rows(&[0.0, 1.0, 0.0, -2.0], 2), 2, 2);
         let mut out = [9.0; 8];
         packed.multiply(
             &[0.0, 0.0, f32::NAN, 1.0, f32::INFINITY, 1.0, 3e38, 0.0],

@@ -8,10 +8,10 @@ use rayon::prelude::*;
 
 use super::int8::Int8Matrix;
 use super::kernels;
-use super::map::Map;
-pub use super::view::View;
+use super::map::FeatureMap;
+pub use super::view::MatrixView;
 use crate::Precision;
-use crate::packed_matrix::{LANES, PANEL, PackedMatrix, Start, product};
+use crate::packed_matrix::{InitialSum, LANES, PANEL, PackedMatrix, product};
 use crate::weights::{WeightFile, WeightsError};
 
 /// Epsilon of every norm in these networks.
@@ -23,8 +23,8 @@ pub fn matmul(
     out: &mut [f32],
     out_stride: usize,
     add: bool,
-    a: View<'_>,
-    b: View<'_>,
+    a: MatrixView<'_>,
+    b: MatrixView<'_>,
     [m, n, k]: [usize; 3],
 ) {
     if m == 0 || n == 0 {
@@ -99,7 +99,7 @@ impl Linear {
 
     /// The layer of a weight `[outputs][inputs]`.
     pub fn from_parts(weight: &[f32], bias: Vec<f32>, inputs: usize) -> Self {
-        let weight = PackedMatrix::new(View::columns(weight, inputs), inputs, bias.len());
+        let weight = PackedMatrix::new(MatrixView::columns(weight, inputs), inputs, bias.len());
         Self {
             weight,
             bias,
@@ -115,7 +115,7 @@ impl Linear {
             x,
             inputs,
             [rows, 0, inputs],
-            Start::Bias(&self.bias),
+            InitialSum::Bias(&self.bias),
             out,
             outputs,
         );
@@ -218,7 +218,7 @@ impl ResBlock {
     }
 
     /// Applies the block in place, on all cores.
-    pub fn apply(&self, map: &mut Map) {
+    pub fn apply(&self, map: &mut FeatureMap) {
         let (columns, width) = (map.columns, map.width);
         if self.kernel == 1 {
             map.data
@@ -256,9 +256,9 @@ impl ResBlock {
                 for dx in 0..3 {
                     let from = (piece * PIECE_ROWS + dx) * stride;
                     let start = if dx == 0 {
-                        Start::Bias(&self.first.bias)
+                        InitialSum::Bias(&self.first.bias)
                     } else {
-                        Start::Add
+                        InitialSum::Add
                     };
                     let sizes = [cells, dx * 3 * width, 3 * width];
                     self.first
@@ -295,7 +295,7 @@ impl<'a> Head<'a> {
     pub fn new(keys_values: &'a [f32], stride: usize, width: usize, key_at: usize, value_at: usize) -> Self {
         let tokens = keys_values.len() / stride;
         Self {
-            keys: PackedMatrix::new(View::columns(&keys_values[key_at..], stride), width, tokens),
+            keys: PackedMatrix::new(MatrixView::columns(&keys_values[key_at..], stride), width, tokens),
             keys_values,
             stride,
             value_at,
@@ -315,7 +315,7 @@ impl<'a> Head<'a> {
             let rows = queries.len() / width;
             let scores = &mut scores[..rows * tokens];
             self.keys
-                .multiply(queries, width, [rows, 0, width], Start::Zero, scores, tokens);
+                .multiply(queries, width, [rows, 0, width], InitialSum::Zero, scores, tokens);
             kernels::softmax_rows(scores, tokens, &mut sums[..rows]);
             self.mix(scores, [rows, width, tokens], out, out_stride);
             for (row, sum) in out.chunks_mut(out_stride).zip(&sums) {
@@ -340,13 +340,16 @@ impl<'a> Head<'a> {
                     values,
                     self.stride,
                     sizes,
-                    Start::Zero,
+                    InitialSum::Zero,
                     out,
                     out_stride,
                 );
             }
         } else {
-            let (a, b) = (View::rows(scores, tokens), View::rows(values, self.stride));
+            let (a, b) = (
+                MatrixView::rows(scores, tokens),
+                MatrixView::rows(values, self.stride),
+            );
             matmul(out, out_stride, false, a, b, [rows, width, tokens]);
         }
     }
@@ -379,8 +382,8 @@ mod tests {
                 &mut out,
                 n,
                 false,
-                View::rows(&a, k),
-                View::rows(&b, n),
+                MatrixView::rows(&a, k),
+                MatrixView::rows(&b, n),
                 [m, n, k],
             );
             for (at, found) in out.iter().enumerate() {
@@ -416,7 +419,7 @@ mod tests {
         const WIDTH: usize = 6;
         for (rows, columns, kernel) in [(7, 9, 3), (1, 4, 3), (5, 1, 3), (1, 1, 3), (12, 3, 1), (11, 2, 3)] {
             let block = block(WIDTH, kernel);
-            let mut map = Map {
+            let mut map = FeatureMap {
                 data: wave(rows * columns * WIDTH, 0.17),
                 rows,
                 columns,

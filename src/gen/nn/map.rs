@@ -2,7 +2,7 @@
 
 /// A feature map: `rows x columns` places of `width` channels, channel fastest.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Map {
+pub struct FeatureMap {
     /// Values.
     pub data: Vec<f32>,
     /// Places along x.
@@ -13,7 +13,7 @@ pub struct Map {
     pub width: usize,
 }
 
-impl Map {
+impl FeatureMap {
     /// Half as many places each way, four times the channels, ordered (dx, dy, channel).
     pub fn fold(&self) -> Self {
         let (rows, columns, width) = (self.rows / 2, self.columns / 2, self.width);
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn unfold_is_the_inverse_of_fold() {
-        let map = Map {
+        let map = FeatureMap {
             data: (0..4 * 6 * 3).map(|i| i as f32).collect(),
             rows: 4,
             columns: 6,

@@ -4,7 +4,7 @@
 use thiserror::Error;
 
 use crate::Precision;
-use crate::map::Map;
+use crate::map::FeatureMap;
 use crate::ring::RingBlockParts;
 use crate::rules::RuleBook;
 use crate::weights::{WeightFile, WeightsError};
@@ -29,7 +29,7 @@ impl OpsError {
 }
 
 /// Values of a backend: `rows x columns` places of `width` channels, as [`Map`] has them.
-pub trait Values: Clone + Send + Sync {
+pub trait BackendTensor: Clone + Send + Sync {
     /// Places along x.
     fn rows(&self) -> usize;
     /// Places along y.
@@ -64,7 +64,7 @@ pub struct BlockParts<L> {
 
 /// A directed edge of a graph ([`Ops::messages`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge {
+pub struct MessageEdge {
     /// Node that the message comes from.
     pub from: usize,
     /// Node that the message goes to.
@@ -111,7 +111,7 @@ pub trait Ops: Send + Sync + Sized + 'static {
     /// Name for messages.
     const NAME: &'static str;
     /// Value that passes between blocks.
-    type Tensor: Values;
+    type Tensor: BackendTensor;
     /// y = x W + b at every place.
     type Linear: Send + Sync;
     /// Layer norm of every place, with scale and shift.
@@ -136,9 +136,9 @@ pub trait Ops: Send + Sync + Sized + 'static {
     type RingBlock: Send + Sync;
 
     /// Moves values from the processor to the backend.
-    fn upload(&self, map: Map) -> Result<Self::Tensor, OpsError>;
+    fn upload(&self, map: FeatureMap) -> Result<Self::Tensor, OpsError>;
     /// Moves values back to the processor.
-    fn download(&self, x: Self::Tensor) -> Result<Map, OpsError>;
+    fn download(&self, x: Self::Tensor) -> Result<FeatureMap, OpsError>;
 
     /// A linear layer; `weight` is `[outputs][inputs]`.
     fn linear_from(&self, weight: &[f32], bias: Vec<f32>, inputs: usize) -> Result<Self::Linear, OpsError>;
@@ -259,7 +259,7 @@ pub trait Ops: Send + Sync + Sized + 'static {
         &self,
         round: &Self::Messages,
         x: Self::Tensor,
-        edges: &[Edge],
+        edges: &[MessageEdge],
     ) -> Result<Self::Tensor, OpsError>;
     /// A transformer block over the nodes `x`, which also see the keys and values of `context`, `[token][keys | values]`.
     /// `bias`, `[head][query][key]`, is added to the scores of nodes. `ada` is one
@@ -301,7 +301,7 @@ pub trait Ops: Send + Sync + Sized + 'static {
 
     /// Places of `width` numbers, one after the other.
     fn sequence(&self, numbers: Vec<f32>, width: usize) -> Result<Self::Tensor, OpsError> {
-        self.upload(Map {
+        self.upload(FeatureMap {
             rows: numbers.len() / width.max(1),
             columns: 1,
             width,

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use crate::Precision;
 use crate::layers::{Head, Linear, Norm};
-use crate::map::Map;
-use crate::transformer::{Body, Places, piece_of, shrunk_queries};
+use crate::map::FeatureMap;
+use crate::transformer::{Places, TransformerCore, piece_of, shrunk_queries};
 
 /// Parts of a block over a ring of maps ([`Ops::ring_block`](crate::Ops::ring_block)).
 pub struct RingBlockParts<L, N> {
@@ -44,7 +44,7 @@ pub struct AcrossParts<L, N> {
 /// A block with its weights.
 pub struct RingBlock {
     offset: Vec<f32>,
-    body: Body,
+    body: TransformerCore,
     across: Option<AcrossParts<Linear, Norm>>,
     heads: usize,
 }
@@ -55,7 +55,7 @@ impl RingBlock {
         let layers = [parts.qkv, parts.proj, parts.fc1, parts.fc2];
         Self {
             offset: parts.offset,
-            body: Body::new(layers, Some(parts.local), parts.heads),
+            body: TransformerCore::new(layers, Some(parts.local), parts.heads),
             across: parts.across,
             heads: parts.heads,
         }
@@ -63,7 +63,7 @@ impl RingBlock {
 
     /// Applies the block in place over maps of one size, in the order of the ring: the map before one is on its left,
     /// the last one on the left of the first. `ada` has for each of them what modulates it, `[6][width]`.
-    pub fn apply(&self, maps: &mut [Map], ada: &[Map]) {
+    pub fn apply(&self, maps: &mut [FeatureMap], ada: &[FeatureMap]) {
         let precision = Precision::F32;
         let ada: Vec<Vec<f32>> = ada
             .iter()
@@ -96,9 +96,9 @@ impl RingBlock {
     }
 
     /// Adds to every map its attention to its neighbours.
-    fn hear(&self, across: &AcrossParts<Linear, Norm>, maps: &mut [Map]) {
-        let piece = |map: &Map| piece_of(map.rows * map.columns);
-        let project = |map: &Map| {
+    fn hear(&self, across: &AcrossParts<Linear, Norm>, maps: &mut [FeatureMap]) {
+        let piece = |map: &FeatureMap| piece_of(map.rows * map.columns);
+        let project = |map: &FeatureMap| {
             let width = map.width;
             let mut qkv = vec![0.0; 3 * map.data.len()];
             qkv.par_chunks_mut(piece(map) * 3 * width)

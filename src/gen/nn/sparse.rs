@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::layers::{Linear, Norm, View};
+use crate::layers::{Linear, MatrixView, Norm};
 use crate::packed_matrix::PackedMatrix;
 use crate::rules::{PIECE, Piece, RuleBook};
 
@@ -19,7 +19,7 @@ impl Convolution {
     pub fn from_parts(weight: &[f32], bias: Vec<f32>, taps: usize) -> Self {
         let inputs = weight.len() / (taps * bias.len());
         Self {
-            weight: PackedMatrix::new(View::rows(weight, bias.len()), taps * inputs, bias.len()),
+            weight: PackedMatrix::new(MatrixView::rows(weight, bias.len()), taps * inputs, bias.len()),
             bias,
             taps,
             inputs,
@@ -66,13 +66,13 @@ impl Convolution {
 }
 
 /// x + W relu(conv(norm(x))). Twin of `Block`.
-pub struct Residual {
+pub struct SiteResidual {
     norm: Norm,
     conv: Convolution,
     linear: Linear,
 }
 
-impl Residual {
+impl SiteResidual {
     /// The block of its parts.
     pub fn from_parts(norm: Norm, conv: Convolution, linear: Linear) -> Self {
         Self { norm, conv, linear }

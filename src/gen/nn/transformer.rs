@@ -22,15 +22,15 @@ enum AnyHead<'a> {
 }
 
 /// A block with its weights, over a square map.
-pub struct Block {
+pub struct TransformerBlock {
     /// Time to shift, scale and gate of attention, then of the MLP.
     pub(crate) ada: Linear,
-    body: Body,
+    body: TransformerCore,
     side: usize,
 }
 
 /// The part of a block after its modulation: shifts, scales and gates are given. Works on a map of any shape.
-pub(crate) struct Body {
+pub(crate) struct TransformerCore {
     qkv: Linear,
     proj: Linear,
     fc1: Linear,
@@ -59,11 +59,11 @@ pub fn piece_of(tokens: usize) -> usize {
     tokens.div_ceil(4).clamp(SMALL_PIECE, PIECE)
 }
 
-impl Block {
+impl TransformerBlock {
     /// The block of its parts.
     pub fn new(parts: BlockParts<Linear>) -> Self {
         Self {
-            body: Body::new(
+            body: TransformerCore::new(
                 [parts.qkv, parts.proj, parts.fc1, parts.fc2],
                 parts.local,
                 parts.heads,
@@ -93,7 +93,7 @@ impl Block {
     }
 }
 
-impl Body {
+impl TransformerCore {
     /// The body of its parts, without a convolution if `local` is `None`.
     pub(crate) fn new(
         [qkv, proj, fc1, fc2]: [Linear; 4],
@@ -255,8 +255,8 @@ mod tests {
         )
     }
 
-    fn block(golden: &Golden, ada: Linear) -> Block {
-        Block::new(BlockParts {
+    fn block(golden: &Golden, ada: Linear) -> TransformerBlock {
+        TransformerBlock::new(BlockParts {
             ada,
             qkv: linear(golden, "dit.qkv", WIDTH),
             proj: linear(golden, "dit.proj", WIDTH),
@@ -269,7 +269,7 @@ mod tests {
     }
 
     /// Runs the block over sequences of `length` tokens: x [2][..][length][16], c [2][16].
-    fn run(block: &Block, x: &[f32], c: &[f32], length: usize) -> Vec<f32> {
+    fn run(block: &TransformerBlock, x: &[f32], c: &[f32], length: usize) -> Vec<f32> {
         let mut out = x.to_vec();
         for (half, c) in out.chunks_exact_mut(x.len() / 2).zip(c.chunks_exact(WIDTH)) {
             let time: Vec<f32> = c.iter().map(|v| kernels::silu(*v)).collect();

@@ -2,13 +2,13 @@
 
 /// A matrix inside a slice: value (r, c) lies at `r * row_stride + c * column_stride`.
 #[derive(Clone, Copy)]
-pub struct View<'a> {
+pub struct MatrixView<'a> {
     pub(crate) data: &'a [f32],
     pub(crate) row_stride: usize,
     pub(crate) column_stride: usize,
 }
 
-impl<'a> View<'a> {
+impl<'a> MatrixView<'a> {
     /// Rows of `row_stride` values from the start of `data`; rows may overlap.
     pub fn rows(data: &'a [f32], row_stride: usize) -> Self {
         Self {

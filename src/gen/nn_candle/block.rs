@@ -2,24 +2,24 @@
 
 use candle_core::{Device, Result, Tensor};
 
-use super::{Linear, by_head, index, modulated, softmax};
+use super::{CandleLinear, by_head, index, modulated, softmax};
 use nn::ops::BlockParts;
 
 /// A block with its weights.
-pub struct Block {
-    ada: Linear,
-    qkv: Linear,
-    proj: Linear,
-    fc1: Linear,
-    fc2: Linear,
+pub struct CandleBlock {
+    ada: CandleLinear,
+    qkv: CandleLinear,
+    proj: CandleLinear,
+    fc1: CandleLinear,
+    fc2: CandleLinear,
     local: Option<(Tensor, Tensor)>, // [width, 1, 3, 3] and [1, width]
     heads: usize,
     side: usize,
 }
 
-impl Block {
+impl CandleBlock {
     /// The block of its parts.
-    pub(super) fn new(parts: BlockParts<Linear>, device: &Device) -> Result<Self> {
+    pub(super) fn new(parts: BlockParts<CandleLinear>, device: &Device) -> Result<Self> {
         let local = match parts.local {
             Some((weight, bias)) => {
                 let width = bias.len();
@@ -41,7 +41,7 @@ impl Block {
     }
 
     /// The layer that modulates the block.
-    pub(super) fn ada(&self) -> &Linear {
+    pub(super) fn ada(&self) -> &CandleLinear {
         &self.ada
     }
 

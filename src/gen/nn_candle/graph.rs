@@ -2,21 +2,21 @@
 
 use candle_core::{Device, Result, Tensor};
 
-use super::{Linear, by_head, index, modulated, softmax, unit};
-use nn::ops::{Edge, MessageParts, NodeBlockParts};
+use super::{CandleLinear, by_head, index, modulated, softmax, unit};
+use nn::ops::{MessageEdge, MessageParts, NodeBlockParts};
 
 /// A round of messages along edges.
 pub struct Messages {
-    source: Linear,
-    target: Linear,
+    source: CandleLinear,
+    target: CandleLinear,
     relation: Tensor, // [relations, width]
-    distance: Linear,
-    out: Linear,
+    distance: CandleLinear,
+    out: CandleLinear,
 }
 
 impl Messages {
     /// The round of its parts.
-    pub(super) fn new(parts: MessageParts<Linear>, device: &Device) -> Result<Self> {
+    pub(super) fn new(parts: MessageParts<CandleLinear>, device: &Device) -> Result<Self> {
         let width = parts.out.weight.dim(1)?;
         let relations = parts.relation.len() / width;
         Ok(Self {
@@ -29,11 +29,11 @@ impl Messages {
     }
 
     /// The nodes `[nodes, width]` after the round.
-    pub(super) fn forward(&self, x: &Tensor, edges: &[Edge]) -> Result<Tensor> {
+    pub(super) fn forward(&self, x: &Tensor, edges: &[MessageEdge]) -> Result<Tensor> {
         let (nodes, device) = (x.dim(0)?, x.device());
         let mut mean = x.zeros_like()?;
         if !edges.is_empty() {
-            let of = |end: fn(&Edge) -> usize| index(edges.iter().map(end), device);
+            let of = |end: fn(&MessageEdge) -> usize| index(edges.iter().map(end), device);
             let (from, to) = (of(|e| e.from)?, of(|e| e.to)?);
             let distances: Vec<f32> = edges.iter().flat_map(|e| e.distance).collect();
             let distances = Tensor::from_vec(distances, (edges.len(), 2), device)?;
@@ -55,16 +55,16 @@ impl Messages {
 /// A transformer block over nodes.
 pub struct NodeBlock {
     shift: Tensor, // [1, 6 width]
-    qkv: Linear,
-    proj: Linear,
-    fc1: Linear,
-    fc2: Linear,
+    qkv: CandleLinear,
+    proj: CandleLinear,
+    fc1: CandleLinear,
+    fc2: CandleLinear,
     heads: usize,
 }
 
 impl NodeBlock {
     /// The block of its parts.
-    pub(super) fn new(parts: NodeBlockParts<Linear>, device: &Device) -> Result<Self> {
+    pub(super) fn new(parts: NodeBlockParts<CandleLinear>, device: &Device) -> Result<Self> {
         let count = parts.shift.len();
         Ok(Self {
             shift: Tensor::from_vec(parts.shift, (1, count), device)?,

@@ -9,11 +9,11 @@ mod sparse;
 
 use candle_core::{D, Device, Result as CandleResult, Tensor};
 
-use block::Block;
+use block::CandleBlock;
 use graph::{Messages, NodeBlock};
 use nn::Precision;
-use nn::map::Map;
-use nn::ops::{BlockParts, Edge, MessageParts, NodeBlockParts, Ops, OpsError, Values};
+use nn::map::FeatureMap;
+use nn::ops::{BackendTensor, BlockParts, MessageEdge, MessageParts, NodeBlockParts, Ops, OpsError};
 use nn::ring::RingBlockParts;
 use nn::rules::RuleBook;
 use ring::RingBlock;
@@ -59,7 +59,7 @@ pub struct CandleMap {
     width: usize,
 }
 
-impl Values for CandleMap {
+impl BackendTensor for CandleMap {
     fn rows(&self) -> usize {
         self.rows
     }
@@ -80,12 +80,12 @@ impl CandleMap {
 }
 
 /// y = x W + b.
-pub struct Linear {
+pub struct CandleLinear {
     weight: Tensor, // [inputs, outputs]
     bias: Tensor,
 }
 
-impl Linear {
+impl CandleLinear {
     fn forward(&self, x: &Tensor) -> CandleResult<Tensor> {
         x.matmul(&self.weight)?.broadcast_add(&self.bias)
     }
@@ -129,15 +129,15 @@ fn softmax(scores: &Tensor) -> CandleResult<Tensor> {
 }
 
 /// A residual block.
-pub struct Residual {
+pub struct CandleResidual {
     norm: Norm,
     weight: Tensor, // [out, in, kernel, kernel]
     bias: Tensor,
     kernel: usize,
-    second: Linear,
+    second: CandleLinear,
 }
 
-impl Residual {
+impl CandleResidual {
     fn forward(&self, x: &CandleMap) -> CandleResult<Tensor> {
         let planes = self.norm.forward(&x.data)?;
         let planes = planes.reshape((x.rows, x.columns, x.width))?.permute((2, 0, 1))?;
@@ -166,19 +166,19 @@ fn index(places: impl Iterator<Item = usize>, device: &Device) -> CandleResult<T
 impl Ops for Candle {
     const NAME: &'static str = "candle";
     type Tensor = CandleMap;
-    type Linear = Linear;
+    type Linear = CandleLinear;
     type Norm = Norm;
-    type Residual = Residual;
+    type Residual = CandleResidual;
     type Table = Tensor;
-    type Block = Block;
+    type Block = CandleBlock;
     type SparseConvolution = Convolution;
-    type SparseResidual = sparse::Residual;
+    type SparseResidual = sparse::CandleSiteResidual;
     type Room = ();
     type Messages = Messages;
     type NodeBlock = NodeBlock;
     type RingBlock = RingBlock;
 
-    fn upload(&self, map: Map) -> Result<CandleMap, OpsError> {
+    fn upload(&self, map: FeatureMap) -> Result<CandleMap, OpsError> {
         let (rows, columns, width) = (map.rows, map.columns, map.width);
         let data = self.tensor(map.data, rows * columns, width).map_err(refused)?;
         Ok(CandleMap {
@@ -189,9 +189,9 @@ impl Ops for Candle {
         })
     }
 
-    fn download(&self, x: CandleMap) -> Result<Map, OpsError> {
+    fn download(&self, x: CandleMap) -> Result<FeatureMap, OpsError> {
         let data = x.data.flatten_all().and_then(|t| t.to_vec1());
-        Ok(Map {
+        Ok(FeatureMap {
             data: data.map_err(refused)?,
             rows: x.rows,
             columns: x.columns,
@@ -199,10 +199,10 @@ impl Ops for Candle {
         })
     }
 
-    fn linear_from(&self, weight: &[f32], bias: Vec<f32>, inputs: usize) -> Result<Linear, OpsError> {
+    fn linear_from(&self, weight: &[f32], bias: Vec<f32>, inputs: usize) -> Result<CandleLinear, OpsError> {
         let outputs = bias.len();
         let make = || {
-            Ok(Linear {
+            Ok(CandleLinear {
                 weight: self.tensor(weight.to_vec(), outputs, inputs)?.t()?.contiguous()?,
                 bias: self.tensor(bias, 1, outputs)?,
             })
@@ -227,11 +227,11 @@ impl Ops for Candle {
         weight: &[f32],
         bias: Vec<f32>,
         kernel: usize,
-        second: Linear,
-    ) -> Result<Residual, OpsError> {
+        second: CandleLinear,
+    ) -> Result<CandleResidual, OpsError> {
         let width = bias.len();
         let make = || {
-            Ok(Residual {
+            Ok(CandleResidual {
                 norm,
                 weight: Tensor::from_slice(weight, (width, width, kernel, kernel), &self.0)?,
                 bias: self.tensor(bias, 1, width)?,
@@ -247,8 +247,8 @@ impl Ops for Candle {
         self.tensor(entries, count, width).map_err(refused)
     }
 
-    fn block_from(&self, parts: BlockParts<Linear>) -> Result<Block, OpsError> {
-        Block::new(parts, &self.0).map_err(refused)
+    fn block_from(&self, parts: BlockParts<CandleLinear>) -> Result<CandleBlock, OpsError> {
+        CandleBlock::new(parts, &self.0).map_err(refused)
     }
 
     fn sparse_from(&self, weight: &[f32], bias: Vec<f32>, taps: usize) -> Result<Convolution, OpsError> {
@@ -259,24 +259,24 @@ impl Ops for Candle {
         &self,
         norm: Norm,
         convolution: Convolution,
-        linear: Linear,
-    ) -> Result<sparse::Residual, OpsError> {
-        Ok(sparse::Residual {
+        linear: CandleLinear,
+    ) -> Result<sparse::CandleSiteResidual, OpsError> {
+        Ok(sparse::CandleSiteResidual {
             norm,
             convolution,
             linear,
         })
     }
 
-    fn messages_from(&self, parts: MessageParts<Linear>) -> Result<Messages, OpsError> {
+    fn messages_from(&self, parts: MessageParts<CandleLinear>) -> Result<Messages, OpsError> {
         Messages::new(parts, &self.0).map_err(refused)
     }
 
-    fn node_block_from(&self, parts: NodeBlockParts<Linear>) -> Result<NodeBlock, OpsError> {
+    fn node_block_from(&self, parts: NodeBlockParts<CandleLinear>) -> Result<NodeBlock, OpsError> {
         NodeBlock::new(parts, &self.0).map_err(refused)
     }
 
-    fn ring_block_from(&self, parts: RingBlockParts<Linear, Norm>) -> Result<RingBlock, OpsError> {
+    fn ring_block_from(&self, parts: RingBlockParts<CandleLinear, Norm>) -> Result<RingBlock, OpsError> {
         RingBlock::new(parts, &self.0).map_err(refused)
     }
 
@@ -289,11 +289,11 @@ impl Ops for Candle {
         block.forward(maps, ada).map_err(refused)
     }
 
-    fn apply(&self, linear: &Linear, x: &CandleMap, _: usize) -> Result<CandleMap, OpsError> {
+    fn apply(&self, linear: &CandleLinear, x: &CandleMap, _: usize) -> Result<CandleMap, OpsError> {
         linear.forward(&x.data).and_then(|y| x.with(y)).map_err(refused)
     }
 
-    fn apply_each(&self, layers: &[&Linear], x: &CandleMap) -> Result<Vec<CandleMap>, OpsError> {
+    fn apply_each(&self, layers: &[&CandleLinear], x: &CandleMap) -> Result<Vec<CandleMap>, OpsError> {
         layers.iter().map(|l| self.apply(l, x, 1)).collect()
     }
 
@@ -307,11 +307,11 @@ impl Ops for Candle {
         y.and_then(|y| x.with(y)).map_err(refused)
     }
 
-    fn residual(&self, block: &Residual, x: CandleMap) -> Result<CandleMap, OpsError> {
+    fn residual(&self, block: &CandleResidual, x: CandleMap) -> Result<CandleMap, OpsError> {
         block.forward(&x).and_then(|y| x.with(y)).map_err(refused)
     }
 
-    fn reach(block: &Residual) -> usize {
+    fn reach(block: &CandleResidual) -> usize {
         block.kernel / 2
     }
 
@@ -341,13 +341,13 @@ impl Ops for Candle {
         add().map_err(refused)
     }
 
-    fn ada(block: &Block) -> &Linear {
+    fn ada(block: &CandleBlock) -> &CandleLinear {
         block.ada()
     }
 
     fn block(
         &self,
-        block: &Block,
+        block: &CandleBlock,
         x: CandleMap,
         ada: &CandleMap,
         places: &[usize],
@@ -371,7 +371,7 @@ impl Ops for Candle {
 
     fn likeliest(
         &self,
-        head: &Linear,
+        head: &CandleLinear,
         x: &CandleMap,
         places: &[usize],
         voxels: usize,
@@ -419,7 +419,7 @@ impl Ops for Candle {
 
     fn sparse_residual(
         &self,
-        block: &sparse::Residual,
+        block: &sparse::CandleSiteResidual,
         x: CandleMap,
         rules: &RuleBook,
         (): &mut (),
@@ -428,7 +428,7 @@ impl Ops for Candle {
         y.and_then(|y| x.with(y)).map_err(refused)
     }
 
-    fn messages(&self, round: &Messages, x: CandleMap, edges: &[Edge]) -> Result<CandleMap, OpsError> {
+    fn messages(&self, round: &Messages, x: CandleMap, edges: &[MessageEdge]) -> Result<CandleMap, OpsError> {
         let y = round.forward(&x.data, edges);
         y.and_then(|y| x.with(y)).map_err(refused)
     }

@@ -2,16 +2,16 @@
 
 use candle_core::{Device, Result, Tensor};
 
-use super::{CandleMap, Linear, Norm, by_head, modulated, softmax};
+use super::{CandleLinear, CandleMap, Norm, by_head, modulated, softmax};
 use nn::ring::{AcrossParts, RingBlockParts};
 
 /// A block with its weights.
 pub struct RingBlock {
     offset: Tensor, // [1, 6 width]
-    qkv: Linear,
-    proj: Linear,
-    fc1: Linear,
-    fc2: Linear,
+    qkv: CandleLinear,
+    proj: CandleLinear,
+    fc1: CandleLinear,
+    fc2: CandleLinear,
     local: (Tensor, Tensor), // [width, 1, 3, 3] and [1, width]
     across: Option<Across>,
     heads: usize,
@@ -21,16 +21,16 @@ pub struct RingBlock {
 struct Across {
     norm: Norm,
     side: Tensor, // [2, width]
-    qkv: Linear,
-    proj: Linear,
+    qkv: CandleLinear,
+    proj: CandleLinear,
 }
 
 impl RingBlock {
     /// The block of its parts.
-    pub(super) fn new(parts: RingBlockParts<Linear, Norm>, device: &Device) -> Result<Self> {
+    pub(super) fn new(parts: RingBlockParts<CandleLinear, Norm>, device: &Device) -> Result<Self> {
         let (weight, bias) = parts.local;
         let width = bias.len();
-        let across = |parts: AcrossParts<Linear, Norm>| -> Result<Across> {
+        let across = |parts: AcrossParts<CandleLinear, Norm>| -> Result<Across> {
             Ok(Across {
                 norm: parts.norm,
                 side: Tensor::from_vec(parts.side, (2, width), device)?,

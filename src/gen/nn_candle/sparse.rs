@@ -2,7 +2,7 @@
 
 use candle_core::{Device, Result, Tensor};
 
-use super::{Linear, Norm, index};
+use super::{CandleLinear, Norm, index};
 use nn::rules::RuleBook;
 
 /// A convolution over sites.
@@ -41,13 +41,13 @@ impl Convolution {
 }
 
 /// x + W relu(convolution(norm(x))).
-pub struct Residual {
+pub struct CandleSiteResidual {
     pub(super) norm: Norm,
     pub(super) convolution: Convolution,
-    pub(super) linear: Linear,
+    pub(super) linear: CandleLinear,
 }
 
-impl Residual {
+impl CandleSiteResidual {
     pub(super) fn forward(&self, x: &Tensor, rules: &RuleBook) -> Result<Tensor> {
         let inner = self.convolution.forward(&self.norm.forward(x)?, rules)?;
         x + self.linear.forward(&inner.relu()?)?

@@ -6,18 +6,18 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use scene::background::{LineKind, PostKind, TreeKind};
-use world::scenery::Setting;
+use world::scenery::RoadsideKind;
 
 /// Bytes `start..end` of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-pub struct Span {
+pub struct TextSpan {
     /// First byte.
     pub start: usize,
     /// One past the last byte.
     pub end: usize,
 }
 
-impl Span {
+impl TextSpan {
     /// The span from the first byte of this one to the last byte of the other.
     pub fn to(self, other: Self) -> Self {
         Self {
@@ -35,9 +35,9 @@ impl Span {
 /// A kind of thing that stands beside the road.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum What {
+pub enum SceneryKind {
     /// Buildings, of a kind of place if the word says so: a warehouse is industry.
-    Building(Option<Setting>),
+    Building(Option<RoadsideKind>),
     /// Trees, of a kind if the word says so.
     Tree(Option<TreeKind>),
     /// Bushes and undergrowth.
@@ -47,7 +47,7 @@ pub enum What {
     /// A pole, sign, lamp, stop, bench or bin.
     Post(PostKind),
     /// A kind of place: a forest.
-    Place(Setting),
+    Place(RoadsideKind),
     /// Trees, shrubs and hedges.
     Plants,
     /// Any thing; only with its number.
@@ -132,11 +132,11 @@ pub enum Amount {
 /// One clause about what stands beside the road.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Said {
+pub struct SceneryClause {
     /// The request.
     pub verb: Verb,
     /// The things.
-    pub what: What,
+    pub what: SceneryKind,
     /// Number of a thing: `tree #12`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<u32>,
@@ -175,12 +175,12 @@ pub struct Said {
     pub place: Where,
     /// Bytes of the text, if the reader knows them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub span: Option<Span>,
+    pub span: Option<TextSpan>,
 }
 
-impl Said {
+impl SceneryClause {
     /// A clause of only a request and its things.
-    pub fn new(verb: Verb, what: What) -> Self {
+    pub fn new(verb: Verb, what: SceneryKind) -> Self {
         Self {
             verb,
             what,
@@ -208,7 +208,7 @@ impl Said {
         });
         let far = |m: f64| !(0.0..=1000.0).contains(&m);
         match () {
-            () if self.what == What::Thing && self.id.is_none() => Some("a thing without its number"),
+            () if self.what == SceneryKind::Thing && self.id.is_none() => Some("a thing without its number"),
             () if self.count.is_some_and(|n| n > 500) => Some("a count above 500"),
             () if lengths.into_iter().chain(self.place.distance_m).any(far) => {
                 Some("a length that is not between 0 and 1000 m")
@@ -226,26 +226,26 @@ impl Said {
     /// Its things without article and place: `dense trees`, `tree #12`.
     fn bare(&self) -> String {
         let noun = match self.what {
-            What::Building(None) => "building".to_owned(),
-            What::Building(Some(of)) => match of {
-                Setting::Suburb => "house".into(),
-                Setting::OldTown => "old house".into(),
-                Setting::Country => "farm".into(),
-                Setting::Industry => "warehouse".into(),
-                Setting::Retail => "shop".into(),
+            SceneryKind::Building(None) => "building".to_owned(),
+            SceneryKind::Building(Some(of)) => match of {
+                RoadsideKind::Suburb => "house".into(),
+                RoadsideKind::OldTown => "old house".into(),
+                RoadsideKind::Country => "farm".into(),
+                RoadsideKind::Industry => "warehouse".into(),
+                RoadsideKind::Retail => "shop".into(),
                 _ => "city building".into(),
             },
-            What::Tree(None) => "tree".into(),
-            What::Tree(Some(TreeKind::Conifer)) => "conifer".into(),
-            What::Tree(Some(TreeKind::Columnar)) => "poplar".into(),
-            What::Tree(Some(TreeKind::Bare)) => "bare tree".into(),
-            What::Tree(Some(TreeKind::Broadleaf)) => "broadleaf tree".into(),
-            What::Shrubs => "shrubs".into(),
-            What::Line(kind) => kind.name().replace('_', " "),
-            What::Post(kind) => kind.name().replace('_', " "),
-            What::Place(of) => of.label().to_lowercase(),
-            What::Plants => "greenery".into(),
-            What::Thing => "thing".into(),
+            SceneryKind::Tree(None) => "tree".into(),
+            SceneryKind::Tree(Some(TreeKind::Conifer)) => "conifer".into(),
+            SceneryKind::Tree(Some(TreeKind::Columnar)) => "poplar".into(),
+            SceneryKind::Tree(Some(TreeKind::Bare)) => "bare tree".into(),
+            SceneryKind::Tree(Some(TreeKind::Broadleaf)) => "broadleaf tree".into(),
+            SceneryKind::Shrubs => "shrubs".into(),
+            SceneryKind::Line(kind) => kind.name().replace('_', " "),
+            SceneryKind::Post(kind) => kind.name().replace('_', " "),
+            SceneryKind::Place(of) => of.label().to_lowercase(),
+            SceneryKind::Plants => "greenery".into(),
+            SceneryKind::Thing => "thing".into(),
         };
         let noun = match self.is_many() && !self.is_mass() {
             true if noun.ends_with("ch") || noun.ends_with('s') => format!("{noun}es"),
@@ -266,7 +266,10 @@ impl Said {
     }
 
     fn is_mass(&self) -> bool {
-        matches!(self.what, What::Shrubs | What::Plants | What::Place(_))
+        matches!(
+            self.what,
+            SceneryKind::Shrubs | SceneryKind::Plants | SceneryKind::Place(_)
+        )
     }
 
     fn is_many(&self) -> bool {
@@ -331,7 +334,7 @@ impl Said {
     }
 }
 
-impl fmt::Display for Said {
+impl fmt::Display for SceneryClause {
     /// The request in words: `removes the trees on the left`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (things, place) = (self.things(), self.place());
@@ -374,10 +377,10 @@ mod tests {
 
     #[test]
     fn values_from_elsewhere_are_checked() {
-        let tree = Said::new(Verb::Add, What::Tree(None));
+        let tree = SceneryClause::new(Verb::Add, SceneryKind::Tree(None));
         assert_eq!(tree.problem(), None);
-        let bad: [fn(&mut Said); 6] = [
-            |s| s.what = What::Thing,
+        let bad: [fn(&mut SceneryClause); 6] = [
+            |s| s.what = SceneryKind::Thing,
             |s| s.count = Some(501),
             |s| s.height = Some(Amount::Storeys(1e9)),
             |s| s.place.distance_m = Some(-1.0),

@@ -2,26 +2,29 @@
 
 use glam::{DVec2, DVec3};
 
-use super::holds::{Target, course, gap_m, measured};
+use super::holds::{RelationReference, course, gap_m, measured};
 use super::spots::Spot;
-use scene::graph::{Edge, RelationKind};
+use scene::graph::{GraphEdge, RelationKind};
 use scene::{BoxId, BoxLabel, Class, SceneBox};
 
 /// A spot for an object that is only told a direction to face: it stays at its place. `None` for others, and for
 /// drivers, which keep to their lane.
-pub(super) fn turned_where_it_is(old: &SceneBox, stated: &[(Edge, Option<Target>)]) -> Option<Spot> {
+pub(super) fn turned_where_it_is(
+    old: &SceneBox,
+    stated: &[(GraphEdge, Option<RelationReference>)],
+) -> Option<Spot> {
     use RelationKind as R;
     let drives = old.class != Class::Pedestrian && old.velocity_mps.length() > 0.5;
     let p = old.center_m.truncate();
     let mut looks = None;
     for (e, to) in stated {
         match (e.relation, to) {
-            (R::On | R::ParkedOn, Some(Target::Lane(_))) => {}
+            (R::On | R::ParkedOn, Some(RelationReference::Lane(_))) => {}
             (R::Facing | R::FacingAway, Some(to)) => {
                 let away = if e.relation == R::FacingAway { -1.0 } else { 1.0 };
                 looks = Some(match to {
-                    Target::Thing(b) if b.id.0 == u32::MAX => -p * away,
-                    Target::Thing(b) => (b.center_m.truncate() - p) * away,
+                    RelationReference::Thing(b) if b.id.0 == u32::MAX => -p * away,
+                    RelationReference::Thing(b) => (b.center_m.truncate() - p) * away,
                     _ => return None,
                 });
             }
@@ -57,9 +60,9 @@ pub(super) fn off_line(ends: [DVec2; 2], p: DVec2) -> f64 {
 }
 
 /// Cost of a place far before or behind the named thing.
-pub(super) fn off_thing(e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
+pub(super) fn off_thing(e: &GraphEdge, to: &Option<RelationReference>, p: DVec2) -> f64 {
     match (e.relation, to) {
-        (RelationKind::InFrontOf | RelationKind::Behind, Some(Target::Thing(b)))
+        (RelationKind::InFrontOf | RelationKind::Behind, Some(RelationReference::Thing(b)))
             if b.id.0 != u32::MAX && e.distance_m.is_none() =>
         {
             let gap = p.distance(b.center_m.truncate()) - b.size_m.x / 2.0;
@@ -70,9 +73,9 @@ pub(super) fn off_thing(e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
 }
 
 /// Distance beyond "near", at most 30 m, for a statement that something is near.
-pub(super) fn off_near(e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f64> {
+pub(super) fn off_near(e: &GraphEdge, to: &Option<RelationReference>, b: &SceneBox) -> Option<f64> {
     match (e.relation, to) {
-        (RelationKind::Near, Some(Target::Thing(to))) if e.distance_m.is_none() => {
+        (RelationKind::Near, Some(RelationReference::Thing(to))) if e.distance_m.is_none() => {
             Some((gap_m(b, to) - 3.0).clamp(0.0, 30.0))
         }
         _ => None,
@@ -80,7 +83,7 @@ pub(super) fn off_near(e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f6
 }
 
 /// Deviation of a place from stated distances, m, and from being level with the thing that it is beside.
-pub(super) fn off_measure(stated: &[(Edge, Option<Target>)], s: &Spot, size_m: DVec3) -> f64 {
+pub(super) fn off_measure(stated: &[(GraphEdge, Option<RelationReference>)], s: &Spot, size_m: DVec3) -> f64 {
     let b = SceneBox {
         id: BoxId(0),
         class: Class::Car,
@@ -90,8 +93,8 @@ pub(super) fn off_measure(stated: &[(Edge, Option<Target>)], s: &Spot, size_m: D
         velocity_mps: DVec2::ZERO,
         label: BoxLabel::default(),
     };
-    let of = |(e, t): &(Edge, Option<Target>)| {
-        let Some(Target::Thing(to)) = t else {
+    let of = |(e, t): &(GraphEdge, Option<RelationReference>)| {
+        let Some(RelationReference::Thing(to)) = t else {
             return 0.0;
         };
         let missed = e

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::beside_road::Said;
+use crate::beside_road::SceneryClause;
 use scene::clip::Manoeuvre;
 use scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
 use scene::{BoxLabel, Class, Conditions, TimeOfDay, Weather};
@@ -192,7 +192,7 @@ pub struct Description {
     /// Classes that must not occur.
     pub absent: Vec<Absent>,
     /// Buildings, trees and the like.
-    pub background: Vec<Said>,
+    pub background: Vec<SceneryClause>,
     /// Amount of other traffic.
     pub density: Option<Density>,
     /// The road.

@@ -9,7 +9,7 @@ use scene::{BevLayer, BoxId, BoxLabel, Class, SceneBox};
 
 /// Reference of a relation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Target {
+pub enum RelationReference {
     /// An object, or the ego vehicle.
     Thing(SceneBox),
     /// A lane or strip.
@@ -166,19 +166,24 @@ pub fn measured(relation: RelationKind, from: &SceneBox, to: &SceneBox) -> f64 {
 }
 
 /// Distance between a box and a target, measured as for the relation, m; `None` if there is no such target.
-pub fn from_m(map: &LaneMap<'_>, relation: RelationKind, from: &SceneBox, to: &Target) -> Option<f64> {
+pub fn from_m(
+    map: &LaneMap<'_>,
+    relation: RelationKind,
+    from: &SceneBox,
+    to: &RelationReference,
+) -> Option<f64> {
     let p = from.center_m.truncate();
     match to {
-        Target::Thing(b) => Some(measured(relation, from, b)),
-        Target::Lane(role) => {
+        RelationReference::Thing(b) => Some(measured(relation, from, b)),
+        RelationReference::Lane(role) => {
             let lane = map
                 .points
                 .iter()
                 .filter(|l| *role == LaneRole::Road || l.role == *role);
             lane.map(|l| l.p.distance(p)).min_by(f64::total_cmp)
         }
-        Target::Crossing => Some(outline_m(map.crossing()?, p).max(0.0)),
-        Target::Junction => Some((map.junction?.distance(p) - 10.0).max(0.0)),
+        RelationReference::Crossing => Some(outline_m(map.crossing()?, p).max(0.0)),
+        RelationReference::Junction => Some((map.junction?.distance(p) - 10.0).max(0.0)),
     }
 }
 
@@ -187,7 +192,7 @@ pub fn holds(
     map: &LaneMap<'_>,
     relation: RelationKind,
     from: &SceneBox,
-    to: &Target,
+    to: &RelationReference,
     and: Option<&SceneBox>,
     distance_m: Option<f64>,
 ) -> bool {
@@ -197,19 +202,19 @@ pub fn holds(
     let heading = from.heading();
     let crosswise = || map.nearest(p).is_some_and(|l| l.dir.dot(heading).abs() < 0.7);
     let (held, distance) = match to {
-        Target::Thing(b) => {
+        RelationReference::Thing(b) => {
             let held = to_thing(map, relation, from, b, and, distance_m.is_some());
             let distance = measured(relation, from, b);
             (held, distance)
         }
-        Target::Lane(role) => {
+        RelationReference::Lane(role) => {
             let lane = map.points.iter().filter(|l| match role {
                 LaneRole::Road => true,
                 r => l.role == *r,
             });
             let nearest = lane.min_by(|a, b| a.p.distance_squared(p).total_cmp(&b.p.distance_squared(p)));
             let off = nearest.map_or(f64::INFINITY, |l| l.p.distance(p));
-            let reach = |l: &super::lanes::LanePoint| {
+            let reach = |l: &super::lanes::LaneSample| {
                 let offsets = from.footprint().map(|c| l.dir.perp_dot(c - l.p));
                 let (low, high) = offsets
                     .iter()
@@ -237,7 +242,7 @@ pub fn holds(
             };
             (held, off)
         }
-        Target::Crossing => {
+        RelationReference::Crossing => {
             let Some(outline) = map.crossing() else {
                 return false;
             };
@@ -247,7 +252,7 @@ pub fn holds(
                 outline_m(outline, p).max(0.0),
             )
         }
-        Target::Junction => {
+        RelationReference::Junction => {
             let Some(center) = map.junction else {
                 return false;
             };

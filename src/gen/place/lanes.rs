@@ -7,7 +7,7 @@ use scene::{BevLayer, BevLayout, PolylineKind};
 
 /// A point in the middle of a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LanePoint {
+pub struct LaneSample {
     /// Place in the ego frame, m.
     pub p: DVec2,
     /// Unit vector in driving direction.
@@ -21,7 +21,7 @@ pub struct LaneMap<'a> {
     /// The layout.
     pub layout: &'a BevLayout,
     /// Points at every metre of every lane inside the grid.
-    pub points: Vec<LanePoint>,
+    pub points: Vec<LaneSample>,
     /// The course of the ego vehicle, every metre, from behind to ahead.
     pub ego_path: Vec<(DVec2, DVec2)>,
     /// Index of its point that is nearest to the ego vehicle.
@@ -95,7 +95,7 @@ impl<'a> LaneMap<'a> {
             .iter()
             .flatten()
             .filter(|(p, _)| p.abs().max_element() <= REACH_M)
-            .map(|&(p, dir)| LanePoint {
+            .map(|&(p, dir)| LaneSample {
                 p,
                 dir,
                 role: map.role_at(p, dir),
@@ -107,7 +107,7 @@ impl<'a> LaneMap<'a> {
                 .ego_path
                 .iter()
                 .filter(|(p, _)| on(p))
-                .map(|&(p, dir)| LanePoint {
+                .map(|&(p, dir)| LaneSample {
                     p,
                     dir,
                     role: LaneRole::Ego,
@@ -162,7 +162,7 @@ impl<'a> LaneMap<'a> {
     }
 
     /// The nearest lane point.
-    pub fn nearest(&self, p: DVec2) -> Option<&LanePoint> {
+    pub fn nearest(&self, p: DVec2) -> Option<&LaneSample> {
         let (x, y) = (square(p.x), square(p.y));
         let mut best: Option<(f64, u32)> = None;
         for ring in 0..SQUARES {

@@ -1,6 +1,6 @@
 //! Deviations of things from their stated distances: a place may fit and still be metres off.
 
-use super::holds::{Target, ego, from_m};
+use super::holds::{RelationReference, ego, from_m};
 use super::lanes::LaneMap;
 use scene::SceneBox;
 use scene::graph::{NodeKind, SceneGraph};
@@ -24,14 +24,14 @@ pub fn off(graph: &SceneGraph, map: &LaneMap<'_>, boxes: &[SceneBox]) -> Vec<Off
     let placed = |id: u32| boxes.iter().find(|b| b.id.0 == id);
     let target = |id: u32| {
         Some(match &graph.node(id)?.kind {
-            NodeKind::Ego => Target::Thing(ego()),
-            NodeKind::Object(_) => Target::Thing(*placed(id)?),
-            NodeKind::Lane { role, .. } => Target::Lane(*role),
-            NodeKind::Crossing { .. } => Target::Crossing,
-            NodeKind::Junction => Target::Junction,
+            NodeKind::Ego => RelationReference::Thing(ego()),
+            NodeKind::Object(_) => RelationReference::Thing(*placed(id)?),
+            NodeKind::Lane { role, .. } => RelationReference::Lane(*role),
+            NodeKind::Crossing { .. } => RelationReference::Crossing,
+            NodeKind::Junction => RelationReference::Junction,
         })
     };
-    let of = |(i, e): (usize, &scene::graph::Edge)| {
+    let of = |(i, e): (usize, &scene::graph::GraphEdge)| {
         let asked_m = e.distance_m?;
         let found_m = from_m(map, e.relation, placed(e.from)?, &target(e.to)?)?;
         let is_off = (found_m - asked_m).abs() > TOLERATED_M;

@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use super::cost::{moved_far, off_line, off_measure, off_near, off_thing, turned_where_it_is};
-use super::holds::{Target, ego, holds, overlap_m};
+use super::holds::{RelationReference, ego, holds, overlap_m};
 use super::lanes::{LaneMap, REACH_M};
 use super::spots::{Spot, is_beside, spots};
 use scene::graph::{
-    Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
+    GraphEdge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
 };
 use scene::raster::box_cells;
 use scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
@@ -71,7 +71,7 @@ pub fn place_from(
 ) -> Placement {
     let mut best: Option<Placement> = None;
     for attempt in 0..ATTEMPTS {
-        let mut placer = Placer {
+        let mut placer = RulePlacer {
             graph,
             map,
             draw: Draw::new(seed.wrapping_add(attempt.wrapping_mul(0x9e37)), "text place"),
@@ -96,7 +96,7 @@ pub fn place_from(
 /// Nodes with a statement that does not hold for their boxes.
 pub fn broken(graph: &SceneGraph, layout: &BevLayout, boxes: &BTreeMap<u32, SceneBox>) -> Vec<u32> {
     let map = LaneMap::new(layout);
-    let placer = Placer {
+    let placer = RulePlacer {
         graph,
         map: &map,
         draw: Draw::new(0, "text place"),
@@ -106,11 +106,11 @@ pub fn broken(graph: &SceneGraph, layout: &BevLayout, boxes: &BTreeMap<u32, Scen
         from: None,
         exact: 0.0,
     };
-    let wrong = |e: &&Edge| boxes.get(&e.from).is_some_and(|b| !placer.edge_holds(e, b));
+    let wrong = |e: &&GraphEdge| boxes.get(&e.from).is_some_and(|b| !placer.edge_holds(e, b));
     graph.edges.iter().filter(wrong).map(|e| e.from).collect()
 }
 
-struct Placer<'a> {
+struct RulePlacer<'a> {
     graph: &'a SceneGraph,
     map: &'a LaneMap<'a>,
     draw: Draw,
@@ -121,7 +121,7 @@ struct Placer<'a> {
     exact: f64,                 // cost of a metre of deviation from a stated distance
 }
 
-impl Placer<'_> {
+impl RulePlacer<'_> {
     fn run(&mut self) -> Placement {
         let mut out = Placement::default();
         for node in &self.graph.nodes {
@@ -227,33 +227,33 @@ impl Placer<'_> {
         order
     }
 
-    fn target(&self, id: u32) -> Option<Target> {
+    fn target(&self, id: u32) -> Option<RelationReference> {
         Some(match &self.graph.node(id)?.kind {
-            NodeKind::Ego => Target::Thing(ego()),
-            NodeKind::Object(_) => Target::Thing(*self.placed.get(&id)?),
-            NodeKind::Lane { role, .. } => Target::Lane(*role),
-            NodeKind::Crossing { .. } => Target::Crossing,
-            NodeKind::Junction => Target::Junction,
+            NodeKind::Ego => RelationReference::Thing(ego()),
+            NodeKind::Object(_) => RelationReference::Thing(*self.placed.get(&id)?),
+            NodeKind::Lane { role, .. } => RelationReference::Lane(*role),
+            NodeKind::Crossing { .. } => RelationReference::Crossing,
+            NodeKind::Junction => RelationReference::Junction,
         })
     }
 
     /// The two ends of the line between which an object shall be.
-    fn line(&self, e: &Edge, first: &Option<Target>) -> Option<[DVec2; 2]> {
-        let at = |t: Target| match t {
-            Target::Thing(b) if b.id.0 == u32::MAX => Some(DVec2::ZERO),
-            Target::Thing(b) => Some(b.center_m.truncate()),
+    fn line(&self, e: &GraphEdge, first: &Option<RelationReference>) -> Option<[DVec2; 2]> {
+        let at = |t: RelationReference| match t {
+            RelationReference::Thing(b) if b.id.0 == u32::MAX => Some(DVec2::ZERO),
+            RelationReference::Thing(b) => Some(b.center_m.truncate()),
             _ => None,
         };
         let second = self.target(e.and.filter(|_| e.relation == RelationKind::Between)?)?;
         Some([at((*first)?)?, at(second)?])
     }
 
-    fn edge_holds(&self, e: &Edge, b: &SceneBox) -> bool {
+    fn edge_holds(&self, e: &GraphEdge, b: &SceneBox) -> bool {
         let Some(to) = self.target(e.to) else {
             return false;
         };
         let and = e.and.and_then(|id| match self.target(id)? {
-            Target::Thing(b) => Some(b),
+            RelationReference::Thing(b) => Some(b),
             _ => None,
         });
         holds(self.map, e.relation, b, &to, and.as_ref(), e.distance_m)
@@ -295,7 +295,7 @@ impl Placer<'_> {
 
     fn best(&mut self, id: u32, o: &ObjectNode, edges: &[usize]) -> Option<SceneBox> {
         let size_m = self.size(id, o);
-        let stated: Vec<(Edge, Option<Target>)> = edges
+        let stated: Vec<(GraphEdge, Option<RelationReference>)> = edges
             .iter()
             .map(|i| self.graph.edges[*i])
             .map(|e| (e, self.target(e.to)))
@@ -311,13 +311,13 @@ impl Placer<'_> {
         // An object that shall stand close to the ego vehicle may do so.
         let close = stated.iter().any(|(e, t)| {
             let half_m = if along { size_m.x / 2.0 } else { 0.0 };
-            matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
+            matches!(t, Some(RelationReference::Thing(b)) if b.id.0 == u32::MAX)
                 && e.distance_m.is_some_and(|d| d < 8.0_f64.max(half_m + 5.5))
         });
         // An object at the edge of a wide road keeps the stated distance ahead, rather than standing farther ahead.
         let strip = stated.iter().any(|(e, t)| {
             matches!(e.relation, RelationKind::On | RelationKind::ParkedOn)
-                && matches!(t, Some(Target::Lane(role)) if is_beside(*role))
+                && matches!(t, Some(RelationReference::Lane(role)) if is_beside(*role))
         });
         let mut best: Option<(f64, SceneBox)> = None;
         for (cost, i) in ranked {
@@ -355,7 +355,7 @@ impl Placer<'_> {
                 .filter(|(e, t)| self.misses(e, t, &b, strip))
                 .count();
             // (a thing that cannot be near is put as near as possible)
-            let off_by = |(e, t): &(Edge, Option<Target>)| {
+            let off_by = |(e, t): &(GraphEdge, Option<RelationReference>)| {
                 let along = || {
                     self.off_along(e, t, &b)
                         .filter(|_| strip && !self.edge_holds(e, &b))
@@ -390,7 +390,7 @@ impl Placer<'_> {
         o: &ObjectNode,
         size_m: DVec3,
         candidates: &[Spot],
-        stated: &[(Edge, Option<Target>)],
+        stated: &[(GraphEdge, Option<RelationReference>)],
         siblings: &[DVec2],
         simply: bool,
     ) -> Vec<(f64, usize)> {
@@ -430,7 +430,7 @@ impl Placer<'_> {
             }
             // ahead or behind means in our lane or near it
             let along = stated.iter().any(|(e, t)| {
-                matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
+                matches!(t, Some(RelationReference::Thing(b)) if b.id.0 == u32::MAX)
                     && matches!(e.relation, RelationKind::InFrontOf | RelationKind::Behind)
             });
             if along && self.from.is_none() {
@@ -439,7 +439,7 @@ impl Placer<'_> {
             }
             // Plain "left" or "right" means beside.
             let beside = stated.iter().any(|(e, t)| {
-                let ego = matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
+                let ego = matches!(t, Some(RelationReference::Thing(b)) if b.id.0 == u32::MAX);
                 ego && matches!(e.relation, RelationKind::LeftOf | RelationKind::RightOf)
             });
             if beside && s.p.x.abs() > (2.0 * s.p.y.abs()).max(6.3) {
@@ -449,7 +449,7 @@ impl Placer<'_> {
             let beyond = stated.iter().any(|(e, t)| {
                 // (a follower of an oncoming vehicle is beyond it)
                 let follows = |b: &SceneBox| e.relation == RelationKind::Following && b.heading().x > 0.0;
-                matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX
+                matches!(t, Some(RelationReference::Thing(b)) if b.id.0 != u32::MAX
                     && b.center_m.x > 6.0
                     && (e.relation == RelationKind::Behind || follows(b)))
             });
@@ -459,7 +459,7 @@ impl Placer<'_> {
             }
             // an oncoming vehicle has not passed the ego vehicle yet
             let comes = stated.iter().any(|(e, t)| {
-                matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
+                matches!(t, Some(RelationReference::Thing(b)) if b.id.0 == u32::MAX)
                     && e.relation == RelationKind::OppositeDirection
             });
             if comes && s.p.x < 4.0 {
@@ -476,8 +476,8 @@ impl Placer<'_> {
 
     /// True if a statement does not hold even roughly: neither without its distance nor nearly. `strip`: a strip of the
     /// road was named, and distances are measured along it.
-    fn misses(&self, e: &Edge, to: &Option<Target>, b: &SceneBox, strip: bool) -> bool {
-        let whole = Edge {
+    fn misses(&self, e: &GraphEdge, to: &Option<RelationReference>, b: &SceneBox, strip: bool) -> bool {
+        let whole = GraphEdge {
             distance_m: None,
             ..*e
         };
@@ -488,8 +488,8 @@ impl Placer<'_> {
 
     /// Deviation along the road from a stated distance ahead of the ego vehicle or behind it, m, at most 30; in a curve
     /// this is not straight ahead.
-    fn off_along(&self, e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f64> {
-        let ego = matches!(to, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
+    fn off_along(&self, e: &GraphEdge, to: &Option<RelationReference>, b: &SceneBox) -> Option<f64> {
+        let ego = matches!(to, Some(RelationReference::Thing(b)) if b.id.0 == u32::MAX);
         let way = match e.relation {
             RelationKind::InFrontOf if ego => 1.0,
             RelationKind::Behind if ego => -1.0,
@@ -499,10 +499,10 @@ impl Placer<'_> {
         Some(((s * way - e.distance_m?).abs() + 0.2 * (off.abs() - 8.0).max(0.0)).min(30.0))
     }
 
-    fn off_middle(&self, e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
+    fn off_middle(&self, e: &GraphEdge, to: &Option<RelationReference>, p: DVec2) -> f64 {
         use LaneRole as L;
         match to {
-            Some(Target::Lane(role @ (L::Ego | L::Left | L::Right | L::Oncoming)))
+            Some(RelationReference::Lane(role @ (L::Ego | L::Left | L::Right | L::Oncoming)))
                 if e.relation == RelationKind::On =>
             {
                 let lane = self.map.nearest(p).filter(|l| l.role == *role);
@@ -513,7 +513,12 @@ impl Placer<'_> {
         }
     }
 
-    fn a_twin_holds(&self, siblings: &[DVec2], class: Class, stated: &[(Edge, Option<Target>)]) -> bool {
+    fn a_twin_holds(
+        &self,
+        siblings: &[DVec2],
+        class: Class,
+        stated: &[(GraphEdge, Option<RelationReference>)],
+    ) -> bool {
         let twins = self
             .placed
             .values()

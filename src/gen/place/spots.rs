@@ -5,10 +5,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec2, DVec3};
 
-use super::holds::{Target, course};
+use super::holds::{RelationReference, course};
 use super::lanes::{LaneMap, REACH_M};
 use super::rules::stands;
-use scene::graph::{Edge, LaneRole, ObjectNode, ObjectState, RelationKind};
+use scene::graph::{GraphEdge, LaneRole, ObjectNode, ObjectState, RelationKind};
 use scene::{BevLayer, Class};
 use world::draw::Draw;
 
@@ -48,12 +48,12 @@ pub fn spots(
     map: &LaneMap<'_>,
     o: &ObjectNode,
     size_m: DVec3,
-    stated: &[(Edge, Option<Target>)],
+    stated: &[(GraphEdge, Option<RelationReference>)],
     draw: &mut Draw,
 ) -> Vec<Spot> {
     let said = |kind: RelationKind| stated.iter().any(|(e, _)| e.relation == kind);
     let lane_role = stated.iter().find_map(|(e, t)| match t {
-        Some(Target::Lane(role))
+        Some(RelationReference::Lane(role))
             if matches!(
                 e.relation,
                 RelationKind::On
@@ -103,7 +103,7 @@ pub fn spots(
             && !said(RelationKind::Facing),
     };
     let near_thing = stated.iter().any(|(e, t)| {
-        matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX)
+        matches!(t, Some(RelationReference::Thing(b)) if b.id.0 != u32::MAX)
             && !matches!(
                 e.relation,
                 RelationKind::FarFrom | RelationKind::Facing | RelationKind::FacingAway
@@ -122,7 +122,7 @@ pub fn spots(
             RelationKind::FacingAway => PI,
             _ => continue,
         };
-        let Some(Target::Thing(b)) = t else {
+        let Some(RelationReference::Thing(b)) = t else {
             continue;
         };
         if o.class == Class::Pedestrian {
@@ -175,15 +175,17 @@ impl Gather<'_, '_> {
     fn people(
         &mut self,
         lane_role: Option<(RelationKind, LaneRole)>,
-        stated: &[(Edge, Option<Target>)],
+        stated: &[(GraphEdge, Option<RelationReference>)],
         near_thing: bool,
     ) {
         let said = |kind: RelationKind| stated.iter().any(|(e, _)| e.relation == kind);
-        let things = stated.iter().any(|(_, t)| matches!(t, Some(Target::Thing(_))));
+        let things = stated
+            .iter()
+            .any(|(_, t)| matches!(t, Some(RelationReference::Thing(_))));
         let crossing = said(RelationKind::Crossing)
-            || stated
-                .iter()
-                .any(|(e, t)| matches!(t, Some(Target::Crossing)) && e.relation == RelationKind::On);
+            || stated.iter().any(|(e, t)| {
+                matches!(t, Some(RelationReference::Crossing)) && e.relation == RelationKind::On
+            });
         match lane_role {
             _ if crossing => self.crossing_people(),
             Some((RelationKind::On | RelationKind::Blocking | RelationKind::ParkedOn, role))
@@ -194,8 +196,8 @@ impl Gather<'_, '_> {
             }
             _ => self.walks(),
         }
-        let on_junction = |(e, t): &(Edge, Option<Target>)| {
-            matches!(t, Some(Target::Junction)) && e.relation == RelationKind::On
+        let on_junction = |(e, t): &(GraphEdge, Option<RelationReference>)| {
+            matches!(t, Some(RelationReference::Junction)) && e.relation == RelationKind::On
         };
         if stated.iter().any(on_junction) {
             self.amid_junction();
@@ -219,7 +221,7 @@ impl Gather<'_, '_> {
         &mut self,
         class: Class,
         lane_role: Option<(RelationKind, LaneRole)>,
-        stated: &[(Edge, Option<Target>)],
+        stated: &[(GraphEdge, Option<RelationReference>)],
         near_thing: bool,
     ) {
         let said = |kind: RelationKind| stated.iter().any(|(e, _)| e.relation == kind);
@@ -258,7 +260,7 @@ impl Gather<'_, '_> {
         &mut self,
         o: &ObjectNode,
         lane_role: Option<(RelationKind, LaneRole)>,
-        stated: &[(Edge, Option<Target>)],
+        stated: &[(GraphEdge, Option<RelationReference>)],
         near_thing: bool,
     ) {
         let parked =
@@ -458,9 +460,9 @@ impl Gather<'_, '_> {
     }
 
     /// Around the things that were named.
-    fn around(&mut self, stated: &[(Edge, Option<Target>)]) {
+    fn around(&mut self, stated: &[(GraphEdge, Option<RelationReference>)]) {
         for (e, t) in stated {
-            let Some(Target::Thing(b)) = t else {
+            let Some(RelationReference::Thing(b)) = t else {
                 continue;
             };
             let center = b.center_m.truncate();
@@ -501,7 +503,7 @@ impl Gather<'_, '_> {
             .iter()
             .filter(|(e, _)| e.relation == RelationKind::Between)
             .filter_map(|(_, t)| match t {
-                Some(Target::Thing(b)) => Some(b.center_m.truncate()),
+                Some(RelationReference::Thing(b)) => Some(b.center_m.truncate()),
                 _ => None,
             })
             .collect();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::description::{Anchor, Density, Description, ObjectSpec, Stated};
 use scene::Class;
-use scene::graph::{Edge, LaneRole, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph};
+use scene::graph::{GraphEdge, LaneRole, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph};
 use world::draw::Draw;
 
 /// Most things of one kind in a scene.
@@ -32,7 +32,7 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
     let add = |out: &mut Graphed, node: ObjectNode| {
         // Ids by hand: asking for the largest of many is slow.
         let id = out.graph.nodes.len() as u32;
-        out.graph.nodes.push(scene::graph::Node {
+        out.graph.nodes.push(scene::graph::GraphNode {
             id,
             kind: NodeKind::Object(node),
             locked: None,
@@ -82,7 +82,7 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
                 && let Some(&to) = out.nodes.get(i).and_then(|n| n.first())
             {
                 for from in out.nodes[j].clone() {
-                    out.graph.edges.push(Edge {
+                    out.graph.edges.push(GraphEdge {
                         relation: r.relation,
                         from,
                         to,
@@ -129,7 +129,7 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
                 {
                     continue;
                 }
-                out.graph.edges.push(Edge {
+                out.graph.edges.push(GraphEdge {
                     relation: r.relation,
                     from,
                     to,
@@ -195,7 +195,7 @@ fn fill(d: &Description, seed: u64, out: &mut Graphed) {
             let id = out.graph.nodes.len() as u32;
             let mut node = ObjectNode::new(*class);
             node.state = *state;
-            out.graph.nodes.push(scene::graph::Node {
+            out.graph.nodes.push(scene::graph::GraphNode {
                 id,
                 kind: NodeKind::Object(node),
                 locked: None,

@@ -45,7 +45,7 @@ pub struct Behind {
 
 /// Solids of the continuation, each with its owner and part.
 #[derive(Default)]
-pub(super) struct Things {
+pub(super) struct BackdropSolids {
     /// The solids.
     pub solids: Vec<Solid>,
     /// Number of the thing that each solid belongs to, and the solid's number within the thing.
@@ -53,7 +53,7 @@ pub(super) struct Things {
     things: u32,
 }
 
-impl Things {
+impl BackdropSolids {
     /// Takes the solids added since the last call as one thing.
     pub fn close(&mut self) {
         let first = self.owners.len();
@@ -67,7 +67,7 @@ impl Things {
 pub struct Backdrop {
     border: Border,
     exits: Vec<Exit>,
-    things: Things,
+    things: BackdropSolids,
     /// Rectangle that the continuation reaches.
     reached: Covered,
     /// Bins along x and y.
@@ -91,7 +91,7 @@ impl Backdrop {
     /// Draws up what lies beyond an edge. `lines` are those of the layout, for the directions of lanes; without any the
     /// direction of a road comes from its ground.
     pub fn new(border: Border, lines: &[Polyline], seed: u64) -> Self {
-        let (mut things, mut found) = (Things::default(), Vec::new());
+        let (mut things, mut found) = (BackdropSolids::default(), Vec::new());
         if !border.is_empty() {
             found = exits(&border, lines);
             plots::draw_up(&border, &found, seed, &mut things);

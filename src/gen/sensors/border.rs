@@ -19,7 +19,7 @@ const SKY_M: f64 = 60.0;
 
 /// One side of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Side {
+pub struct GridSide {
     /// 0 for x, 1 for y: the axis that leads out.
     pub axis: usize,
     /// True for the side at the upper corner.
@@ -27,14 +27,14 @@ pub struct Side {
 }
 
 /// The four sides.
-pub const SIDES: [Side; 4] = [
-    Side { axis: 0, high: false },
-    Side { axis: 0, high: true },
-    Side { axis: 1, high: false },
-    Side { axis: 1, high: true },
+pub const SIDES: [GridSide; 4] = [
+    GridSide { axis: 0, high: false },
+    GridSide { axis: 0, high: true },
+    GridSide { axis: 1, high: false },
+    GridSide { axis: 1, high: true },
 ];
 
-impl Side {
+impl GridSide {
     /// Number of the side, as in [`SIDES`].
     pub fn index(self) -> usize {
         self.axis * 2 + usize::from(self.high)
@@ -259,7 +259,7 @@ impl Border {
     }
 
     /// Place of a cell of the edge in arrays `[side][along]`.
-    fn at_edge(&self, side: Side, along: usize) -> usize {
+    fn at_edge(&self, side: GridSide, along: usize) -> usize {
         let before = match side.axis {
             0 => 0,
             _ => 2 * self.extent.ny(),
@@ -268,13 +268,13 @@ impl Border {
     }
 
     /// Ground of a cell; `depth` counts in [`DEPTHS`].
-    pub fn ground(&self, side: Side, depth: usize, along: usize) -> Class {
+    pub fn ground(&self, side: GridSide, depth: usize, along: usize) -> Class {
         self.ground[self.at_edge(side, 0) * DEPTHS.len() + depth * side.cells(self.extent) + along]
     }
 
     /// True if nothing is known of the ground at the edge: then there is no continuation.
     pub fn is_empty(&self) -> bool {
-        let is_free = |side: &Side| {
+        let is_free = |side: &GridSide| {
             (0..side.cells(self.extent)).all(|along| self.ground(*side, 0, along) == Class::Free)
         };
         SIDES.iter().all(is_free)
@@ -304,11 +304,11 @@ impl Border {
     }
 
     /// The place at the edge that is nearest to a point beyond it.
-    fn nearest(&self, p: DVec2) -> (Side, usize) {
+    fn nearest(&self, p: DVec2) -> (GridSide, usize) {
         let Covered { low, high } = self.covered;
         let beyond_m = self.covered.beyond_m(p);
         let axis = usize::from(beyond_m.y > beyond_m.x);
-        let side = Side {
+        let side = GridSide {
             axis,
             high: p[axis] > (low[axis] + high[axis]) / 2.0,
         };

@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use super::border::Border;
 use super::lidar::{EgoBox, Rays, look_through};
-use super::raycast::{ColumnMasks, LANES, Met, Packet};
+use super::raycast::{ColumnMasks, LANES, Packet, PacketHit};
 use super::shaped;
-use super::surroundings::{Around, Height};
+use super::surroundings::{Height, SurroundingHits};
 use scene::{Class, Extent, Frame, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
 
 /// With more changed boxes than this, all rays are cast: testing them would cost as much.
@@ -22,7 +22,7 @@ const TESTS: usize = 8192;
 const RAYS: usize = 512;
 
 /// Free length of a ray, m, and its return.
-type Found = (f32, Option<LidarPoint>);
+type RayOutcome = (f32, Option<LidarPoint>);
 
 /// One LiDAR, the voxels that it saw last and what each ray found.
 #[derive(Clone, Debug)]
@@ -38,10 +38,10 @@ pub struct Caster {
     grid: VoxelGrid,
     masks: ColumnMasks,
     /// Free length, m, and return of each ray.
-    found: Vec<Found>,
+    found: Vec<RayOutcome>,
     cast: usize,
     /// The own vehicle and what lies beyond the grid.
-    around: Around,
+    around: SurroundingHits,
 }
 
 /// Changed voxels, half-open, in voxel units.
@@ -63,7 +63,7 @@ impl Caster {
         let rays = Rays::new(pattern, velocity_mps);
         let extent = grid.extent();
         let mut caster = Self {
-            around: Around::new(grid, extent, pattern, &rays, exclude, Height::AsLabelled),
+            around: SurroundingHits::new(grid, extent, pattern, &rays, exclude, Height::AsLabelled),
             pattern: pattern.clone(),
             exclude,
             columns: rays.origins.len(),
@@ -148,7 +148,7 @@ impl Caster {
 
     /// The sweep, with returns in beam-major order.
     pub fn sweep(&self) -> LidarSweep {
-        let end = |(ray, (free_m, point)): (usize, &Found)| {
+        let end = |(ray, (free_m, point)): (usize, &RayOutcome)| {
             let met = free_m.is_finite();
             // The strength of exact echoes is not known.
             let strengthless = |p| LidarPoint {
@@ -195,7 +195,7 @@ impl Caster {
             .chunks_mut(columns)
             .map(|row| row.chunks_mut(TASK))
             .collect();
-        let tasks: Vec<Vec<&mut [Found]>> = (0..columns.div_ceil(TASK))
+        let tasks: Vec<Vec<&mut [RayOutcome]>> = (0..columns.div_ceil(TASK))
             .map(|_| rows.iter_mut().filter_map(Iterator::next).collect())
             .collect();
         let groups = beams.div_ceil(LANES).max(1);
@@ -225,7 +225,7 @@ impl Caster {
     }
 
     #[inline]
-    fn cast_one(&self, ray: usize) -> Found {
+    fn cast_one(&self, ray: usize) -> RayOutcome {
         let (origin, direction) = (self.origins[ray % self.columns], self.rays.directions[ray]);
         let max_t = self.pattern.max_range_m / Extent::VOXEL_M;
         let met = self.masks.cast_in_voxels(origin, direction, max_t);
@@ -234,7 +234,7 @@ impl Caster {
 
     /// Result of a ray that met a voxel or nothing: its reach in m, and its point if it met one within range.
     #[inline]
-    fn found(&self, ray: usize, met: Met) -> Found {
+    fn found(&self, ray: usize, met: PacketHit) -> RayOutcome {
         let Some((t, voxel)) = met else {
             return (f32::INFINITY, None);
         };

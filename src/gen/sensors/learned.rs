@@ -6,12 +6,12 @@ use std::borrow::Cow;
 use glam::DVec3;
 
 use super::lidar::{EgoBox, Rays};
-use super::surroundings::{Around, Height};
+use super::surroundings::{Height, SurroundingHits};
 use super::texture::textured;
 use nets::ModelError;
-use nets::lidar::field::{Field, Ray, Sampling};
+use nets::lidar::field::{LidarRay, RaySampling, SignedDistanceField};
 use nets::lidar::{LearnedRay, LidarNet};
-use scene::moved::Columns;
+use scene::moved::ColumnShift;
 use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, Pose, SensorRig, VoxelGrid};
 use world::draw::{Draw, hash};
 
@@ -32,7 +32,11 @@ pub fn is_dropped(drop_logit: f32) -> bool {
 }
 
 /// The field of a scene as the network sees it, without the voxels of the own vehicle.
-pub fn field(net: &LidarNet, grid: &VoxelGrid, exclude: Option<EgoBox>) -> Result<Field, ModelError> {
+pub fn field(
+    net: &LidarNet,
+    grid: &VoxelGrid,
+    exclude: Option<EgoBox>,
+) -> Result<SignedDistanceField, ModelError> {
     net.field(&seen(grid, exclude))
 }
 
@@ -75,7 +79,7 @@ pub(super) struct Centred<'a> {
     /// The moved rig.
     pub rig: Cow<'a, SensorRig>,
     /// Moves the map there.
-    pub from_map: Columns,
+    pub from_map: ColumnShift,
 }
 
 impl<'a> Centred<'a> {
@@ -90,8 +94,8 @@ impl<'a> Centred<'a> {
                 .clamp(-Self::FARTHEST, Self::FARTHEST) as i32
         };
         let p = rig.vehicle.translation_m;
-        let by = Columns([column(p.x), column(p.y)]);
-        if by == Columns::default() {
+        let by = ColumnShift([column(p.x), column(p.y)]);
+        if by == ColumnShift::default() {
             let rig = Cow::Borrowed(rig);
             return Self { rig, from_map: by };
         }
@@ -115,15 +119,15 @@ impl<'a> Centred<'a> {
 }
 
 /// The rays of a pattern, beam-major; see [`Rays::new`].
-pub fn rays(pattern: &LidarPattern, velocity_mps: DVec3) -> Vec<Ray> {
+pub fn rays(pattern: &LidarPattern, velocity_mps: DVec3) -> Vec<LidarRay> {
     rays_of(pattern, &Rays::new(pattern, velocity_mps))
 }
 
 /// The rays of a pattern, beam-major, made from rays that are computed already.
-pub fn rays_of(pattern: &LidarPattern, rays: &Rays) -> Vec<Ray> {
+pub fn rays_of(pattern: &LidarPattern, rays: &Rays) -> Vec<LidarRay> {
     let ray = |i| {
         let (origin, direction) = rays.get(i);
-        Ray {
+        LidarRay {
             origin,
             direction,
             range_m: [pattern.min_range_m, pattern.max_range_m],
@@ -136,12 +140,12 @@ pub fn rays_of(pattern: &LidarPattern, rays: &Rays) -> Vec<Ray> {
 /// network cannot compute.
 pub fn sweep(
     net: &LidarNet,
-    field: &Field,
+    field: &SignedDistanceField,
     pattern: &LidarPattern,
     drops: Drops,
 ) -> Result<LidarSweep, ModelError> {
     let rays = rays(pattern, DVec3::ZERO);
-    let answers = net.shoot(field, &rays, Sampling::Prior)?;
+    let answers = net.shoot(field, &rays, RaySampling::Prior)?;
     let columns = pattern.columns_in_sector();
     Ok(points(&rays, &answers, columns, drops, None, DVec3::ZERO))
 }
@@ -162,9 +166,9 @@ pub fn rig_sweep(
     let ego = Some(EgoBox::of_rig(rig));
     let field = field(net, grid, ego)?;
     let shape = Rays::new(pattern, rig.velocity_mps());
-    let around = Around::new(grid, SEEN, pattern, &shape, ego, Height::Physical);
+    let around = SurroundingHits::new(grid, SEEN, pattern, &shape, ego, Height::Physical);
     let rays = rays_of(pattern, &shape);
-    let answers = net.shoot(&field, &rays, Sampling::Prior)?;
+    let answers = net.shoot(&field, &rays, RaySampling::Prior)?;
     let columns = pattern.columns_in_sector();
     let back_m = centred.back_m();
     Ok(points(&rays, &answers, columns, drops, Some(&around), back_m))
@@ -173,11 +177,11 @@ pub fn rig_sweep(
 /// The points of answered rays, and of those that end on the surroundings of the grid (`around`), all moved by
 /// `back_m`.
 pub fn points(
-    rays: &[Ray],
+    rays: &[LidarRay],
     answers: &[LearnedRay],
     columns: u32,
     drops: Drops,
-    around: Option<&Around>,
+    around: Option<&SurroundingHits>,
     back_m: DVec3,
 ) -> LidarSweep {
     let columns = columns.max(1) as usize;

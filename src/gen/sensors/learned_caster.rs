@@ -8,12 +8,12 @@ use rayon::prelude::*;
 
 use super::learned::{self, Centred, Drops, SEEN};
 use super::lidar::{EgoBox, Rays};
-use super::surroundings::{Around, Height};
+use super::surroundings::{Height, SurroundingHits};
 use nets::ModelError;
-use nets::lidar::field::{Field, Ray, Sampling};
+use nets::lidar::field::{LidarRay, RaySampling, SignedDistanceField};
 use nets::lidar::update::{Changed, Region};
 use nets::lidar::{LearnedRay, LidarNet};
-use scene::moved::Columns;
+use scene::moved::ColumnShift;
 use scene::{Extent, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
 
 /// A voxel's numbers reach half a voxel beyond it, as far as the neighbours' centres.
@@ -27,15 +27,15 @@ const CHUNK: usize = 1024;
 pub struct LearnedCaster {
     net: Arc<LidarNet>,
     exclude: Option<EgoBox>,
-    rays: Vec<Ray>,
+    rays: Vec<LidarRay>,
     pattern: LidarPattern,
     shape: Rays,
-    around: Around,
-    field: Field,
+    around: SurroundingHits,
+    field: SignedDistanceField,
     answers: Vec<LearnedRay>,
     shot: Vec<u32>, // rays of the last update, rising
     /// Where the vehicle is on the map, by whole columns.
-    from_map: Columns,
+    from_map: ColumnShift,
 }
 
 /// Work of the last update, and the places where some of its rays were sampled.
@@ -64,10 +64,10 @@ impl LearnedCaster {
         let field = learned::field(&net, grid, exclude)?;
         let shape = Rays::new(pattern, velocity_mps);
         let rays = learned::rays_of(pattern, &shape);
-        let answers = net.shoot(&field, &rays, Sampling::Prior)?;
+        let answers = net.shoot(&field, &rays, RaySampling::Prior)?;
         Ok(Self {
             exclude,
-            around: Around::new(grid, SEEN, pattern, &shape, exclude, Height::Physical),
+            around: SurroundingHits::new(grid, SEEN, pattern, &shape, exclude, Height::Physical),
             pattern: pattern.clone(),
             shape,
             shot: (0..rays.len() as u32).collect(),
@@ -75,7 +75,7 @@ impl LearnedCaster {
             rays,
             field,
             answers,
-            from_map: Columns::default(),
+            from_map: ColumnShift::default(),
         })
     }
 
@@ -100,7 +100,7 @@ impl LearnedCaster {
         let seen = learned::seen(grid, self.exclude);
         self.shot = match self.net.update(&mut self.field, &seen)? {
             Changed::Everywhere => {
-                self.answers = self.net.shoot(&self.field, &self.rays, Sampling::Prior)?;
+                self.answers = self.net.shoot(&self.field, &self.rays, RaySampling::Prior)?;
                 (0..self.rays.len() as u32).collect()
             }
             Changed::In(regions) => self.shoot_again(&regions)?,
@@ -120,8 +120,8 @@ impl LearnedCaster {
             boxes.iter().any(|b| meets(ray, b, reach))
         });
         let again: Vec<usize> = touched.map(|(i, _)| i).collect();
-        let rays: Vec<Ray> = again.iter().map(|i| self.rays[*i]).collect();
-        let answers = self.net.shoot(&self.field, &rays, Sampling::Prior)?;
+        let rays: Vec<LidarRay> = again.iter().map(|i| self.rays[*i]).collect();
+        let answers = self.net.shoot(&self.field, &rays, RaySampling::Prior)?;
         for (i, answer) in again.iter().zip(answers) {
             self.answers[*i] = answer;
         }
@@ -197,7 +197,7 @@ fn reached(region: &Region) -> [DVec3; 2] {
 
 /// True if a ray comes into a box at most `reach` voxels from its origin. Also true for a ray whose result is not known
 /// (NaN): it is shot again to no effect.
-fn meets(ray: &Ray, [low, high]: &[DVec3; 2], reach: f64) -> bool {
+fn meets(ray: &LidarRay, [low, high]: &[DVec3; 2], reach: f64) -> bool {
     let o = SEEN.to_voxel_units(ray.origin);
     let inverse = ray
         .direction

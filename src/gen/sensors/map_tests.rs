@@ -3,7 +3,9 @@
 use glam::{DVec2, DVec3};
 
 use crate::border::{Border, Covered};
-use crate::cameras::{self, CameraInput, CameraPicture, Detail, Ready, RenderContext, RenderOptions};
+use crate::cameras::{
+    self, CameraInput, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions,
+};
 use crate::caster::Caster;
 use crate::cloud::GaussianCloud;
 use crate::learned::{self, Drops};
@@ -13,7 +15,7 @@ use crate::mpi::{self, RenderIds};
 use crate::raycast::ColumnMasks;
 use crate::surroundings::{is_beyond, is_own};
 use nets::lidar::LidarNet;
-use scene::sensor_data::Planes;
+use scene::sensor_data::PlaneDepths;
 use scene::{
     Background, BevLayer, BevLayout, Camera, CameraMaps, Class, Conditions, Extent, Frame, LidarPattern,
     SensorRig, VoxelGrid,
@@ -86,7 +88,7 @@ fn picture(name: &str, grid: &VoxelGrid) -> CameraPicture {
         size: SIZE,
         quality: crate::appearance::Quality::Preview,
     };
-    let ready = Ready::new(*source.expect("a source"), &input);
+    let ready = PreparedSource::new(*source.expect("a source"), &input);
     let picture = ready.render(&ahead(), &options, RenderContext::processor());
     picture.expect("a small picture")
 }
@@ -158,7 +160,7 @@ fn cameras_see_a_wall_far_beyond_the_window() {
 #[test]
 fn planes_and_clouds_reach_as_far_as_the_map() {
     let grid = walled();
-    let planes = Planes {
+    let planes = PlaneDepths {
         count: 400,
         near_m: 90.0,
         far_m: 110.0,
@@ -283,7 +285,7 @@ fn a_learned_sweep_is_around_the_vehicle() {
     (rig.lidars[0].columns, rig.lidars[0].max_range_m) = (120, 150.0);
     let grid = walled();
     let here = learned::rig_sweep(&net, &grid, &rig, Drops::Keep).expect("finite");
-    let by = scene::moved::Columns([300, -175]);
+    let by = scene::moved::ColumnShift([300, -175]);
     let way_m = by.way_m().extend(0.0);
     let there = rig.standing_at(&scene::Pose {
         translation_m: way_m,

@@ -15,9 +15,9 @@ use rayon::prelude::*;
 use super::raycast::ColumnMasks;
 pub use super::rays::CameraRays;
 use super::units::Units;
-use ground::Ground;
 pub use ground::GroundHeight;
-use paint::Paint;
+use ground::GroundHeightField;
+use paint::RoadMarkings;
 use scene::raster::box_cells;
 use scene::sensor_data::RenderId;
 use scene::{BevLayout, BoxId, Camera, CameraMaps, Class, Extent, SceneBox, SensorRig, VoxelGrid};
@@ -63,9 +63,9 @@ pub struct MarchScene {
     units: Units,
     grid: VoxelGrid,
     masks: ColumnMasks,
-    ground: Ground,
+    ground: GroundHeightField,
     solids: SolidIndex,
-    paint: Paint,
+    paint: RoadMarkings,
 }
 
 /// First surface on a ray.
@@ -107,9 +107,9 @@ impl MarchScene {
         }
         ground.fill_wanted();
         let paint = if options.lines {
-            Paint::new(layout)
+            RoadMarkings::new(layout)
         } else {
-            Paint::default()
+            RoadMarkings::default()
         };
         let extent = grid.extent();
         Self {
@@ -292,7 +292,7 @@ impl MarchMaps {
 /// Removes the voxels that a box's solids stand for, up to `margin_m` outside its footprint.
 pub(crate) fn remove_voxels(
     grid: &mut VoxelGrid,
-    ground: &mut Ground,
+    ground: &mut GroundHeightField,
     b: &SceneBox,
     height: GroundHeight,
     margin_m: f64,

@@ -4,10 +4,10 @@
 use glam::{DVec2, DVec3};
 
 use scene::background::Facade;
-use scene::solid::{Shape, Solid};
+use scene::solid::{Solid, SolidShape};
 use scene::{BevLayer, Class, Form};
 use world::draw::{Draw, hash, noise};
-use world::{Surface, World};
+use world::{SurfacePoint, World};
 
 /// Largest echo strength of surfaces that scatter light; only retro-reflective surfaces report more.
 pub const DIFFUSE_MOST: f64 = 100.0;
@@ -18,7 +18,7 @@ const WET: f64 = 0.2;
 
 /// Answer of a surface to a pulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
+pub struct LidarMaterial {
     /// Echo strength at normal incidence.
     pub strength: f64,
     /// Spread of single echoes, in logarithms.
@@ -31,8 +31,8 @@ pub struct Material {
     pub retro: bool,
 }
 
-const fn diffuse(strength: f64, spread: f64, lost: f64) -> Material {
-    Material {
+const fn diffuse(strength: f64, spread: f64, lost: f64) -> LidarMaterial {
+    LidarMaterial {
         strength,
         spread,
         lost,
@@ -41,8 +41,8 @@ const fn diffuse(strength: f64, spread: f64, lost: f64) -> Material {
     }
 }
 
-const fn retro(strength: f64) -> Material {
-    Material {
+const fn retro(strength: f64) -> LidarMaterial {
+    LidarMaterial {
         strength,
         spread: 0.35,
         lost: 0.005,
@@ -51,8 +51,8 @@ const fn retro(strength: f64) -> Material {
     }
 }
 
-const fn glass(strength: f64, lost: f64, mirror: f64) -> Material {
-    Material {
+const fn glass(strength: f64, lost: f64, mirror: f64) -> LidarMaterial {
+    LidarMaterial {
         strength,
         spread: 0.6,
         lost,
@@ -62,11 +62,11 @@ const fn glass(strength: f64, lost: f64, mirror: f64) -> Material {
 }
 
 /// A place that a pulse met.
-pub struct Met<'a> {
+pub struct PulseHit<'a> {
     /// Class of the surface.
     pub class: Class,
     /// Normal, instance and part of the surface.
-    pub surface: &'a Surface,
+    pub surface: &'a SurfacePoint,
     /// The solid; `None` is the ground.
     pub solid: Option<&'a Solid>,
     /// Position, ego frame, m.
@@ -120,7 +120,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Strength of the echo, 0 to 255; `noise` is approximately normal.
-    pub fn strength(&self, material: &Material, cosine: f64, noise: f64) -> f64 {
+    pub fn strength(&self, material: &LidarMaterial, cosine: f64, noise: f64) -> f64 {
         let bright = material.strength * (material.spread * noise).exp();
         match material.retro {
             // Bright whatever the angle, up to the end of the scale.
@@ -130,7 +130,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Share of such echoes that are lost.
-    pub fn lost(&self, material: &Material, met: &Met) -> f64 {
+    pub fn lost(&self, material: &LidarMaterial, met: &PulseHit) -> f64 {
         let dark = match met.class {
             Class::DriveableSurface => {
                 let patch = noise(self.seed ^ 0xda12, met.at.x / 3.0, met.at.y / 3.0);
@@ -152,7 +152,7 @@ impl<'a> Materials<'a> {
     }
 
     /// The material of a place; `detail` is uniform in 0..1 and stands for detail finer than a solid.
-    pub fn of(&self, met: &Met, detail: f64) -> Material {
+    pub fn of(&self, met: &PulseHit, detail: f64) -> LidarMaterial {
         let (seed, surface, p) = (self.seed, met.surface, met.at);
         let mut own = Draw::new(hash(seed ^ u64::from(surface.instance)), "paint");
         let (kind, tone) = (own.unit(), gaussian(&mut own));
@@ -160,7 +160,7 @@ impl<'a> Materials<'a> {
         let of = diffuse;
         match met.class {
             Class::DriveableSurface if self.is_painted(p.truncate()) && detail < 0.6 => of(34.0, 0.4, 0.003),
-            Class::DriveableSurface => Material {
+            Class::DriveableSurface => LidarMaterial {
                 mirror: self.wet,
                 ..of(
                     8.3 * (0.8 * patch + 0.2 * self.road).exp() * (1.0 - 0.4 * self.wet),
@@ -209,7 +209,7 @@ impl<'a> Materials<'a> {
                     1 if surface.normal.z < 0.8 => glass(1.2, 0.1, 1.0),
                     2.. => of(2.0, 0.4, 0.06),
                     _ if detail < 0.012 => retro(105.0), // plates and reflectors
-                    _ => Material {
+                    _ => LidarMaterial {
                         mirror: 0.25,
                         ..of(paint, 0.45, lost)
                     },
@@ -217,7 +217,7 @@ impl<'a> Materials<'a> {
             }
             Class::Truck | Class::Bus | Class::Trailer | Class::ConstructionVehicle => match detail {
                 d if d < 0.02 => retro(110.0), // contour marking
-                _ => Material {
+                _ => LidarMaterial {
                     // A bus is glass for a good part.
                     mirror: if met.class == Class::Bus { 0.5 } else { 0.1 },
                     ..of(27.0 * (0.25 * tone).exp(), 0.4, 0.015)
@@ -261,12 +261,12 @@ impl<'a> Materials<'a> {
 
 /// A thin upright plate: retro-reflective.
 fn is_sign(solid: Option<&Solid>) -> bool {
-    solid.is_some_and(|s| matches!(s.shape, Shape::Hull { half, .. } if half.x < 0.06 && half.y < 0.4))
+    solid.is_some_and(|s| matches!(s.shape, SolidShape::Hull { half, .. } if half.x < 0.06 && half.y < 0.4))
 }
 
 /// A slim pole.
 fn is_post(solid: Option<&Solid>) -> bool {
-    solid.is_some_and(|s| matches!(s.shape, Shape::Frustum { bottom, .. } if bottom < 0.15))
+    solid.is_some_and(|s| matches!(s.shape, SolidShape::Frustum { bottom, .. } if bottom < 0.15))
 }
 
 /// Standard deviation of the measured range by distance, from second differences along real rings.
@@ -320,7 +320,7 @@ mod tests {
                     continue;
                 };
                 let at = origin + dir * hit.range_m;
-                let met = Met {
+                let met = PulseHit {
                     class: hit.class,
                     surface: &world.surface(&hit, at),
                     solid: hit.solid.and_then(|i| world.solids().get(i as usize)),

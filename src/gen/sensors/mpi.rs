@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::cloud::{render_id, road_id};
 use super::raycast::grid_span;
 use super::rays::CameraRays;
-use scene::sensor_data::{PlaneRun, Planes, RenderId};
+use scene::sensor_data::{PlaneDepths, PlaneRun, RenderId};
 use scene::{Camera, Class, Extent, MultiPlaneImage, VoxelGrid};
 
 const FREE: u8 = Class::FREE;
@@ -63,7 +63,13 @@ impl RenderIds {
 }
 
 /// The planes of one camera at `width` x `height` pixels (0 gives an empty image).
-pub fn render(ids: &RenderIds, camera: &Camera, width: u32, height: u32, planes: Planes) -> MultiPlaneImage {
+pub fn render(
+    ids: &RenderIds,
+    camera: &Camera,
+    width: u32,
+    height: u32,
+    planes: PlaneDepths,
+) -> MultiPlaneImage {
     let rays = CameraRays::new(camera, width, height);
     let row = |y: u32| {
         let (mut counts, mut runs) = (Vec::with_capacity(width as usize), Vec::new());
@@ -105,7 +111,7 @@ pub fn render(ids: &RenderIds, camera: &Camera, width: u32, height: u32, planes:
 }
 
 /// The runs of planes along one ray; `ray` is the step for one metre of depth, voxel units.
-fn trace(ids: &RenderIds, origin: DVec3, ray: DVec3, planes: Planes, runs: &mut Vec<PlaneRun>) {
+fn trace(ids: &RenderIds, origin: DVec3, ray: DVec3, planes: PlaneDepths, runs: &mut Vec<PlaneRun>) {
     let Some(span) = grid_span(ids.extent, origin, ray) else {
         return;
     };
@@ -167,7 +173,7 @@ mod tests {
         wide.focal_px = [70.0, 200.0]; // 170 degrees
         for camera in SensorRig::default().cameras.iter().chain([&wide]) {
             let (w, h) = (48, 27);
-            let image = render(&ids, camera, w, h, Planes::default());
+            let image = render(&ids, camera, w, h, PlaneDepths::default());
             let small = camera.resized(w, h);
             let (mut seen, mut wrong) = (0, 0);
             for plane in (0..256).step_by(3) {
@@ -199,7 +205,7 @@ mod tests {
         camera.rotation_wxyz = [0.5, -0.5, 0.5, -0.5]; // straight ahead
         camera.translation_m = [0.0, 0.0, 1.5];
         let ids = RenderIds::new(&grid, &[]);
-        let image = render(&ids, &camera, 64, 36, Planes::default());
+        let image = render(&ids, &camera, 64, 36, PlaneDepths::default());
         let runs = image.pixel(18 * 64 + 32);
         // d = 0.2 + 51 l / 256: planes 100 (20.12 m) and 101 (20.32 m).
         assert_eq!(
@@ -216,11 +222,11 @@ mod tests {
             ([f64::NAN; 3], 1.0),
         ] {
             (camera.translation_m, camera.focal_px) = (translation, [focal; 2]);
-            let odd = render(&ids, &camera, 8, 6, Planes::default());
+            let odd = render(&ids, &camera, 8, 6, PlaneDepths::default());
             assert_eq!(odd.starts.len(), 49);
         }
-        assert_eq!(render(&ids, &camera, 0, 9, Planes::default()).runs, []);
-        let one = Planes {
+        assert_eq!(render(&ids, &camera, 0, 9, PlaneDepths::default()).runs, []);
+        let one = PlaneDepths {
             count: 1,
             near_m: 20.1,
             far_m: 21.0,

@@ -18,7 +18,7 @@ const RAYS: usize = 4096;
 /// Observed voxels: for each column `[x][y]` of the grid one bit per bin, the lowest bin in bit 0. All zero without a
 /// sensor.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Observed {
+pub struct ObservedVoxels {
     /// Voxels observed by the rays of all LiDARs, one turn each. A pulse without an echo within the range observes the
     /// free voxels on its way; one that ends nearer than the least range observes nothing.
     pub lidar: Vec<u16>,
@@ -28,7 +28,7 @@ pub struct Observed {
 
 /// Voxels of a grid that a rig without a [problem](SensorRig::problem) observes, both in the same frame. Rays pass
 /// through voxels in the own vehicle. The result does not depend on the number of threads.
-pub fn observed(grid: &VoxelGrid, rig: &SensorRig) -> Observed {
+pub fn observed(grid: &VoxelGrid, rig: &SensorRig) -> ObservedVoxels {
     let mut masks = ColumnMasks::from_grid(grid);
     let ego = EgoBox::of_rig(rig);
     look_through(&mut masks, ego);
@@ -38,7 +38,7 @@ pub fn observed(grid: &VoxelGrid, rig: &SensorRig) -> Observed {
         .iter()
         .map(|l| of_lidar(&masks, l, rig.velocity_mps(), ego));
     let cameras = rig.cameras.iter().map(|c| of_camera(&masks, c));
-    Observed {
+    ObservedVoxels {
         lidar: lidars.fold(nothing(), either),
         camera: cameras.fold(nothing(), either),
     }
@@ -55,7 +55,7 @@ fn of_lidar(masks: &ColumnMasks, pattern: &LidarPattern, velocity_mps: DVec3, eg
     marked(masks, rays.directions.len(), |ray| {
         let (origin, direction) = rays.get(ray);
         let roof_m = body.and_then(|body| body.meets(origin, direction));
-        Ray {
+        ObservationRay {
             origin,
             direction,
             range_m: [pattern.min_range_m, roof_m.unwrap_or(pattern.max_range_m)],
@@ -84,7 +84,7 @@ fn of_camera(masks: &ColumnMasks, camera: &Camera) -> Vec<u16> {
         let ray = rays.at(u as f64 + 0.5, v as f64 + 0.5);
         // Where the lens sees nothing, nothing is observed.
         let seen = ray.direction != DVec3::ZERO;
-        Ray {
+        ObservationRay {
             origin: ray.origin,
             direction: ray.direction.normalize_or(DVec3::X),
             range_m: [0.0, if seen { f64::INFINITY } else { 0.0 }],
@@ -93,20 +93,20 @@ fn of_camera(masks: &ColumnMasks, camera: &Camera) -> Vec<u16> {
 }
 
 /// A ray in the grid's frame: a unit direction, and the distances between which it observes voxels.
-struct Ray {
+struct ObservationRay {
     origin: DVec3,
     direction: DVec3,
     range_m: [f64; 2],
 }
 
 /// The voxels that the rays 0 to `rays` - 1 observe.
-fn marked(masks: &ColumnMasks, rays: usize, ray: impl Fn(usize) -> Ray + Sync) -> Vec<u16> {
+fn marked(masks: &ColumnMasks, rays: usize, ray: impl Fn(usize) -> ObservationRay + Sync) -> Vec<u16> {
     let extent = masks.extent();
     let nothing = || vec![0; extent.columns()];
     let chunk = |chunk: usize| {
         let (mut words, mut way) = (nothing(), Vec::new());
         for i in chunk * RAYS..((chunk + 1) * RAYS).min(rays) {
-            let Ray {
+            let ObservationRay {
                 origin,
                 direction,
                 range_m: [least, most],

@@ -174,7 +174,7 @@ fn classes(image: &CameraImage) -> Result<Vec<TruthClass>, PaintError> {
 
 /// Predictions for all cameras of a rig, compared with the ground truth.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct CameraReport {
     /// Boxes that are large enough in a camera. Those that are missed in all cameras come first, then the largest.
     pub boxes: Vec<SeenByRig>,
     /// Pixels of each camera that are predicted to be a thing where there is none.
@@ -195,7 +195,7 @@ pub struct SeenByRig {
 
 /// Looks at the pictures of all cameras of a scene whose rig stands in the frame of the boxes. Errors if the network cannot be
 /// read.
-pub fn report(scene: &Scene) -> Result<Report, PaintError> {
+pub fn report(scene: &Scene) -> Result<CameraReport, PaintError> {
     let (frame, rig) = (scene.frame(), &scene.rig);
     let appearance = Appearance::with_things(frame, &scene.background, rig, &scene.conditions);
     let look = |camera: &Camera| Perceived::of(&appearance, frame, camera);
@@ -214,7 +214,7 @@ pub fn report(scene: &Scene) -> Result<Report, PaintError> {
     }
     let mut boxes: Vec<SeenByRig> = boxes.into_values().collect();
     boxes.sort_by_key(|b| (!b.thing.is_missed(), std::cmp::Reverse(b.thing.visible_px)));
-    Ok(Report {
+    Ok(CameraReport {
         boxes,
         ghost_px: all.iter().map(Perceived::ghost_px).collect(),
         right: all.iter().map(Perceived::right).sum::<f64>() / all.len().max(1) as f64,

@@ -61,7 +61,7 @@ pub struct Detected {
 
 /// Looks at the sweep of a scene's first LiDAR. Errors if the network cannot be read or refuses the sweep.
 pub fn report(scene: &Scene) -> Result<SweepReport, PaintError> {
-    let seen = Seen::of(scene)?;
+    let seen = PerceivedSweep::of(scene)?;
     let mut boxes: Vec<SeenBySweep> = seen
         .besides
         .iter()
@@ -103,20 +103,20 @@ pub fn report(scene: &Scene) -> Result<SweepReport, PaintError> {
 
 /// Result for one box; `None` if it is not in the window.
 pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenBySweep>, PaintError> {
-    let seen = Seen::of(scene)?;
+    let seen = PerceivedSweep::of(scene)?;
     let beside = seen.besides.iter().find(|b| b.id == id);
     Ok(beside.map(|b| seen.score(b)))
 }
 
 /// A sweep, the predictions for it, and the boxes of the scene to compare with.
-struct Seen {
+struct PerceivedSweep {
     perceived: Perceived,
     besides: Vec<Beside>,
     map_from_vehicle: Pose,
     sweep: LidarSweep,
 }
 
-impl Seen {
+impl PerceivedSweep {
     fn of(scene: &Scene) -> Result<Self, PaintError> {
         let network = |e: &dyn std::fmt::Display| PaintError::Network(e.to_string());
         let net = LidarPerceiver::bundled().map_err(|e| network(&e))?;

@@ -11,7 +11,7 @@ use crate::appearance::{Appearance, CameraImage};
 use crate::painter::PaintError;
 use crate::perceived::{LEAST_PX, MISSED_BELOW, Perceived};
 use crate::perceived_sweep::{LEAST_RETURNS, near};
-use crate::project::View;
+use crate::project::SplatCamera;
 use crate::rolling;
 use nets::perceiver::against::returns_on;
 use nets::sensor_occupancy::{SensorOccupancy, UNSEEN};
@@ -90,7 +90,7 @@ pub struct Ghost {
 }
 
 /// Input of the network from the sensors of a scene.
-pub struct Heard {
+pub struct PerceptionInput {
     /// Returns in the vehicle's frame with their echo strengths.
     returns: Vec<[f32; 4]>,
     painted: Vec<u8>,
@@ -101,7 +101,7 @@ pub struct Heard {
     pub pixels_right: f64,
 }
 
-impl Heard {
+impl PerceptionInput {
     /// Sweeps and draws a scene. Errors if the segmenter cannot be read.
     pub fn of(scene: &Scene) -> Result<Self, PaintError> {
         Self::seeing(scene, None)
@@ -144,8 +144,8 @@ impl Heard {
             *most = thing.visible_px.max(*most);
         }
         let shown = scene.rig.cameras.iter().zip(&seen);
-        let shown: Vec<Shown<'_>> = shown
-            .map(|(camera, seen)| Shown {
+        let shown: Vec<CameraClasses<'_>> = shown
+            .map(|(camera, seen)| CameraClasses {
                 camera,
                 size_px: [seen.image.width, seen.image.height],
                 classes: &seen.classes,
@@ -175,7 +175,7 @@ impl Heard {
 }
 
 /// Classes that a camera shows.
-pub struct Shown<'a> {
+pub struct CameraClasses<'a> {
     /// The camera, in the vehicle's frame.
     pub camera: &'a Camera,
     /// Width and height of the picture, px.
@@ -187,10 +187,10 @@ pub struct Shown<'a> {
 /// Classes that cameras show at the middle of each voxel of the window around the vehicle, `[x][y][16]`. The camera
 /// that sees the voxel nearest to its axis counts; on a tie the first one. Twin of `painted` in
 /// `training/models/sensor_occupancy.py`.
-pub fn painted(shown: &[Shown<'_>]) -> Vec<u8> {
+pub fn painted(shown: &[CameraClasses<'_>]) -> Vec<u8> {
     let views = shown.iter().map(|s| {
         let [w, h] = s.size_px;
-        (View::new(s.camera, w as u32, h as u32, 1.0), s)
+        (SplatCamera::new(s.camera, w as u32, h as u32, 1.0), s)
     });
     let views: Vec<_> = views.collect();
     let at = |place: DVec3| {
@@ -224,12 +224,12 @@ pub fn painted(shown: &[Shown<'_>]) -> Vec<u8> {
 
 /// Looks at a scene's LiDAR and cameras. Errors if a network cannot be read.
 pub fn report(scene: &Scene, hears: Hears) -> Result<VoxelReport, PaintError> {
-    let heard = Heard::of(scene)?;
+    let heard = PerceptionInput::of(scene)?;
     report_of(scene, &heard, hears)
 }
 
 /// The report of a scene whose input is gathered already.
-pub fn report_of(scene: &Scene, heard: &Heard, hears: Hears) -> Result<VoxelReport, PaintError> {
+pub fn report_of(scene: &Scene, heard: &PerceptionInput, hears: Hears) -> Result<VoxelReport, PaintError> {
     let voxels = heard.voxels(hears)?;
     let map_from_vehicle = scene.frame().world_from_ego;
     let around = scene.in_ego();
@@ -270,7 +270,7 @@ pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenInVoxels>, PaintErro
     let Some(b) = around.frame().boxes.get(&id).filter(inside) else {
         return Ok(None);
     };
-    let heard = Heard::of(scene)?;
+    let heard = PerceptionInput::of(scene)?;
     let truth = around.frame().occupancy.crop(Extent::WINDOW);
     Ok(Some(seen(
         b,
@@ -281,7 +281,12 @@ pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenInVoxels>, PaintErro
 }
 
 /// Result for a box of the vehicle's frame, from true and predicted voxels.
-fn seen(b: &SceneBox, scene: &Scene, heard: &Heard, [truth, told]: [&VoxelGrid; 2]) -> SeenInVoxels {
+fn seen(
+    b: &SceneBox,
+    scene: &Scene,
+    heard: &PerceptionInput,
+    [truth, told]: [&VoxelGrid; 2],
+) -> SeenInVoxels {
     let returns = scene
         .frame()
         .boxes
@@ -438,11 +443,11 @@ mod tests {
         let rig = SensorRig::default();
         let px = 256 * 144;
         let classes: Vec<u8> = (0..(rig.cameras.len() * px) as u64).map(number).collect();
-        let shown: Vec<Shown<'_>> = rig
+        let shown: Vec<CameraClasses<'_>> = rig
             .cameras
             .iter()
             .zip(classes.chunks_exact(px))
-            .map(|(camera, classes)| Shown {
+            .map(|(camera, classes)| CameraClasses {
                 camera,
                 size_px: [256, 144],
                 classes,
@@ -464,9 +469,9 @@ mod tests {
     #[test]
     fn both_sensors_tell_most_of_what_is_there() {
         let scene = scene();
-        let heard = Heard::of(&scene).expect("the shipped networks");
+        let heard = PerceptionInput::of(&scene).expect("the shipped networks");
         let both = report_of(&scene, &heard, Hears::Both).expect("the shipped network");
-        let blind = Heard {
+        let blind = PerceptionInput {
             returns: Vec::new(),
             painted: vec![UNSEEN; Window::VOXELS],
             ..heard

@@ -65,7 +65,7 @@ pub fn render<'a>(
     width: u32,
     height: u32,
 ) -> PerspectiveMap {
-    let mut canvas = Canvas::new(camera, width, height);
+    let mut canvas = PerspectiveRaster::new(camera, width, height);
     canvas.ground(layout);
     for line in layout.polylines.iter() {
         if let Some(channel) = line_channel(line.kind) {
@@ -89,7 +89,7 @@ pub fn render<'a>(
     }
 }
 
-struct Canvas {
+struct PerspectiveRaster {
     camera: Camera,
     camera_from_ego: Pose,
     rays: CameraRays,
@@ -101,7 +101,7 @@ struct Canvas {
     edges: Vec<u8>,
 }
 
-impl Canvas {
+impl PerspectiveRaster {
     fn new(camera: &Camera, width: u32, height: u32) -> Self {
         let camera = camera.resized(width.max(1), height.max(1));
         let n = width as usize * height as usize;

@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::backdrop::{REACH_M, Things};
+use super::backdrop::{BackdropSolids, REACH_M};
 use super::border::Border;
 use super::road_exits::Exit;
 use scene::solid::Solid;
@@ -45,7 +45,7 @@ struct Character {
 }
 
 /// Builds all things beyond the grid.
-pub(super) fn draw_up(border: &Border, exits: &[Exit], seed: u64, things: &mut Things) {
+pub(super) fn draw_up(border: &Border, exits: &[Exit], seed: u64, things: &mut BackdropSolids) {
     let usual = character(border, |_| Some(0.0));
     for i in 0..exits.len() {
         let key = hash(seed ^ i as u64);
@@ -128,7 +128,7 @@ fn line(
     left: bool,
     usual: Character,
     seed: u64,
-    things: &mut Things,
+    things: &mut BackdropSolids,
 ) {
     let (exit, mut draw) = (&exits[own], Draw::new(seed, "front"));
     let sign = if left { 1.0 } else { -1.0 };
@@ -189,7 +189,7 @@ fn line(
 }
 
 /// The blocks between the roads.
-fn blocks(border: &Border, exits: &[Exit], usual: Character, seed: u64, things: &mut Things) {
+fn blocks(border: &Border, exits: &[Exit], usual: Character, seed: u64, things: &mut BackdropSolids) {
     let covered = border.covered();
     let reached = covered.wider(REACH_M - BLOCK_M);
     let of = |axis: usize| {
@@ -243,7 +243,7 @@ fn house(
     heading: DVec2,
     c: Character,
     draw: &mut Draw,
-    things: &mut Things,
+    things: &mut BackdropSolids,
 ) {
     let height_m = (c.house_m * draw.range(0.7, 1.4)).clamp(2.8, 24.0);
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 0.0)];
@@ -270,7 +270,14 @@ fn house(
     things.close();
 }
 
-fn tree(border: &Border, exits: &[Exit], at: DVec2, c: Character, draw: &mut Draw, things: &mut Things) {
+fn tree(
+    border: &Border,
+    exits: &[Exit],
+    at: DVec2,
+    c: Character,
+    draw: &mut Draw,
+    things: &mut BackdropSolids,
+) {
     let height_m = c.tree_m * draw.range(0.8, 1.4);
     let crown_m = (height_m * draw.range(0.28, 0.42)).min(3.5);
     if !clear(border, exits, at, 0.3) || border.covered().out_m(at) < crown_m + CLEAR_M {
@@ -298,7 +305,7 @@ fn tree(border: &Border, exits: &[Exit], at: DVec2, c: Character, draw: &mut Dra
 }
 
 /// Traffic and parked cars.
-fn cars(border: &Border, exits: &[Exit], own: usize, seed: u64, things: &mut Things) {
+fn cars(border: &Border, exits: &[Exit], own: usize, seed: u64, things: &mut BackdropSolids) {
     let (exit, mut draw) = (&exits[own], Draw::new(seed, "cars"));
     for sign in [-1.0, 1.0] {
         let mut place = |left_m: f64, gap_m: f64, taken: f64, first_m: f64| {
@@ -326,7 +333,7 @@ fn car(
     at: DVec2,
     sign: f64,
     draw: &mut Draw,
-    things: &mut Things,
+    things: &mut BackdropSolids,
 ) {
     // A car stands on no other road, where it would stand across.
     let alone = exits.iter().enumerate().all(|(i, exit)| {

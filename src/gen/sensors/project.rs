@@ -7,7 +7,7 @@ use scene::Camera;
 
 /// A camera at one image size, ready to project points of the ego frame.
 #[derive(Clone, Copy, Debug)]
-pub struct View {
+pub struct SplatCamera {
     camera_from_ego: DMat3,
     ego_in_camera: DVec3,
     focal_px: [f64; 2],
@@ -34,7 +34,7 @@ pub struct Footprint {
 
 /// Projection of the surroundings of a point, to first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Around {
+pub struct LocalProjection {
     /// Depth along the optical axis, m.
     pub depth_m: f64,
     /// The point, px.
@@ -43,7 +43,7 @@ pub struct Around {
     pub px_per_m: [DVec3; 2],
 }
 
-impl Around {
+impl LocalProjection {
     /// A Gaussian there whose covariance is the sum of a aᵀ over `axes_m`: its principal axes in the ego frame, each as long as
     /// the standard deviation along it, m. `None` for numbers that are not finite.
     pub fn footprint(&self, axes_m: [DVec3; 3]) -> Option<Footprint> {
@@ -82,14 +82,14 @@ pub struct Conic {
 /// Least determinant of a covariance, px^4.
 const MIN_DETERMINANT: f64 = 1e-12;
 
-impl View {
+impl SplatCamera {
     /// The camera at `width` x `height` pixels; `jacobian_clamp` in units of half the image (1.3 in the paper).
-    pub fn new(camera: &Camera, width: u32, height: u32, jacobian_clamp: f64) -> View {
+    pub fn new(camera: &Camera, width: u32, height: u32, jacobian_clamp: f64) -> SplatCamera {
         let camera = camera.resized(width, height);
         let camera_from_ego = camera.ego_from_camera().inverse();
         // Not below 0, nor NaN, which cannot hold anything.
         let limit = |size: u32, focal: f64| (jacobian_clamp * 0.5 * f64::from(size) / focal).max(0.0);
-        View {
+        SplatCamera {
             camera_from_ego: DMat3::from_quat(camera_from_ego.rotation),
             ego_in_camera: camera_from_ego.translation_m,
             focal_px: camera.focal_px,
@@ -143,7 +143,7 @@ impl View {
 
     /// The picture around a point of the ego frame to first order (EWA), the derivative held as in [`Self::project`]; `None` as
     /// there.
-    pub fn around(&self, p_in_ego: DVec3, [near_m, far_m]: [f64; 2]) -> Option<Around> {
+    pub fn around(&self, p_in_ego: DVec3, [near_m, far_m]: [f64; 2]) -> Option<LocalProjection> {
         let to_ego = |row: DVec3| self.camera_from_ego.transpose() * row;
         if let Some(rays) = &self.bent {
             let p = rays.to_camera(p_in_ego, DVec3::ZERO);
@@ -158,7 +158,7 @@ impl View {
                 true => p,
                 false => rays.optics().direction(held.x, held.y) * depth_m,
             };
-            return (at != DVec3::ZERO).then(|| Around {
+            return (at != DVec3::ZERO).then(|| LocalProjection {
                 depth_m,
                 mean_px: mean.to_array(),
                 px_per_m: rays.optics().jacobian(at).map(to_ego),
@@ -176,7 +176,7 @@ impl View {
             DVec3::new(fx, 0.0, -fx * cu) / z,
             DVec3::new(0.0, fy, -fy * cv) / z,
         ];
-        Some(Around {
+        Some(LocalProjection {
             depth_m: z,
             mean_px: [fx * u + self.center_px[0], fy * v + self.center_px[1]],
             px_per_m: rows.map(to_ego),

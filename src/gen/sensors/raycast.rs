@@ -11,12 +11,12 @@ mod wide;
 
 use glam::DVec3;
 
-pub use packet::{LANES, Met, Packet};
+pub use packet::{LANES, Packet, PacketHit};
 use scan::{Scan, Slab};
 use scene::grid::bricks_along;
 use scene::{Class, Extent, VoxelGrid};
-pub use walk::{Span, grid_span};
-use walk::{Start, walk};
+use walk::{GridEntry, walk};
+pub use walk::{RaySpan, grid_span};
 
 /// Free columns around the grid, so that the scan needs no bounds of its own; one block wide, or up to two at the
 /// upper sides.
@@ -164,7 +164,7 @@ impl ColumnMasks {
     /// Casts a ray given in voxel units: 0 is the grid's lower corner and a voxel has edge 1. Returns the distance in
     /// units of the direction's length, and the voxel.
     pub fn cast_in_voxels(&self, origin: DVec3, direction: DVec3, max_t: f64) -> Option<(f64, [usize; 3])> {
-        let start = Start::new(self.shape, origin, direction, max_t)?;
+        let start = GridEntry::new(self.shape, origin, direction, max_t)?;
         let Some(mut scan) = Scan::new(self, &start) else {
             return walk(self, start.state(), start.t_end, |_| ());
         };
@@ -195,7 +195,7 @@ impl ColumnMasks {
         max_t: f64,
         visit: impl FnMut([usize; 3]),
     ) -> Option<(f64, [usize; 3])> {
-        let start = Start::new(self.shape, origin, direction, max_t)?;
+        let start = GridEntry::new(self.shape, origin, direction, max_t)?;
         walk(self, start.state(), start.t_end, visit)
     }
 }

@@ -10,7 +10,7 @@ use scene::{Camera, Lens, Optics, Shutter};
 
 /// A ray of the frame of the sensors' poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
+pub struct CameraRay {
     /// The camera's optical centre, m.
     pub origin: DVec3,
     /// Direction; its length is that of 1 m of depth. Zero where the lens sees nothing.
@@ -62,10 +62,10 @@ impl CameraRays {
 
     /// The ray through the image point (u, v) in px; pixel i has its middle at i + 1/2.
     #[inline]
-    pub fn at(&self, u: f64, v: f64) -> Ray {
+    pub fn at(&self, u: f64, v: f64) -> CameraRay {
         let direction = self.optics.direction(u, v);
         let Some((shutter, _)) = &self.rolling else {
-            return Ray {
+            return CameraRay {
                 origin: self.origin,
                 direction: self.rotation * direction,
                 after_s: 0.0,
@@ -73,7 +73,7 @@ impl CameraRays {
         };
         let after_s = shutter.after_s(DVec2::new(u, v) / self.size);
         let (origin, rotation) = self.pose_after(after_s);
-        Ray {
+        CameraRay {
             origin,
             direction: rotation * direction,
             after_s,

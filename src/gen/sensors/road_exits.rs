@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::border::{Border, Covered, DEPTHS, SIDES, Side};
+use super::border::{Border, Covered, DEPTHS, GridSide, SIDES};
 use scene::{Class, Extent, Polyline, PolylineKind};
 
 /// Least and largest width of a road, cells: narrower ground is no road, wider ground is a road along the edge.
@@ -111,7 +111,7 @@ pub fn exits(border: &Border, lines: &[Polyline]) -> Vec<Exit> {
 }
 
 /// How far a point lies inside a side, m.
-fn inside_m(covered: Covered, p: DVec2, side: Side) -> f64 {
+fn inside_m(covered: Covered, p: DVec2, side: GridSide) -> f64 {
     match side.high {
         true => covered.high[side.axis] - p[side.axis],
         false => p[side.axis] - covered.low[side.axis],
@@ -131,7 +131,7 @@ fn lane_ends(points: &[DVec2]) -> Vec<[DVec2; 2]> {
 }
 
 /// Half-open runs of road along a side at a depth.
-fn runs(border: &Border, side: Side, depth: usize) -> Vec<[usize; 2]> {
+fn runs(border: &Border, side: GridSide, depth: usize) -> Vec<[usize; 2]> {
     let mut out: Vec<[usize; 2]> = Vec::new();
     for along in 0..side.cells(border.extent()) {
         if border.ground(side, depth, along) != Class::DriveableSurface {
@@ -147,7 +147,7 @@ fn runs(border: &Border, side: Side, depth: usize) -> Vec<[usize; 2]> {
 }
 
 /// Direction of a road from its middle at several depths; `None` where its width changes, as in a junction.
-fn course(border: &Border, side: Side, run: [usize; 2]) -> Option<DVec2> {
+fn course(border: &Border, side: GridSide, run: [usize; 2]) -> Option<DVec2> {
     let middle = |depth: usize, run: [usize; 2]| {
         let point = |along: usize| side.point(border.extent(), DEPTHS[depth], along);
         (point(run[0]) + point(run[1] - 1)) / 2.0
@@ -168,7 +168,7 @@ fn course(border: &Border, side: Side, run: [usize; 2]) -> Option<DVec2> {
 }
 
 /// Cells of sidewalk beside the end of a run.
-fn walk(border: &Border, side: Side, end: usize, upward: bool) -> usize {
+fn walk(border: &Border, side: GridSide, end: usize, upward: bool) -> usize {
     let at = |i: usize| match upward {
         true => Some(end + i).filter(|a| *a < side.cells(border.extent())),
         false => end.checked_sub(i + 1),

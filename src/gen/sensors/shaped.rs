@@ -58,7 +58,7 @@ pub(super) fn place(
     if boxes.is_empty() || sweep.points.is_empty() {
         return;
     }
-    let shapes = Shapes::new(frame, &boxes, seed);
+    let shapes = ShapedBoxes::new(frame, &boxes, seed);
     let physical = sweep.physical;
     let masks = (!physical).then(|| match known {
         Some(masks) => Cow::Borrowed(masks),
@@ -75,7 +75,7 @@ pub(super) fn place(
         let Some(direction) = way.try_normalize() else {
             return Some(*point);
         };
-        let ray = Ray {
+        let ray = ReturnRay {
             origin,
             direction,
             met_m: way.length(),
@@ -85,9 +85,9 @@ pub(super) fn place(
             None => shapes.learned(&ray, point),
         };
         let (range_m, class) = match met {
-            Found::Same => return Some(*point),
-            Found::Nothing => return None,
-            Found::At(range_m, class) => (range_m, class),
+            ReturnPlacement::Same => return Some(*point),
+            ReturnPlacement::Nothing => return None,
+            ReturnPlacement::At(range_m, class) => (range_m, class),
         };
         (range_m >= pattern.min_range_m && range_m <= pattern.max_range_m).then(|| LidarPoint {
             position_in_ego: (origin + direction * range_m).as_vec3().to_array(),
@@ -105,14 +105,14 @@ pub(super) fn place(
 }
 
 /// A ray and its length up to the hit, m.
-struct Ray {
+struct ReturnRay {
     origin: DVec3,
     direction: DVec3,
     met_m: f64,
 }
 
 /// New place of a return.
-enum Found {
+enum ReturnPlacement {
     Same,
     Nothing,
     /// Its range, m, and the class there.
@@ -120,7 +120,7 @@ enum Found {
 }
 
 /// The boxes of a frame and their solids.
-struct Shapes<'a> {
+struct ShapedBoxes<'a> {
     extent: Extent,
     boxes: Vec<Shaped<'a>>,
     by_id: HashMap<BoxId, usize>,
@@ -138,14 +138,14 @@ struct Shaped<'a> {
 }
 
 /// Owner of a voxel.
-enum Owner<'a> {
+enum VoxelOwner<'a> {
     /// A box that solids stand for: the voxel is looked through.
     Solids,
     /// A box that its voxels stand for, within the box.
     Voxels(&'a SceneBox),
 }
 
-impl<'a> Shapes<'a> {
+impl<'a> ShapedBoxes<'a> {
     fn new(frame: &Frame, boxes: &[&'a SceneBox], seed: u64) -> Self {
         let extent = frame.extent();
         let mut parts: Vec<Solid> = Vec::new();
@@ -180,7 +180,7 @@ impl<'a> Shapes<'a> {
 
     /// Owner of a voxel that was met at a height, m. `None` if this is more than `below_m` below the box: there labels
     /// go down to their ground.
-    fn owner(&self, [x, y, z]: [usize; 3], label: u8, met_m: f64, below_m: f64) -> Option<Owner<'_>> {
+    fn owner(&self, [x, y, z]: [usize; 3], label: u8, met_m: f64, below_m: f64) -> Option<VoxelOwner<'_>> {
         if label >= Class::FREE || self.classes >> label & 1 == 0 {
             return None;
         }
@@ -199,13 +199,13 @@ impl<'a> Shapes<'a> {
         });
         let first = own.next()?;
         match std::iter::once(first).chain(own).find(|b| !b.solid) {
-            Some(b) => Some(Owner::Voxels(b.of)),
-            None => Some(Owner::Solids),
+            Some(b) => Some(VoxelOwner::Voxels(b.of)),
+            None => Some(VoxelOwner::Solids),
         }
     }
 
     /// Hit of a ray on a solid within the solid's box, nearer than `limit_m`: distance, m, and class.
-    fn on_solid(&self, ray: &Ray, limit_m: f64) -> Option<(f64, Class)> {
+    fn on_solid(&self, ray: &ReturnRay, limit_m: f64) -> Option<(f64, Class)> {
         let hit = self.solids.cast(ray.origin, ray.direction, limit_m)?;
         let b = self.boxes[*self.by_id.get(&hit.box_id?)?].of;
         let [from, to] = through(b, ray)?;
@@ -214,18 +214,20 @@ impl<'a> Shapes<'a> {
 
     fn exact(
         &self,
-        ray: &Ray,
+        ray: &ReturnRay,
         point: &LidarPoint,
         (masks, grid): (&ColumnMasks, &VoxelGrid),
         pattern: &LidarPattern,
-    ) -> Found {
+    ) -> ReturnPlacement {
         let origin = self.extent.to_voxel_units(ray.origin);
         let at = ray.origin + ray.direction * (ray.met_m + INTO_M);
         let voxel = self.voxel_at(at);
         let is_own = voxel.is_some_and(|v| self.owner(v, point.class.id(), at.z, 0.0).is_some());
         if !is_own {
             let solid = self.on_solid(ray, ray.met_m);
-            return solid.map_or(Found::Same, |(range_m, class)| Found::At(range_m, class));
+            return solid.map_or(ReturnPlacement::Same, |(range_m, class)| {
+                ReturnPlacement::At(range_m, class)
+            });
         }
         let max_t = pattern.max_range_m / Extent::VOXEL_M;
         let (mut from, mut behind) = (0.0, None);
@@ -242,7 +244,7 @@ impl<'a> Shapes<'a> {
                     behind = Some((t * Extent::VOXEL_M, label));
                     break;
                 }
-                Some(Owner::Voxels(b)) => {
+                Some(VoxelOwner::Voxels(b)) => {
                     if let Some([near_m, far_m]) = through(b, ray)
                         && near_m <= out * Extent::VOXEL_M
                         && far_m >= t * Extent::VOXEL_M
@@ -251,20 +253,20 @@ impl<'a> Shapes<'a> {
                         break;
                     }
                 }
-                Some(Owner::Solids) => {}
+                Some(VoxelOwner::Solids) => {}
             }
             from = out.max(t) + OUT;
         }
         let limit_m = behind.map_or(pattern.max_range_m, |(range_m, _)| range_m);
         if let Some((range_m, class)) = self.on_solid(ray, limit_m) {
-            return Found::At(range_m, class);
+            return ReturnPlacement::At(range_m, class);
         }
-        behind.map_or(Found::Nothing, |(range_m, label)| {
-            Found::At(range_m, Class::from_id(label).unwrap_or(Class::Others))
+        behind.map_or(ReturnPlacement::Nothing, |(range_m, label)| {
+            ReturnPlacement::At(range_m, Class::from_id(label).unwrap_or(Class::Others))
         })
     }
 
-    fn learned(&self, ray: &Ray, point: &LidarPoint) -> Found {
+    fn learned(&self, ray: &ReturnRay, point: &LidarPoint) -> ReturnPlacement {
         let at = ray.origin + ray.direction * (ray.met_m + INTO_M);
         let owner = self
             .voxel_at(at)
@@ -273,17 +275,17 @@ impl<'a> Shapes<'a> {
             Some(_) => ray.met_m + BEHIND_M,
             None => ray.met_m,
         };
-        if let Some(Owner::Voxels(b)) = owner {
+        if let Some(VoxelOwner::Voxels(b)) = owner {
             let within =
                 through(b, ray).filter(|[near, far]| *near <= limit_m && *far >= ray.met_m - BEHIND_M);
-            return within.map_or(Found::Nothing, |[near, far]| {
-                Found::At(ray.met_m.clamp(near, far), point.class)
+            return within.map_or(ReturnPlacement::Nothing, |[near, far]| {
+                ReturnPlacement::At(ray.met_m.clamp(near, far), point.class)
             });
         }
         match (self.on_solid(ray, limit_m), owner) {
-            (Some((range_m, class)), _) => Found::At(range_m, class),
-            (None, Some(_)) => Found::Nothing,
-            (None, None) => Found::Same,
+            (Some((range_m, class)), _) => ReturnPlacement::At(range_m, class),
+            (None, Some(_)) => ReturnPlacement::Nothing,
+            (None, None) => ReturnPlacement::Same,
         }
     }
 
@@ -296,7 +298,7 @@ impl<'a> Shapes<'a> {
 
 /// Distances between which a ray is in a box, at least [`WITHIN_M`] from its faces, m; `None` if it passes the box, or
 /// if the box is thinner than that.
-fn through(b: &SceneBox, ray: &Ray) -> Option<[f64; 2]> {
+fn through(b: &SceneBox, ray: &ReturnRay) -> Option<[f64; 2]> {
     let (from, to) = (b.to_local(ray.origin), b.to_local(ray.origin + ray.direction));
     let (way, half) = (to - from, b.size_m / 2.0 - DVec3::splat(WITHIN_M));
     let (mut near, mut far) = (0.0f64, f64::INFINITY);

@@ -7,9 +7,9 @@ pub use super::cloud::{Gaussian, GaussianCloud};
 pub use scene::splats::{RawMaps, SplatOptions};
 
 use super::order::depth_order;
-use super::project::{Conic, Footprint, View};
+use super::project::{Conic, Footprint, SplatCamera};
 use super::rays::CameraRays;
-use super::tile::{Limits, Splat, SplatPixels, TILE, Tile};
+use super::tile::{BlendThresholds, Splat, SplatPixels, TILE, Tile};
 use scene::sensor_data::RENDER_IDS;
 use scene::splats::MIN_DEPTH_COVERAGE;
 use scene::{Camera, CameraMaps, Lens, SensorRig};
@@ -61,7 +61,7 @@ pub fn render_raw(
     }
     let splats = project_all(cloud, camera, width, height, options);
     let bins = Bins::new(&splats, w, h);
-    let limits = Limits {
+    let limits = BlendThresholds {
         alpha_min: options.alpha_min,
         alpha_max: options.alpha_max.clamp(0.0, 0.999),
         t_stop: options.t_stop,
@@ -140,7 +140,7 @@ fn project_all(
     height: u32,
     options: &SplatOptions,
 ) -> Vec<SplatPixels> {
-    let view = View::new(camera, width, height, options.jacobian_clamp);
+    let view = SplatCamera::new(camera, width, height, options.jacobian_clamp);
     let size = [width, height];
     let one = |g: &Gaussian| -> Option<SplatPixels> {
         let position = glam::Vec3::from(g.position_m).as_dvec3();

@@ -10,10 +10,10 @@ use super::backdrop::{Backdrop, Behind, SCENE_SEED};
 use super::border::{Border, Covered};
 use super::lidar::{EgoBox, Rays};
 use super::march::{GroundHeight, MarchOptions, MarchScene};
-use super::material::{Materials, Met};
+use super::material::{Materials, PulseHit};
 use super::own_body::{OwnBody, is_blind};
 use scene::{BevLayout, Class, Extent, LidarPattern, LidarPoint, VoxelGrid};
-use world::Surface;
+use world::SurfacePoint;
 use world::draw::{Draw, hash};
 
 /// Rays that one thread works on in a row.
@@ -53,7 +53,7 @@ enum Outside {
 
 /// Hits outside the voxels for every ray of one pattern.
 #[derive(Clone, Debug)]
-pub struct Around {
+pub struct SurroundingHits {
     height: Height,
     body: Option<OwnBody>,
     /// The edge that the continuation was drawn up from; `None` without one.
@@ -63,7 +63,7 @@ pub struct Around {
     outside: Vec<Outside>,
 }
 
-impl Around {
+impl SurroundingHits {
     /// Surroundings of a pattern in a scene; `ego` is the vehicle that carries it, if it is known. The sweep itself
     /// covers the part of the grid in `seen`: voxels outside it count as surroundings.
     pub fn new(
@@ -171,12 +171,12 @@ impl Around {
             let Some(hit) = hit else {
                 return Outside::Nothing;
             };
-            let surface = Surface {
+            let surface = SurfacePoint {
                 normal: hit.normal,
                 instance: hit.instance,
                 part: hit.part,
             };
-            let met = Met {
+            let met = PulseHit {
                 class: hit.class,
                 surface: &surface,
                 solid: hit.solid.and_then(|i| backdrop.as_ref()?.solid(i)),

@@ -5,7 +5,7 @@ use scene::sensor_data::RENDER_IDS;
 /// Edge of a tile, px.
 pub(super) const TILE: usize = 16;
 
-type Row = [f32; TILE];
+type TileRow = [f32; TILE];
 
 /// A projected Gaussian as the inner loop wants it.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +26,7 @@ pub(super) struct Splat {
 
 /// Thresholds of the blending.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
+pub(super) struct BlendThresholds {
     pub alpha_min: f32,
     pub alpha_max: f32,
     pub t_stop: f32,
@@ -37,11 +37,11 @@ pub(super) type SplatPixels = (Splat, [[u16; 2]; 2]);
 
 /// Sums per pixel, `[row][column]`.
 pub(super) struct Tile {
-    transmittance: [Row; TILE],
-    expected_m: [Row; TILE],
-    median_m: [Row; TILE],
+    transmittance: [TileRow; TILE],
+    expected_m: [TileRow; TILE],
+    median_m: [TileRow; TILE],
     /// Weight per render id; only the ids in `used` are meaningful.
-    weights: [[Row; TILE]; RENDER_IDS],
+    weights: [[TileRow; TILE]; RENDER_IDS],
     used: u32,
 }
 
@@ -49,17 +49,17 @@ pub(super) struct Tile {
 #[derive(Clone, Copy)]
 pub(super) struct Resolved {
     /// Sum of weights.
-    pub coverage: Row,
+    pub coverage: TileRow,
     /// Sum of weight times depth, m.
-    pub expected_m: Row,
+    pub expected_m: TileRow,
     /// Depth at which less than half the light was left, -1 if never.
-    pub median_m: Row,
+    pub median_m: TileRow,
     /// Heaviest id, the lowest on a tie; -1 where nothing was drawn.
     pub label: [i16; TILE],
     /// Lead of that id over the second.
-    pub margin: Row,
+    pub margin: TileRow,
     /// Light that is left.
-    pub transmittance: Row,
+    pub transmittance: TileRow,
 }
 
 /// A row on which nothing was drawn.
@@ -93,7 +93,7 @@ impl Tile {
         list: &[u32],
         origin_px: [usize; 2],
         size: [usize; 2],
-        limits: Limits,
+        limits: BlendThresholds,
     ) -> [Resolved; TILE] {
         struct Draw<'a>(
             &'a mut Tile,
@@ -101,7 +101,7 @@ impl Tile {
             &'a [u32],
             [usize; 2],
             [usize; 2],
-            Limits,
+            BlendThresholds,
         );
         impl pulp::WithSimd for Draw<'_> {
             type Output = [Resolved; TILE];
@@ -138,7 +138,7 @@ impl Tile {
         list: &[u32],
         origin_px: [usize; 2],
         size: [usize; 2],
-        limits: Limits,
+        limits: BlendThresholds,
     ) {
         // Rows in which every pixel has had its light are skipped; a look every few splats is enough.
         const LOOK: u32 = 8;
@@ -227,11 +227,11 @@ fn blend_row(
     splat: &Splat,
     dx: f32,
     from_y: f32,
-    limits: Limits,
-    transmittance: &mut Row,
-    expected_m: &mut Row,
-    median_m: &mut Row,
-    weight: &mut Row,
+    limits: BlendThresholds,
+    transmittance: &mut TileRow,
+    expected_m: &mut TileRow,
+    median_m: &mut TileRow,
+    weight: &mut TileRow,
 ) {
     for i in 0..TILE {
         let dx = dx + i as f32;

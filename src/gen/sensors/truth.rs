@@ -6,12 +6,12 @@ use rayon::prelude::*;
 
 use super::backdrop::Backdrop;
 use super::lidar::{EgoBox, direction_in_sensor};
-use super::material::{Materials, Met, gaussian, range_sigma_m};
+use super::material::{Materials, PulseHit, gaussian, range_sigma_m};
 use super::own_body::{OwnBody, is_blind};
 use scene::solid::Solid;
 use scene::{Class, LidarPattern, SensorRig};
 use world::draw::{Draw, hash};
-use world::{Surface, World};
+use world::{SurfacePoint, World};
 
 /// Outcome of a pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub const RANGE_STEP_M: f64 = 0.002;
 pub fn sweep(world: &World, pattern: &LidarPattern, seed: u64) -> Vec<TruthRay> {
     let ego_from_sensor = pattern.ego_from_sensor();
     let origin = ego_from_sensor.translation_m;
-    let sensor = Sensor {
+    let sensor = WorldLidar {
         world,
         materials: Materials::new(world),
         backdrop: pattern.beyond_grid.then(|| Backdrop::of_world(world)),
@@ -76,7 +76,7 @@ pub fn sweep(world: &World, pattern: &LidarPattern, seed: u64) -> Vec<TruthRay> 
 }
 
 /// A LiDAR in a world.
-struct Sensor<'a> {
+struct WorldLidar<'a> {
     world: &'a World,
     materials: Materials<'a>,
     backdrop: Option<Backdrop>,
@@ -85,7 +85,7 @@ struct Sensor<'a> {
     max_range_m: f64,
 }
 
-impl Sensor<'_> {
+impl WorldLidar<'_> {
     fn pulse(&self, direction: DVec3, draw: &mut Draw) -> TruthRay {
         // Every pulse takes the same number of draws, whatever it meets.
         let (range_noise, strength_noise, fate, detail) =
@@ -100,9 +100,9 @@ impl Sensor<'_> {
         };
         let at = |range_m: f64| self.origin + direction * range_m;
         let stepped = |range_m: f64| ((range_m / RANGE_STEP_M).round() * RANGE_STEP_M) as f32;
-        let mut answer = |class: Class, surface: &Surface, solid: Option<&Solid>, range_m: f64| {
+        let mut answer = |class: Class, surface: &SurfacePoint, solid: Option<&Solid>, range_m: f64| {
             let cosine = surface.normal.dot(direction).abs().clamp(0.0, 1.0);
-            let met = Met {
+            let met = PulseHit {
                 class,
                 surface,
                 solid,
@@ -129,7 +129,7 @@ impl Sensor<'_> {
             && let Some(hit) = backdrop.cast(self.origin, direction, self.max_range_m)
         {
             // Beyond the grid: the town goes on.
-            let surface = Surface {
+            let surface = SurfacePoint {
                 normal: hit.normal,
                 instance: hit.instance,
                 part: hit.part,

@@ -4,7 +4,7 @@ use candle_core::Tensor;
 
 use crate::config::{ControlConfig, MpiConfig};
 use crate::layers::Conv;
-use crate::unet::{Around, Down, Extra, Levels, Middle, TimeEmbedding, told_to_each};
+use crate::unet::{Down, Extra, NeighbourIndices, TimeEmbedding, UnetBottleneck, UnetLevels, told_to_each};
 use crate::weights::{Names, Weights};
 use crate::{Machine, StableError, wrong};
 
@@ -72,7 +72,7 @@ pub struct ControlNet {
     time: TimeEmbedding,
     first: Conv,
     down: Vec<Down>,
-    middle: Middle,
+    middle: UnetBottleneck,
     zeros: Vec<Conv>,
     zero_middle: Conv,
     machine: Machine,
@@ -93,7 +93,7 @@ impl ControlNet {
 
     fn of(config: &ControlConfig, names: &Names<'_>, machine: &Machine) -> Result<Self, StableError> {
         let unet = &config.unet;
-        let levels = Levels::of(unet);
+        let levels = UnetLevels::of(unet);
         let (finest, coarsest) = (
             unet.block_out_channels[0],
             unet.block_out_channels[unet.block_out_channels.len() - 1],
@@ -185,7 +185,7 @@ impl ControlNet {
     ) -> Result<Extra, StableError> {
         let context = told_to_each(context, x.dim(0)?)?.to_dtype(self.machine.dtype)?;
         let time = self.time.forward(t, &self.machine)?;
-        let around = Around::default();
+        let around = NeighbourIndices::default();
         let x = self.first.forward(&x.to_dtype(self.machine.dtype)?)?;
         if x.dims() != embedded.dims() {
             let expected = format!("{:?}, that of the latents", x.dims());

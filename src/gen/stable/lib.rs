@@ -29,8 +29,11 @@ pub use control::{ControlNet, MpiEncoder};
 pub use error::StableError;
 pub(crate) use error::{check_finite, check_length, wrong};
 pub use machine::Machine;
-pub use pictures::Pictures;
-pub use pipeline::{Control, Drawn, Folders, Pipeline, Planes, Request, Start, Step};
+pub use pictures::PictureBatch;
+pub use pipeline::{
+    Control, DenoisingStep, Folders, GeneratedPictures, PictureRequest, Pipeline, SemanticPlanes,
+    StartPictures,
+};
 pub use text::{TextEncoder, Words};
 pub use unet::{Extra, Unet};
 pub use vae::Vae;

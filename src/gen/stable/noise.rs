@@ -1,6 +1,6 @@
 //! The noise that pictures are drawn from.
 
-use diffusion::schedule::Level;
+use diffusion::schedule::NoiseLevel;
 use numeric::philox::{Stream, normal};
 
 use crate::{StableError, check_finite, check_length};
@@ -74,7 +74,7 @@ pub fn with_prior(noise: &[f32], warped: &[f32], lambda: f32) -> Result<Vec<f32>
 }
 
 /// Clean latents with noise at a level, in 64 bits.
-pub(crate) fn noised(clean: &[f32], noise: &[f32], level: &Level) -> Vec<f64> {
+pub(crate) fn noised(clean: &[f32], noise: &[f32], level: &NoiseLevel) -> Vec<f64> {
     let pairs = clean.iter().zip(noise);
     pairs
         .map(|(c, n)| level.alpha * f64::from(*c) + level.sigma * f64::from(*n))

@@ -11,13 +11,13 @@ const COLOURS: usize = 3;
 
 /// Pictures of one size: `[picture][row][column][3]`, sRGB from -1 to 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pictures {
+pub struct PictureBatch {
     count: usize,
     size: [usize; 2],
     rgb: Vec<f32>,
 }
 
-impl Pictures {
+impl PictureBatch {
     /// `count` pictures of `size` (height and width, px). Errors if the numbers do not fit, are not finite, or a side
     /// has more than 8192 pixels.
     pub fn new(count: usize, size: [usize; 2], rgb: Vec<f32>) -> Result<Self, StableError> {

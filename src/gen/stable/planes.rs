@@ -17,7 +17,7 @@ const LAST_LINE: u8 = 19;
 /// Planes `first` to `end` (not included) of a latent cell that show `id`: 1 to 16 are classes of Occ3D, 17 to 19 lines
 /// on the road, 0 is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Run {
+pub struct PlaneSpan {
     /// The cell: picture * rows * columns + row * columns + column.
     pub cell: usize,
     /// First plane.
@@ -35,7 +35,7 @@ pub fn of_runs(
     pictures: usize,
     cells: usize,
     channels: usize,
-    runs: impl IntoIterator<Item = Run>,
+    runs: impl IntoIterator<Item = PlaneSpan>,
 ) -> Result<Vec<f32>, StableError> {
     let planes = channels.saturating_sub(1);
     if planes == 0 {
@@ -44,7 +44,7 @@ pub fn of_runs(
     let mut out = vec![0.0; pictures * channels * cells];
     let mut nearest = vec![planes; pictures * cells];
     for run in runs {
-        let Run { cell, first, end, id } = run;
+        let PlaneSpan { cell, first, end, id } = run;
         if cell >= nearest.len() || first > end || end > planes {
             let expected = format!("{} cells and {planes} planes", nearest.len());
             return Err(wrong("run of planes", format!("{run:?}"), expected));
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn runs_fill_their_planes_and_the_nearest_is_seen_first() {
-        let run = |cell, first, end, id| Run { cell, first, end, id };
+        let run = |cell, first, end, id| PlaneSpan { cell, first, end, id };
         let runs = [
             run(0, 2, 4, 15),
             run(0, 0, 1, 4),

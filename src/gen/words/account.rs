@@ -5,13 +5,13 @@ use serde::Serialize;
 
 use super::grammar;
 use super::lexicon::{is_english, is_other_thing};
-use super::measure::{Kind, Measure, measures};
+use super::measure::{Measure, MeasuredQuantity, measures};
 use super::notation;
 use super::nouns::Noun;
-use super::reading::{Anchor, Quantity, Reading, Thing, What};
+use super::reading::{ActKind, AnchorPhrase, ObjectPhrase, Quantity, Reading};
 use super::slots::{Slot, slots};
 use super::tokens::{Speller, Token, number_word};
-use place::beside_road::Span;
+use place::beside_road::TextSpan;
 
 /// A word that the reading does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -29,7 +29,7 @@ pub enum Why {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Missing {
     /// Bytes of the text that it takes.
-    pub span: Span,
+    pub span: TextSpan,
     /// The words.
     pub words: String,
     /// The reason.
@@ -87,7 +87,7 @@ const NOT: [&str; 10] = [
 pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Speller) -> Vec<Missing> {
     let line = notation::write(reading);
     let said: Vec<&str> = line.split(' ').collect();
-    let numbers = Numbers::of(reading, tokens);
+    let numbers = ReadingNumbers::of(reading, tokens);
     let nouns = named(reading);
     let corrected = tokens
         .iter()
@@ -153,7 +153,7 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
 }
 
 /// The numbers that a reading holds, and hints on the numbers of the text from the words around them.
-struct Numbers<'t> {
+struct ReadingNumbers<'t> {
     tokens: &'t [Token],
     slots: Vec<Slot>,
     sums: Vec<f64>,
@@ -161,13 +161,16 @@ struct Numbers<'t> {
     halves: bool,
 }
 
-impl<'t> Numbers<'t> {
+impl<'t> ReadingNumbers<'t> {
     fn of(reading: &Reading, tokens: &'t [Token]) -> Self {
         Self {
             tokens,
             slots: slots(reading),
             sums: sums(reading),
-            tells_time: reading.acts.iter().any(|a| matches!(a.what, What::Time { .. })),
+            tells_time: reading
+                .acts
+                .iter()
+                .any(|a| matches!(a.what, ActKind::Time { .. })),
             halves: notation::write(reading).split(' ').any(|s| s == "half"),
         }
     }
@@ -177,10 +180,10 @@ impl<'t> Numbers<'t> {
         self.is_taken_back(m)
             || self.slots.iter().any(|s| s.is(m))
             || match m.kind {
-                Kind::Count => self.is_worked_out(m),
-                Kind::Share => m.value == 50.0 && self.halves,
+                MeasuredQuantity::Count => self.is_worked_out(m),
+                MeasuredQuantity::Share => m.value == 50.0 && self.halves,
                 // ("at 11 pm" is night)
-                Kind::Clock => self.tells_time,
+                MeasuredQuantity::Clock => self.tells_time,
                 _ => false,
             }
     }
@@ -204,7 +207,7 @@ impl<'t> Numbers<'t> {
     fn is_taken_back(&self, m: &Measure) -> bool {
         let at = m.from.checked_sub(1);
         let before = self.word(at);
-        if m.kind == Kind::Count {
+        if m.kind == MeasuredQuantity::Count {
             return NOT.contains(&before);
         }
         let earlier = self.word(at.and_then(|k| k.checked_sub(1)));
@@ -219,26 +222,26 @@ impl<'t> Numbers<'t> {
 }
 
 /// A thing that a reading names.
-struct Named {
+struct NamedThing {
     noun: Noun,
     /// True if it stands for every thing there is: "remove all objects".
     is_everything: bool,
 }
 
 /// All things that a reading names.
-fn named(reading: &Reading) -> Vec<Named> {
-    fn add(t: &Thing, takes: bool, out: &mut Vec<Named>) {
+fn named(reading: &Reading) -> Vec<NamedThing> {
+    fn add(t: &ObjectPhrase, takes: bool, out: &mut Vec<NamedThing>) {
         // (the others of "no other vehicles" are those that were not named)
         let rest = takes && t.other;
         if !rest {
-            out.push(Named {
+            out.push(NamedThing {
                 noun: t.noun,
                 is_everything: takes && t.noun == Noun::Thing,
             });
         }
         for p in &t.places {
             for a in [&p.to, &p.and].into_iter().flatten() {
-                if let Anchor::Thing(t) = a {
+                if let AnchorPhrase::Thing(t) = a {
                     add(t, false, out);
                 }
             }
@@ -249,7 +252,7 @@ fn named(reading: &Reading) -> Vec<Named> {
     for act in &reading.acts {
         let takes = matches!(
             act.what,
-            What::Remove { .. } | What::No { .. } | What::Keep { .. } | What::Leave { .. }
+            ActKind::Remove { .. } | ActKind::No { .. } | ActKind::Keep { .. } | ActKind::Leave { .. }
         );
         act.what.things(&mut |t| add(t, takes, &mut out));
     }
@@ -260,7 +263,7 @@ fn named(reading: &Reading) -> Vec<Named> {
 fn sums(reading: &Reading) -> Vec<f64> {
     const MOST: u32 = 60;
     let mut sums = vec![0];
-    let mut add = |t: &Thing| {
+    let mut add = |t: &ObjectPhrase| {
         let n = match t.quantity {
             Quantity::N(n) | Quantity::TheN(n) | Quantity::Range(n, _) => n,
             Quantity::The | Quantity::Unsaid => 1,
@@ -274,14 +277,14 @@ fn sums(reading: &Reading) -> Vec<f64> {
         sums.extend(more);
     };
     for act in &reading.acts {
-        if !matches!(act.what, What::No { .. } | What::Count { .. }) {
+        if !matches!(act.what, ActKind::No { .. } | ActKind::Count { .. }) {
             act.what.things(&mut add);
         }
     }
     sums.into_iter().skip(1).map(f64::from).collect()
 }
 
-fn sense_is_said(kind: &str, symbol: &str, said: &[&str], nouns: &[Named]) -> bool {
+fn sense_is_said(kind: &str, symbol: &str, said: &[&str], nouns: &[NamedThing]) -> bool {
     let has = |s: &str| said.contains(&s) || said.contains(&format!("not_{s}").as_str());
     if has(symbol) {
         return true;

@@ -3,12 +3,12 @@
 use super::account::{Missing, Why};
 use super::nouns::Noun;
 use super::reading::{
-    Amount, Anchor, Destination, Feature, LaneSide, PaintWish, Place, Quantity, Reading, Relation, Thing,
-    Traits, Turn, Way, What,
+    ActKind, Amount, AnchorPhrase, Destination, Feature, LaneSide, ObjectPhrase, PaintWish, PlacePhrase,
+    Quantity, Reading, Relation, Traits, Turn, Way,
 };
 use super::remark::Remark;
 use super::resolve::plural;
-use super::stage::Outcome;
+use super::stage::ReadingOutcome;
 use scene::clip::{Manoeuvre, Pace, Template};
 use scene::graph::{LaneRole, ObjectState, SizeHint};
 
@@ -19,7 +19,7 @@ const MOST_WORDS: usize = 6;
 /// not be done as it was said.
 pub fn answer(
     reading: &Reading,
-    outcome: Option<&Outcome>,
+    outcome: Option<&ReadingOutcome>,
     remarks: &[(usize, Remark)],
     missing: &[Missing],
 ) -> String {
@@ -34,7 +34,7 @@ pub fn answer(
             .collect();
         let why = why.join("; ");
         let asked = outcome.and_then(|o| o.questions.iter().find(|q| q.act == i));
-        let changes = !matches!(act.what, What::Leave { .. });
+        let changes = !matches!(act.what, ActKind::Leave { .. });
         let nothing = changes && outcome.is_some_and(|o| o.done.get(i).is_none_or(|d| d.is_nothing()));
         parts.push(match (asked, why.is_empty()) {
             (Some(q), _) => q.text.clone(),
@@ -83,10 +83,10 @@ pub fn answer(
 }
 
 /// One act in words: `adds two buses`.
-pub fn sentence(what: &What) -> String {
+pub fn sentence(what: &ActKind) -> String {
     match what {
-        What::Add { things } => format!("adds {}", list(things)),
-        What::No { who } => {
+        ActKind::Add { things } => format!("adds {}", list(things)),
+        ActKind::No { who } => {
             let who: Vec<String> = who
                 .iter()
                 .map(|t| {
@@ -99,15 +99,15 @@ pub fn sentence(what: &What) -> String {
                 .collect();
             format!("no {}", join(&who, "or"))
         }
-        What::Remove { who } => format!("removes {}", list(who)),
-        What::Keep { who } => format!("keeps only {}", list(who)),
-        What::Leave { who } if who.is_empty() => "all else stays".into(),
-        What::Leave { who } => format!("{} {}", list(who), verb(who, "stays", "stay")),
-        What::Replace { who, things } => format!("replaces {} with {}", list(who), list(things)),
-        What::Move { who, to } => format!("moves {} {}", list(who), destination(to)),
-        What::Turn { who, turn } => format!("turns {} {}", list(who), turned(turn)),
-        What::Set { who, traits } => format!("makes {} {}", list(who), traits_in_words(traits)),
-        What::Count { who, amount } => {
+        ActKind::Remove { who } => format!("removes {}", list(who)),
+        ActKind::Keep { who } => format!("keeps only {}", list(who)),
+        ActKind::Leave { who } if who.is_empty() => "all else stays".into(),
+        ActKind::Leave { who } => format!("{} {}", list(who), verb(who, "stays", "stay")),
+        ActKind::Replace { who, things } => format!("replaces {} with {}", list(who), list(things)),
+        ActKind::Move { who, to } => format!("moves {} {}", list(who), destination(to)),
+        ActKind::Turn { who, turn } => format!("turns {} {}", list(who), turned(turn)),
+        ActKind::Set { who, traits } => format!("makes {} {}", list(who), traits_in_words(traits)),
+        ActKind::Count { who, amount } => {
             let who: Vec<String> = who.iter().map(many).collect();
             match amount {
                 Amount::To(a, b) if a == b => format!("makes it {a} {}", join(&who, "and")),
@@ -115,22 +115,22 @@ pub fn sentence(what: &What) -> String {
                 Amount::Times(n) => format!("makes it {n} times as many {}", join(&who, "and")),
             }
         }
-        What::Swap { one, other } => format!("swaps {} and {}", thing(one), thing(other)),
-        What::Go { who, how } if who.is_empty() => format!("we {}", manoeuvre(how)),
-        What::Go { who, how } => format!("lets {} {}", list(who), manoeuvre(how)),
-        What::Length { seconds } => format!("lasts {seconds} s"),
-        What::Time { what } => format!("time of day: {}", what.name()),
-        What::Weather { what } => format!("weather: {}", what.name()),
-        What::Road { what } => format!("road: {}", what.name()),
-        What::Env { what } => format!("surroundings: {}", what.name()),
-        What::Density { what } => format!("traffic: {}", what.name()),
-        What::Has { what, places } => format!("a {}{}", feature(*what), at_places(places)),
-        What::Lacks { what } => format!("no {}", feature(*what)),
-        What::Lanes { n } => format!("{n} lanes"),
-        What::OneWay => "one-way traffic".into(),
-        What::Narrow => "a narrow road".into(),
-        What::Wide => "a wide road".into(),
-        What::OwnLane { what } => match what {
+        ActKind::Swap { one, other } => format!("swaps {} and {}", thing(one), thing(other)),
+        ActKind::Go { who, how } if who.is_empty() => format!("we {}", manoeuvre(how)),
+        ActKind::Go { who, how } => format!("lets {} {}", list(who), manoeuvre(how)),
+        ActKind::Length { seconds } => format!("lasts {seconds} s"),
+        ActKind::Time { what } => format!("time of day: {}", what.name()),
+        ActKind::Weather { what } => format!("weather: {}", what.name()),
+        ActKind::Road { what } => format!("road: {}", what.name()),
+        ActKind::Env { what } => format!("surroundings: {}", what.name()),
+        ActKind::Density { what } => format!("traffic: {}", what.name()),
+        ActKind::Has { what, places } => format!("a {}{}", feature(*what), at_places(places)),
+        ActKind::Lacks { what } => format!("no {}", feature(*what)),
+        ActKind::Lanes { n } => format!("{n} lanes"),
+        ActKind::OneWay => "one-way traffic".into(),
+        ActKind::Narrow => "a narrow road".into(),
+        ActKind::Wide => "a wide road".into(),
+        ActKind::OwnLane { what } => match what {
             LaneSide::Left => "we drive in the left lane".into(),
             LaneSide::Right => "we drive in the right lane".into(),
             LaneSide::Middle => "we drive in the middle lane".into(),
@@ -185,18 +185,18 @@ fn join(parts: &[String], and: &str) -> String {
     }
 }
 
-fn list(things: &[Thing]) -> String {
+fn list(things: &[ObjectPhrase]) -> String {
     let parts: Vec<String> = things.iter().map(thing).collect();
     join(&parts, "and")
 }
 
-fn verb(who: &[Thing], one: &str, many: &str) -> String {
+fn verb(who: &[ObjectPhrase], one: &str, many: &str) -> String {
     let single = who.len() == 1
         && (matches!(who[0].quantity, Quantity::The | Quantity::N(1)) || who[0].pick.is_some());
     if single { one.into() } else { many.into() }
 }
 
-fn bare(t: &Thing, several: bool) -> String {
+fn bare(t: &ObjectPhrase, several: bool) -> String {
     let mut out: Vec<String> = Vec::new();
     out.extend(t.size.map(|s| match s {
         SizeHint::Small => "small".to_string(),
@@ -223,11 +223,11 @@ fn bare(t: &Thing, several: bool) -> String {
     out.join(" ")
 }
 
-fn many(t: &Thing) -> String {
+fn many(t: &ObjectPhrase) -> String {
     format!("{}{}", bare(t, true), tail(t))
 }
 
-fn tail(t: &Thing) -> String {
+fn tail(t: &ObjectPhrase) -> String {
     let mut out = at_places(&t.places);
     if !t.except.is_empty() {
         out.push_str(&format!(" except {}", list(&t.except)));
@@ -236,7 +236,7 @@ fn tail(t: &Thing) -> String {
 }
 
 /// A thing in words: `the two parked red cars on the left`.
-pub fn thing(t: &Thing) -> String {
+pub fn thing(t: &ObjectPhrase) -> String {
     if let Some(id) = t.id {
         return format!("{} #{id}", bare(t, false));
     }
@@ -280,7 +280,7 @@ fn number(n: u32) -> String {
         .map_or_else(|| n.to_string(), |w| (*w).to_string())
 }
 
-fn at_places(places: &[Place]) -> String {
+fn at_places(places: &[PlacePhrase]) -> String {
     places.iter().map(|p| format!(" {}", place(p))).collect()
 }
 
@@ -288,7 +288,7 @@ fn metres(m: Option<f64>) -> String {
     m.map_or(String::new(), |m| format!("{m} m "))
 }
 
-fn place(p: &Place) -> String {
+fn place(p: &PlacePhrase) -> String {
     let far = metres(p.metres);
     let Some(to) = &p.to else {
         return match p.relation {
@@ -299,11 +299,11 @@ fn place(p: &Place) -> String {
     };
     let a = anchor(to);
     match p.relation {
-        Relation::Ahead if *to == Anchor::Ego => format!("{far}ahead"),
+        Relation::Ahead if *to == AnchorPhrase::Ego => format!("{far}ahead"),
         Relation::Ahead => format!("{far}in front of {a}"),
         Relation::Behind => format!("{far}behind {a}"),
-        Relation::Left if *to == Anchor::Ego => format!("{far}on the left"),
-        Relation::Right if *to == Anchor::Ego => format!("{far}on the right"),
+        Relation::Left if *to == AnchorPhrase::Ego => format!("{far}on the left"),
+        Relation::Right if *to == AnchorPhrase::Ego => format!("{far}on the right"),
         Relation::Left => format!("{far}to the left of {a}"),
         Relation::Right => format!("{far}to the right of {a}"),
         Relation::NextTo => format!("next to {a}"),
@@ -329,9 +329,9 @@ fn place(p: &Place) -> String {
     }
 }
 
-fn preposition(to: &Anchor) -> &'static str {
+fn preposition(to: &AnchorPhrase) -> &'static str {
     match to {
-        Anchor::Lane(
+        AnchorPhrase::Lane(
             LaneRole::Ego
             | LaneRole::Left
             | LaneRole::Right
@@ -339,23 +339,23 @@ fn preposition(to: &Anchor) -> &'static str {
             | LaneRole::Cross
             | LaneRole::Carpark,
         )
-        | Anchor::OtherLane
-        | Anchor::Junction => "in",
-        Anchor::Lane(LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside) => "at",
+        | AnchorPhrase::OtherLane
+        | AnchorPhrase::Junction => "in",
+        AnchorPhrase::Lane(LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside) => "at",
         _ => "on",
     }
 }
 
-fn anchor(a: &Anchor) -> String {
+fn anchor(a: &AnchorPhrase) -> String {
     match a {
-        Anchor::Ego => "us".into(),
-        Anchor::Crossing => "the crossing".into(),
-        Anchor::Junction => "the junction".into(),
-        Anchor::OtherSide => "the other side".into(),
-        Anchor::OtherLane => "the other lane".into(),
-        Anchor::EachOther => "each other".into(),
-        Anchor::Thing(t) => thing(t),
-        Anchor::Lane(role) => match role {
+        AnchorPhrase::Ego => "us".into(),
+        AnchorPhrase::Crossing => "the crossing".into(),
+        AnchorPhrase::Junction => "the junction".into(),
+        AnchorPhrase::OtherSide => "the other side".into(),
+        AnchorPhrase::OtherLane => "the other lane".into(),
+        AnchorPhrase::EachOther => "each other".into(),
+        AnchorPhrase::Thing(t) => thing(t),
+        AnchorPhrase::Lane(role) => match role {
             LaneRole::Ego => "our lane",
             LaneRole::Left => "the left lane",
             LaneRole::Right => "the right lane",

@@ -2,20 +2,22 @@
 //! `training/words/canonical.py`.
 
 use super::mode::Mode;
-use super::reading::{Act, Anchor, Destination, Place, Reading, Relation, Thing, Turn, What};
+use super::reading::{
+    Act, ActKind, AnchorPhrase, Destination, ObjectPhrase, PlacePhrase, Reading, Relation, Turn,
+};
 use scene::graph::{LaneRole, ObjectState};
 
 /// The acts in that order, without spans and confidences, and without acts on scenery.
 pub fn canonical(reading: &Reading, mode: Mode) -> Reading {
-    let mut out: Vec<What> = Vec::new();
+    let mut out: Vec<ActKind> = Vec::new();
     for act in &reading.acts {
         let mut what = act.what.clone();
         sort_what(&mut what);
         match (out.last_mut(), what) {
-            (Some(What::Add { things }), What::Add { things: more }) => things.extend(more),
-            (Some(What::Remove { who }), What::Remove { who: more })
-            | (Some(What::Keep { who }), What::Keep { who: more })
-            | (Some(What::No { who }), What::No { who: more }) => who.extend(more),
+            (Some(ActKind::Add { things }), ActKind::Add { things: more }) => things.extend(more),
+            (Some(ActKind::Remove { who }), ActKind::Remove { who: more })
+            | (Some(ActKind::Keep { who }), ActKind::Keep { who: more })
+            | (Some(ActKind::No { who }), ActKind::No { who: more }) => who.extend(more),
             (_, what) => out.push(what),
         }
     }
@@ -24,7 +26,7 @@ pub fn canonical(reading: &Reading, mode: Mode) -> Reading {
     let mut acts: Vec<Act> = Vec::new();
     for what in out {
         match (acts.last_mut().map(|a| &mut a.what), what) {
-            (Some(What::Add { things }), What::Add { things: more }) if mode == Mode::Prompt => {
+            (Some(ActKind::Add { things }), ActKind::Add { things: more }) if mode == Mode::Prompt => {
                 things.extend(more)
             }
             (_, what) => acts.push(what.into()),
@@ -33,65 +35,66 @@ pub fn canonical(reading: &Reading, mode: Mode) -> Reading {
     Reading::of(acts)
 }
 
-fn rank(what: &What, mode: Mode) -> u8 {
+fn rank(what: &ActKind, mode: Mode) -> u8 {
     match (what, mode) {
-        (What::Leave { .. }, _) => 30,
-        (What::No { .. }, Mode::Prompt) => 29,
-        (What::Go { .. }, Mode::Prompt) => 20,
-        (What::Time { .. } | What::Weather { .. }, Mode::Edit) => 0,
+        (ActKind::Leave { .. }, _) => 30,
+        (ActKind::No { .. }, Mode::Prompt) => 29,
+        (ActKind::Go { .. }, Mode::Prompt) => 20,
+        (ActKind::Time { .. } | ActKind::Weather { .. }, Mode::Edit) => 0,
         (_, Mode::Edit) => 1,
-        (What::Road { .. }, _) => 0,
-        (What::Lanes { .. }, _) => 1,
-        (What::OneWay, _) => 2,
-        (What::Narrow, _) => 3,
-        (What::Wide, _) => 4,
-        (What::OwnLane { .. }, _) => 5,
-        (What::Time { .. }, _) => 6,
-        (What::Weather { .. }, _) => 7,
-        (What::Env { .. }, _) => 8,
-        (What::Density { .. }, _) => 9,
-        (What::Has { .. }, _) => 10,
-        (What::Lacks { .. }, _) => 11,
-        (What::Length { .. }, _) => 12,
+        (ActKind::Road { .. }, _) => 0,
+        (ActKind::Lanes { .. }, _) => 1,
+        (ActKind::OneWay, _) => 2,
+        (ActKind::Narrow, _) => 3,
+        (ActKind::Wide, _) => 4,
+        (ActKind::OwnLane { .. }, _) => 5,
+        (ActKind::Time { .. }, _) => 6,
+        (ActKind::Weather { .. }, _) => 7,
+        (ActKind::Env { .. }, _) => 8,
+        (ActKind::Density { .. }, _) => 9,
+        (ActKind::Has { .. }, _) => 10,
+        (ActKind::Lacks { .. }, _) => 11,
+        (ActKind::Length { .. }, _) => 12,
         _ => 13,
     }
 }
 
-fn sort_what(what: &mut What) {
+fn sort_what(what: &mut ActKind) {
     match what {
-        What::Add { things: a } | What::No { who: a } | What::Remove { who: a } | What::Keep { who: a } => {
-            sort_all(a)
-        }
-        What::Leave { who: a }
-        | What::Set { who: a, .. }
-        | What::Count { who: a, .. }
-        | What::Go { who: a, .. } => sort_all(a),
-        What::Replace { who, things } => {
+        ActKind::Add { things: a }
+        | ActKind::No { who: a }
+        | ActKind::Remove { who: a }
+        | ActKind::Keep { who: a } => sort_all(a),
+        ActKind::Leave { who: a }
+        | ActKind::Set { who: a, .. }
+        | ActKind::Count { who: a, .. }
+        | ActKind::Go { who: a, .. } => sort_all(a),
+        ActKind::Replace { who, things } => {
             sort_all(who);
             sort_all(things);
         }
-        What::Move { who, to } => {
+        ActKind::Move { who, to } => {
             sort_all(who);
             if let Destination::To(places) = to {
                 sort_places(places);
             }
         }
-        What::Turn { who, turn } => {
+        ActKind::Turn { who, turn } => {
             sort_all(who);
             if let Turn::To(places) = turn {
                 sort_places(places);
             }
         }
-        What::Swap { one, other } => {
+        ActKind::Swap { one, other } => {
             sort_places(&mut one.places);
             sort_places(&mut other.places);
         }
-        What::Has { places, .. } => sort_places(places),
+        ActKind::Has { places, .. } => sort_places(places),
         _ => {}
     }
 }
 
-fn sort_all(things: &mut [Thing]) {
+fn sort_all(things: &mut [ObjectPhrase]) {
     for t in things {
         // (objects parked on the right stand at the right kerb)
         if t.state == Some(ObjectState::Parked) {
@@ -102,21 +105,21 @@ fn sort_all(things: &mut [Thing]) {
     }
 }
 
-fn at_the_kerb(p: &mut Place) {
+fn at_the_kerb(p: &mut PlacePhrase) {
     let role = match p.relation {
         Relation::Left => LaneRole::LeftRoadside,
         Relation::Right => LaneRole::RightRoadside,
         _ => return,
     };
-    if p.to == Some(Anchor::Ego) && p.metres.is_none() {
-        (p.relation, p.to) = (Relation::On, Some(Anchor::Lane(role)));
+    if p.to == Some(AnchorPhrase::Ego) && p.metres.is_none() {
+        (p.relation, p.to) = (Relation::On, Some(AnchorPhrase::Lane(role)));
     }
 }
 
-fn sort_places(places: &mut [Place]) {
+fn sort_places(places: &mut [PlacePhrase]) {
     for p in places.iter_mut() {
         for anchor in [p.to.as_mut(), p.and.as_mut()].into_iter().flatten() {
-            if let Anchor::Thing(t) = anchor {
+            if let AnchorPhrase::Thing(t) = anchor {
                 sort_places(&mut t.places);
             }
         }

@@ -1,7 +1,7 @@
 //! A check after a reading was carried out: its statements must hold in the resulting scene.
 
 use super::nouns::Noun;
-use super::reading::{Amount, Quantity, Reading, Thing, What};
+use super::reading::{ActKind, Amount, ObjectPhrase, Quantity, Reading};
 use super::remark::Remark;
 use super::resolve::words_of;
 use super::stage::Stage;
@@ -11,8 +11,8 @@ pub(super) fn look_again(stage: &mut Stage<'_>, reading: &Reading) {
     for (i, act) in reading.acts.iter().enumerate() {
         stage.act = i;
         match &act.what {
-            What::Leave { who } => who.iter().for_each(|t| spared(stage, t)),
-            What::Count {
+            ActKind::Leave { who } => who.iter().for_each(|t| spared(stage, t)),
+            ActKind::Count {
                 who,
                 amount: Amount::To(least, most),
             } if !undone_later(reading, i) => {
@@ -20,7 +20,7 @@ pub(super) fn look_again(stage: &mut Stage<'_>, reading: &Reading) {
                     counted(stage, t, *least as usize, *most as usize);
                 }
             }
-            What::No { who } if !undone_later(reading, i) => {
+            ActKind::No { who } if !undone_later(reading, i) => {
                 for t in who.iter().filter(|t| !t.other) {
                     counted(stage, t, 0, 0);
                 }
@@ -32,12 +32,17 @@ pub(super) fn look_again(stage: &mut Stage<'_>, reading: &Reading) {
 
 /// True if a later act adds things, so that a number need not hold in the end.
 fn undone_later(reading: &Reading, i: usize) -> bool {
-    let brings = |w: &What| matches!(w, What::Add { .. } | What::Replace { .. } | What::Count { .. });
+    let brings = |w: &ActKind| {
+        matches!(
+            w,
+            ActKind::Add { .. } | ActKind::Replace { .. } | ActKind::Count { .. }
+        )
+    };
     reading.acts[i + 1..].iter().any(|a| brings(&a.what))
 }
 
 /// Adds a remark if boxes that were to stay have changed.
-fn spared(stage: &mut Stage<'_>, t: &Thing) {
+fn spared(stage: &mut Stage<'_>, t: &ObjectPhrase) {
     if t.other || matches!(t.noun, Noun::It | Noun::One) {
         return; // (it is no longer known which one was meant)
     }
@@ -49,8 +54,8 @@ fn spared(stage: &mut Stage<'_>, t: &Thing) {
     }
 }
 
-fn counted(stage: &mut Stage<'_>, t: &Thing, least: usize, most: usize) {
-    let fits = stage.fitting(&Thing {
+fn counted(stage: &mut Stage<'_>, t: &ObjectPhrase, least: usize, most: usize) {
+    let fits = stage.fitting(&ObjectPhrase {
         quantity: Quantity::All,
         ..t.clone()
     });

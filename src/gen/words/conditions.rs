@@ -2,14 +2,14 @@
 //! rain", "it is no longer raining", "the fog has lifted", "dry road after the rain".
 
 use super::lexicon::{LONGEST_PHRASE, Lexicon};
-use super::reading::{Act, Reading, What};
+use super::reading::{Act, ActKind, Reading};
 use super::tokens::{Token, tokens};
-use place::beside_road::Span;
+use place::beside_road::TextSpan;
 use scene::{Conditions, TimeOfDay, Weather};
 
 /// Time of day and weather of a text; `None` where it has no statement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Said {
+pub struct StatedConditions {
     /// Time of day.
     pub time: Option<TimeOfDay>,
     /// Weather.
@@ -19,7 +19,7 @@ pub struct Said {
 /// One phrase for a time or a weather.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Mention {
-    what: Named,
+    what: TimeOrWeather,
     /// Tokens: from the first up to, but not including, the second.
     at: (usize, usize),
     /// True if the text negates it.
@@ -27,7 +27,7 @@ struct Mention {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Named {
+enum TimeOrWeather {
     Time(TimeOfDay),
     Weather(Weather),
 }
@@ -70,7 +70,7 @@ const AFTER: [&str; 2] = ["after", "following"];
 const ENDS: [&str; 6] = [".", ";", "!", "?", ":", "but"];
 
 /// Reads a text. Of several statements the one with the strongest effect counts: a storm over rain, rain over clouds.
-pub fn read(text: &str) -> Said {
+pub fn read(text: &str) -> StatedConditions {
     said(&mentions(&tokens(text, None)))
 }
 
@@ -87,18 +87,18 @@ pub fn of_style(text: &str, seed: u64) -> Conditions {
 /// Corrects a reading by the negations of its text: a negated weather becomes a clear one.
 pub(super) fn set_right(reading: &mut Reading, tokens: &[Token]) {
     let mentions = mentions(tokens);
-    let denied = |what: Named| {
+    let denied = |what: TimeOrWeather| {
         let mut of = mentions.iter().filter(|m| m.what == what).peekable();
         of.peek().is_some() && of.all(|m| m.denied)
     };
     let told = said(&mentions);
-    let others: Vec<What> = reading.acts.iter().map(|a| a.what.clone()).collect();
+    let others: Vec<ActKind> = reading.acts.iter().map(|a| a.what.clone()).collect();
     reading.acts.retain_mut(|act| {
         let right = match act.what {
-            What::Weather { what } if denied(Named::Weather(what)) => What::Weather {
+            ActKind::Weather { what } if denied(TimeOrWeather::Weather(what)) => ActKind::Weather {
                 what: told.weather.unwrap_or_default(),
             },
-            What::Time { what } if denied(Named::Time(what)) => What::Time {
+            ActKind::Time { what } if denied(TimeOrWeather::Time(what)) => ActKind::Time {
                 what: told.time.unwrap_or_default(),
             },
             _ => return true,
@@ -108,28 +108,30 @@ pub(super) fn set_right(reading: &mut Reading, tokens: &[Token]) {
         !others.contains(&act.what)
     });
     // A negation that the readers missed.
-    let speaks = |test: fn(&What) -> bool| reading.acts.iter().any(|a| test(&a.what));
+    let speaks = |test: fn(&ActKind) -> bool| reading.acts.iter().any(|a| test(&a.what));
     let back = mentions
         .iter()
-        .find(|m| m.denied && matches!(m.what, Named::Weather(_)));
-    if let (Some(back), Some(weather), false) =
-        (back, told.weather, speaks(|w| matches!(w, What::Weather { .. })))
-    {
+        .find(|m| m.denied && matches!(m.what, TimeOrWeather::Weather(_)));
+    if let (Some(back), Some(weather), false) = (
+        back,
+        told.weather,
+        speaks(|w| matches!(w, ActKind::Weather { .. })),
+    ) {
         reading.acts.push(Act {
-            what: What::Weather { what: weather },
+            what: ActKind::Weather { what: weather },
             span: span(tokens, back.at),
             confidence: 1.0,
         });
     }
 }
 
-fn span(tokens: &[Token], (from, to): (usize, usize)) -> Option<Span> {
+fn span(tokens: &[Token], (from, to): (usize, usize)) -> Option<TextSpan> {
     let part = tokens.get(from..to)?;
-    part.iter().map(|t| t.span).reduce(Span::to)
+    part.iter().map(|t| t.span).reduce(TextSpan::to)
 }
 
 /// The time and weather that all mentions together give.
-fn said(mentions: &[Mention]) -> Said {
+fn said(mentions: &[Mention]) -> StatedConditions {
     let times = [TimeOfDay::Night, TimeOfDay::Dusk, TimeOfDay::Dawn, TimeOfDay::Day];
     let weathers = [
         Weather::Sandstorm,
@@ -139,13 +141,16 @@ fn said(mentions: &[Mention]) -> Said {
         Weather::Overcast,
         Weather::Clear,
     ];
-    let is = |what: Named, denied: bool| mentions.iter().any(|m| m.what == what && m.denied == denied);
-    let time = times.into_iter().find(|t| is(Named::Time(*t), false));
-    let weather = weathers.into_iter().find(|w| is(Named::Weather(*w), false));
+    let is =
+        |what: TimeOrWeather, denied: bool| mentions.iter().any(|m| m.what == what && m.denied == denied);
+    let time = times.into_iter().find(|t| is(TimeOrWeather::Time(*t), false));
+    let weather = weathers
+        .into_iter()
+        .find(|w| is(TimeOrWeather::Weather(*w), false));
     // If a condition is only negated ("not at night", "no rain"), it is day or clear.
-    let dark = times[..3].iter().any(|t| is(Named::Time(*t), true));
-    let bad = weathers[..5].iter().any(|w| is(Named::Weather(*w), true));
-    Said {
+    let dark = times[..3].iter().any(|t| is(TimeOrWeather::Time(*t), true));
+    let bad = weathers[..5].iter().any(|w| is(TimeOrWeather::Weather(*w), true));
+    StatedConditions {
         time: time.or(dark.then_some(TimeOfDay::Day)),
         weather: weather.or(bad.then_some(Weather::Clear)),
     }
@@ -173,8 +178,8 @@ fn mentions(tokens: &[Token]) -> Vec<Mention> {
             .iter()
             .any(|s| s.kind == "paint" || paints && s.kind == "noun");
         let what = senses.iter().find_map(|s| match s.kind {
-            "time" => s.symbol.parse().ok().map(Named::Time),
-            "weather" => s.symbol.parse().ok().map(Named::Weather),
+            "time" => s.symbol.parse().ok().map(TimeOrWeather::Time),
+            "weather" => s.symbol.parse().ok().map(TimeOrWeather::Weather),
             _ => None,
         });
         if let Some(what) = what.filter(|_| !of_a_thing) {
@@ -188,7 +193,7 @@ fn mentions(tokens: &[Token]) -> Vec<Mention> {
 }
 
 /// True if words around a phrase negate it.
-fn is_denied(tokens: &[Token], what: Named, (from, to): (usize, usize)) -> bool {
+fn is_denied(tokens: &[Token], what: TimeOrWeather, (from, to): (usize, usize)) -> bool {
     let word = |i: usize| tokens.get(i).map_or("", |t| t.text.as_str());
     let mut before = tokens[..from].iter().rev().map(|t| t.text.as_str());
     let first = before.find(|w| !BETWEEN.contains(w)).unwrap_or("");
@@ -200,7 +205,7 @@ fn is_denied(tokens: &[Token], what: Named, (from, to): (usize, usize)) -> bool 
         .find(|w| *w != "the");
     let stop = right_before.is_some_and(|w| STOP.contains(&w));
     // ("after dusk" is a time itself)
-    let after = AFTER.contains(&first) && matches!(what, Named::Weather(_));
+    let after = AFTER.contains(&first) && matches!(what, TimeOrWeather::Weather(_));
     let over = OVER
         .iter()
         .any(|words| words.iter().enumerate().all(|(k, w)| word(to + k) == *w));

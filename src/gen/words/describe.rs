@@ -1,12 +1,12 @@
 //! A reading as the description of a new scene.
 
-use super::beside::{NearTo, Said as Beside};
+use super::beside::{NearTo, SceneryClause as Beside};
 use super::notation::{self, NotationError};
 use super::nouns::Noun;
-use super::plan::{Nowhere, Plan};
+use super::plan::{Nowhere, PlacementPlan};
 use super::reading::{
-    Amount, Anchor as Said, Destination, Feature, LaneSide, PaintWish, Place, Quantity, Reading, Relation,
-    Thing, Traits, Turn, What,
+    ActKind, Amount, AnchorPhrase as Said, Destination, Feature, LaneSide, ObjectPhrase, PaintWish,
+    PlacePhrase, Quantity, Reading, Relation, Traits, Turn,
 };
 use super::remark::Remark;
 use super::resolve::words_of;
@@ -67,7 +67,7 @@ fn beside(background: &[Beside], d: &mut Description) {
 #[derive(Default)]
 struct Describing {
     d: Description,
-    plan: Plan,
+    plan: PlacementPlan,
     remarks: Vec<(usize, Remark)>,
     /// True if nothing else shall be there.
     alone: bool,
@@ -80,55 +80,55 @@ impl Describing {
     }
 
     /// Light, surroundings, traffic; true if the act is about them.
-    fn conditions(&mut self, what: &What) -> bool {
+    fn conditions(&mut self, what: &ActKind) -> bool {
         let d = &mut self.d;
         match what {
-            What::Time { what } => d.time_of_day = Some(*what),
-            What::Weather { what } => d.weather = Some(*what),
-            What::Env { what } => d.environment = Some(*what),
-            What::Density { what } => d.density = Some(*what),
-            What::Length { seconds } => d.length_s = Some(*seconds),
+            ActKind::Time { what } => d.time_of_day = Some(*what),
+            ActKind::Weather { what } => d.weather = Some(*what),
+            ActKind::Env { what } => d.environment = Some(*what),
+            ActKind::Density { what } => d.density = Some(*what),
+            ActKind::Length { seconds } => d.length_s = Some(*seconds),
             _ => return false,
         }
         true
     }
 
     /// The road; true if the act is about it.
-    fn road(&mut self, what: &What) -> bool {
+    fn road(&mut self, what: &ActKind) -> bool {
         let road = &mut self.d.road;
         match what {
-            What::Road { what } => road.kind = Some(*what),
-            What::Lanes { n } => road.lanes = Some((*n).min(12)),
-            What::OneWay => road.one_way = true,
-            What::Narrow => road.narrow = true,
-            What::Wide => road.wide = true,
-            What::OwnLane { what } => {
+            ActKind::Road { what } => road.kind = Some(*what),
+            ActKind::Lanes { n } => road.lanes = Some((*n).min(12)),
+            ActKind::OneWay => road.one_way = true,
+            ActKind::Narrow => road.narrow = true,
+            ActKind::Wide => road.wide = true,
+            ActKind::OwnLane { what } => {
                 road.own_lane = Some(match what {
                     LaneSide::Left => LaneRole::Left,
                     LaneSide::Right => LaneRole::Right,
                     LaneSide::Middle => LaneRole::Ego,
                 });
             }
-            What::Has {
+            ActKind::Has {
                 what: Feature::Crossing,
                 places,
             } => {
                 road.crossing = true;
-                let ahead = |p: &&Place| p.relation == Relation::Ahead && p.to == Some(Said::Ego);
+                let ahead = |p: &&PlacePhrase| p.relation == Relation::Ahead && p.to == Some(Said::Ego);
                 road.crossing_m = places.iter().find(ahead).and_then(|p| p.metres);
                 let other = places.iter().find(|p| !ahead(p)).map(|p| p.relation);
                 if let Some(relation) = other {
                     self.remark(Remark::PlaceIgnored { relation });
                 }
             }
-            What::Has {
+            ActKind::Has {
                 what: Feature::Sidewalk,
                 ..
             } => road.sidewalk = true,
-            What::Lacks {
+            ActKind::Lacks {
                 what: Feature::Crossing,
             } => road.no_crossing = true,
-            What::Lacks {
+            ActKind::Lacks {
                 what: Feature::Sidewalk,
             } => road.no_sidewalk = true,
             _ => return false,
@@ -136,43 +136,43 @@ impl Describing {
         true
     }
 
-    fn add(&mut self, things: &[Thing]) {
+    fn add(&mut self, things: &[ObjectPhrase]) {
         self.plan.add(things, &mut Nowhere);
     }
 
     /// Adds things, and applies statements about things that were named.
-    fn things(&mut self, what: &What) {
+    fn things(&mut self, what: &ActKind) {
         match what {
-            What::Add { things } => self.add(things),
-            What::No { who } | What::Remove { who } => who.iter().for_each(|t| self.absent(t)),
-            What::Keep { who } => {
+            ActKind::Add { things } => self.add(things),
+            ActKind::No { who } | ActKind::Remove { who } => who.iter().for_each(|t| self.absent(t)),
+            ActKind::Keep { who } => {
                 self.alone = true;
                 self.add(&who.iter().map(as_new).collect::<Vec<_>>());
             }
-            What::Set { who, traits } => who.iter().for_each(|t| self.set(t, traits)),
-            What::Count { who, amount } => who.iter().for_each(|t| self.count(t, *amount)),
-            What::Move {
+            ActKind::Set { who, traits } => who.iter().for_each(|t| self.set(t, traits)),
+            ActKind::Count { who, amount } => who.iter().for_each(|t| self.count(t, *amount)),
+            ActKind::Move {
                 who,
                 to: Destination::To(places),
             }
-            | What::Turn {
+            | ActKind::Turn {
                 who,
                 turn: Turn::To(places),
             } => who.iter().for_each(|t| self.place(t, places)),
-            What::Replace { things, .. } => self.add(things),
-            What::Go { who, how } if who.is_empty() => {
+            ActKind::Replace { things, .. } => self.add(things),
+            ActKind::Go { who, how } if who.is_empty() => {
                 let how = Manoeuvre { gap_m: None, ..*how };
                 self.d.ego_motion = Some(self.d.ego_motion.map_or(how, |before| how.after(&before).0));
             }
-            What::Go { who, how } => who.iter().for_each(|t| self.go(t, how)),
-            What::Leave { .. } => {}
+            ActKind::Go { who, how } => who.iter().for_each(|t| self.go(t, how)),
+            ActKind::Leave { .. } => {}
             _ => self.remark(Remark::Nobody {
                 what: "thing to change".into(),
             }),
         }
     }
 
-    fn absent(&mut self, t: &Thing) {
+    fn absent(&mut self, t: &ObjectPhrase) {
         self.alone |= t.other;
         // (an empty lane is not an empty scene)
         if !t.other && t.places.is_empty() && t.paint.is_none() {
@@ -184,7 +184,7 @@ impl Describing {
     }
 
     /// Objects that a thing means, with a remark if there are none.
-    fn those(&mut self, t: &Thing) -> Vec<usize> {
+    fn those(&mut self, t: &ObjectPhrase) -> Vec<usize> {
         let them = self.matching(t);
         if them.is_empty() {
             self.remark(Remark::Nobody { what: words_of(t) });
@@ -192,7 +192,7 @@ impl Describing {
         them
     }
 
-    fn set(&mut self, t: &Thing, traits: &Traits) {
+    fn set(&mut self, t: &ObjectPhrase, traits: &Traits) {
         let mut paint = traits.paint;
         if let Some(of) = &traits.paint_of {
             let model = self.those(of).first().copied();
@@ -207,7 +207,7 @@ impl Describing {
     }
 
     /// Makes objects move; an object that was not named before is new.
-    fn go(&mut self, t: &Thing, how: &Manoeuvre) {
+    fn go(&mut self, t: &ObjectPhrase, how: &Manoeuvre) {
         let mut them = self.matching(t);
         if them.is_empty() {
             self.add(&[as_new(t)]);
@@ -223,7 +223,7 @@ impl Describing {
                 self.remark(Remark::OneMotion { what: words_of(t) });
             }
             if let Some(role) = self.usual_start(k, how.what) {
-                let place = Place {
+                let place = PlacePhrase {
                     relation: Relation::On,
                     to: Some(Said::Lane(role)),
                     and: None,
@@ -254,7 +254,7 @@ impl Describing {
         }
     }
 
-    fn count(&mut self, t: &Thing, amount: Amount) {
+    fn count(&mut self, t: &ObjectPhrase, amount: Amount) {
         let them = self.matching(t);
         match (amount, them.first()) {
             (Amount::To(least, most), Some(k)) => {
@@ -271,7 +271,7 @@ impl Describing {
         }
     }
 
-    fn place(&mut self, t: &Thing, places: &[Place]) {
+    fn place(&mut self, t: &ObjectPhrase, places: &[PlacePhrase]) {
         let them = self.matching(t);
         if them.is_empty() {
             let mut t = as_new(t);
@@ -284,7 +284,7 @@ impl Describing {
     }
 
     /// Objects that a thing means.
-    fn matching(&mut self, t: &Thing) -> Vec<usize> {
+    fn matching(&mut self, t: &ObjectPhrase) -> Vec<usize> {
         let fits = |k: &usize| {
             let (spec, named) = (&self.plan.specs[*k], self.plan.thing_of(*k));
             let paint = match t.paint {
@@ -350,14 +350,14 @@ impl Describing {
 }
 
 /// Things that were named as existing, as new ones.
-fn as_new(t: &Thing) -> Thing {
+fn as_new(t: &ObjectPhrase) -> ObjectPhrase {
     let quantity = match t.quantity {
         Quantity::The | Quantity::Unsaid => Quantity::N(1),
         Quantity::TheN(n) => Quantity::N(n),
         Quantity::All | Quantity::Each | Quantity::Half => Quantity::Some,
         q => q,
     };
-    Thing {
+    ObjectPhrase {
         quantity,
         other: false,
         ..t.clone()

@@ -5,9 +5,9 @@ use super::grammar;
 use super::lexicon::{Lexicon, is_other_thing};
 use super::notation;
 use super::nouns::Noun;
-use super::reading::{Anchor, Reading, Thing, What};
+use super::reading::{ActKind, AnchorPhrase, ObjectPhrase, Reading};
 use super::tokens::Token;
-use place::beside_road::Span;
+use place::beside_road::TextSpan;
 use scene::Class;
 
 /// Words for people that name no kind of person.
@@ -35,13 +35,13 @@ const SOMEBODY: [&str; 20] = [
 ];
 
 /// Removes from a reading the things that no word of its text names. Returns the spans of the acts that lost something.
-pub(super) fn take_out_guesses(reading: &mut Reading, tokens: &[Token]) -> Vec<Option<Span>> {
+pub(super) fn take_out_guesses(reading: &mut Reading, tokens: &[Token]) -> Vec<Option<TextSpan>> {
     let mut lost = Vec::new();
     // In a text with a word for something that no scene holds ("three deer next to the bus"), a kind is read at most
     // once for each word that names it.
     let foreign = (0..tokens.len()).any(|i| is_foreign(&tokens[i..]));
     let line = notation::write(reading);
-    let is_extra = |t: &Thing, among: usize| {
+    let is_extra = |t: &ObjectPhrase, among: usize| {
         let fits = |symbol: &str| fits(symbol, t.noun);
         let read = line.split(' ').filter(|s| fits(s)).count();
         let names: Vec<bool> = tokens.iter().map(|t| names(t, &fits)).collect();
@@ -51,19 +51,19 @@ pub(super) fn take_out_guesses(reading: &mut Reading, tokens: &[Token]) -> Vec<O
         foreign && !is_general(t) && read + 1 > named + among
     };
     reading.acts.retain_mut(|act| {
-        let named = |t: &Thing| is_named(t, tokens);
+        let named = |t: &ObjectPhrase| is_named(t, tokens);
         let mut none = Vec::new();
-        let is_person = |t: &Thing| !foreign && t.noun.classes() == [Class::Pedestrian];
-        let (new, there): (&mut Vec<Thing>, &[Thing]) = match &mut act.what {
-            What::Add { things } => (things, &[]),
-            What::Replace { who, things } => (things, who),
-            What::Remove { who }
-            | What::Keep { who }
-            | What::Move { who, .. }
-            | What::Turn { who, .. }
-            | What::Set { who, .. }
-            | What::Go { who, .. }
-            | What::Count { who, .. } => (&mut none, who),
+        let is_person = |t: &ObjectPhrase| !foreign && t.noun.classes() == [Class::Pedestrian];
+        let (new, there): (&mut Vec<ObjectPhrase>, &[ObjectPhrase]) = match &mut act.what {
+            ActKind::Add { things } => (things, &[]),
+            ActKind::Replace { who, things } => (things, who),
+            ActKind::Remove { who }
+            | ActKind::Keep { who }
+            | ActKind::Move { who, .. }
+            | ActKind::Turn { who, .. }
+            | ActKind::Set { who, .. }
+            | ActKind::Go { who, .. }
+            | ActKind::Count { who, .. } => (&mut none, who),
             _ => return true,
         };
         let before = new.len();
@@ -71,7 +71,7 @@ pub(super) fn take_out_guesses(reading: &mut Reading, tokens: &[Token]) -> Vec<O
             act.confidence = 0.0;
         }
         let nouns: Vec<Noun> = new.iter().map(|t| t.noun).collect();
-        let among = |t: &Thing| nouns.iter().filter(|n| fits(n.name(), t.noun)).count();
+        let among = |t: &ObjectPhrase| nouns.iter().filter(|n| fits(n.name(), t.noun)).count();
         new.retain(|t| named(t) && !is_extra(t, among(t)) || is_person(t));
         let stays = (before == 0 || !new.is_empty()) && there.iter().all(|t| named(t) || is_person(t));
         if !stays || new.len() < before {
@@ -83,10 +83,10 @@ pub(super) fn take_out_guesses(reading: &mut Reading, tokens: &[Token]) -> Vec<O
 }
 
 /// The things that a thing is placed by.
-fn anchors(t: &Thing) -> impl Iterator<Item = &Thing> {
+fn anchors(t: &ObjectPhrase) -> impl Iterator<Item = &ObjectPhrase> {
     let of = t.places.iter().flat_map(|p| [p.to.as_ref(), p.and.as_ref()]);
     of.flatten().filter_map(|a| match a {
-        Anchor::Thing(t) => Some(&**t),
+        AnchorPhrase::Thing(t) => Some(&**t),
         _ => None,
     })
 }
@@ -98,7 +98,7 @@ fn is_foreign(tokens: &[Token]) -> bool {
 }
 
 /// True for a thing that any word may mean.
-fn is_general(t: &Thing) -> bool {
+fn is_general(t: &ObjectPhrase) -> bool {
     let general = matches!(
         t.noun,
         Noun::It | Noun::One | Noun::Thing | Noun::Vehicle | Noun::TwoWheeler
@@ -127,7 +127,7 @@ fn names(token: &Token, fits: &dyn Fn(&str) -> bool) -> bool {
 }
 
 /// True if a word of the text, or a word with a typing error, names the kind of a thing.
-fn is_named(t: &Thing, tokens: &[Token]) -> bool {
+fn is_named(t: &ObjectPhrase, tokens: &[Token]) -> bool {
     let people = t.noun.classes() == [Class::Pedestrian];
     let somebody = |token: &Token| people && SOMEBODY.contains(&token.text.as_str());
     is_general(t)

@@ -4,9 +4,9 @@ use super::account::{Missing, Why};
 use super::lexicon::LONGEST_PHRASE;
 use super::mode::Mode;
 use super::nouns::Noun;
-use super::reading::{Act, Quantity, Reading, Thing, Traits, What};
+use super::reading::{Act, ActKind, ObjectPhrase, Quantity, Reading, Traits};
 use super::tokens::Token;
-use place::beside_road::Span;
+use place::beside_road::TextSpan;
 use scene::graph::ObjectState;
 
 /// Words for nobody and nothing.
@@ -104,13 +104,13 @@ pub(super) fn set_right(reading: &mut Reading, text: &str, tokens: &[Token], mod
     };
     let of_it = |act: &Act| {
         let who = match &act.what {
-            What::No { who } | What::Remove { who } => who,
+            ActKind::No { who } | ActKind::Remove { who } => who,
             _ => return false,
         };
         let here = act
             .span
-            .is_none_or(|s: Span| s.start < span.end && s.end > span.start);
-        let fits = |t: &Thing| match halt.who {
+            .is_none_or(|s: TextSpan| s.start < span.end && s.end > span.start);
+        let fits = |t: &ObjectPhrase| match halt.who {
             Some(noun) => t.noun.classes().iter().any(|c| noun.classes().contains(c)),
             None => is_anybody(t.noun),
         };
@@ -125,17 +125,17 @@ pub(super) fn set_right(reading: &mut Reading, text: &str, tokens: &[Token], mod
         });
     }
     let waits = |act: &Act| match &act.what {
-        What::Set { traits, .. } => traits.state == Some(ObjectState::Waiting),
+        ActKind::Set { traits, .. } => traits.state == Some(ObjectState::Waiting),
         _ => false,
     };
     if !reading.acts.iter().any(waits) {
-        let thing = Thing::new(halt.who.unwrap_or(Noun::Thing)).with(Quantity::All);
+        let thing = ObjectPhrase::new(halt.who.unwrap_or(Noun::Thing)).with(Quantity::All);
         let traits = Traits {
             state: Some(ObjectState::Waiting),
             ..Traits::default()
         };
         reading.acts.push(Act {
-            what: What::Set {
+            what: ActKind::Set {
                 who: vec![thing],
                 traits,
             },

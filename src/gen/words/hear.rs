@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::account::{Missing, Why, missing};
-use super::beside::{self, Taken, take};
+use super::beside::{self, SceneryClauses, take};
 use super::canonical::canonical;
 use super::conditions;
 use super::grammar;
@@ -17,7 +17,7 @@ use super::reading::Reading;
 use super::slots;
 use super::tokens::{LONGEST, Token, tokens};
 use nn::weights::WeightsError;
-use place::beside_road::Span;
+use place::beside_road::TextSpan;
 
 /// Confidence below which an act is reported as unsure: the least threshold at which at most 8 % of sentences, in six
 /// styles that the reader had not learned, are wrong without any report, for prompts and for edits.
@@ -43,14 +43,14 @@ pub enum By {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Mended {
     /// Bytes of the text.
-    pub span: Span,
+    pub span: TextSpan,
     /// The word as it is read.
     pub to: String,
 }
 
 /// Result of reading a text.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Heard {
+pub struct CheckedReading {
     /// The reading that is carried out.
     pub reading: Reading,
     /// The reader that it comes from.
@@ -66,7 +66,7 @@ pub struct Heard {
     pub mended: Vec<Mended>,
 }
 
-impl Heard {
+impl CheckedReading {
     /// True if there is nothing to report about the reading.
     pub fn is_plain(&self) -> bool {
         self.other.is_none() && self.unsure.is_empty() && self.missing.is_empty()
@@ -78,8 +78,8 @@ impl Heard {
 /// # Errors
 ///
 /// If the bundled weights are damaged.
-pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
-    let Taken { said, rest, idle } = take(text, mode == Mode::Edit);
+pub fn hear(text: &str, mode: Mode) -> Result<CheckedReading, WeightsError> {
+    let SceneryClauses { said, rest, idle } = take(text, mode == Mode::Edit);
     let mut heard = hear_objects(&rest, mode)?;
     let named = idle.into_iter().map(|span| Missing {
         span,
@@ -99,7 +99,7 @@ pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
 /// # Errors
 ///
 /// If the bundled weights are damaged.
-pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
+pub fn hear_objects(text: &str, mode: Mode) -> Result<CheckedReading, WeightsError> {
     let learned = LearnedReader::bundled()?;
     let said = learned.read(text, mode);
     let known = |t: &Token| t.value.is_some() || learned.knows(t);
@@ -139,7 +139,7 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     });
     let mut missing = missing(text, &said.tokens, &reading, learned.speller());
     // (one reported word of it is enough)
-    let is_named = |span: &Span| {
+    let is_named = |span: &TextSpan| {
         missing
             .iter()
             .any(|m| m.span.start < span.end && m.span.end > span.start)
@@ -156,7 +156,7 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
         .collect();
     missing.extend(unnamed);
     missing.extend(halted);
-    let bytes_left = Span {
+    let bytes_left = TextSpan {
         start: said
             .left_out
             .first()
@@ -170,7 +170,7 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
             why: Why::TooLong,
         });
     }
-    Ok(Heard {
+    Ok(CheckedReading {
         missing,
         mended: mended.collect(),
         by,
@@ -212,9 +212,9 @@ fn says_the_same(a: &Reading, b: &Reading, mode: Mode) -> bool {
 pub fn against(
     text: &str,
     mut reading: Reading,
-    own: Option<&Heard>,
+    own: Option<&CheckedReading>,
     mode: Mode,
-) -> Result<Heard, WeightsError> {
+) -> Result<CheckedReading, WeightsError> {
     let learned = LearnedReader::bundled()?;
     // (clauses on scenery that the program read count as read)
     let said = own.map_or_else(
@@ -237,7 +237,7 @@ pub fn against(
     let mut missing = missing(text, &tokens, &reading, learned.speller());
     // (a word that is in no list here may be one that the model knows, of another language say)
     missing.retain(|m| m.why != Why::Unknown || reading.is_empty());
-    Ok(Heard {
+    Ok(CheckedReading {
         missing,
         reading,
         by: By::Endpoint,

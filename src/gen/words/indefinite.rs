@@ -2,7 +2,7 @@
 
 use super::guess::names_noun;
 use super::nouns::Noun;
-use super::reading::{Quantity, Reading, Thing, What};
+use super::reading::{ActKind, ObjectPhrase, Quantity, Reading};
 use super::tokens::Token;
 
 /// Words before a thing that is not a specific one.
@@ -15,9 +15,9 @@ pub(super) fn set_right(reading: &mut Reading, tokens: &[Token]) {
     let mut spoken_of: Vec<Noun> = Vec::new();
     for act in &mut reading.acts {
         match &mut act.what {
-            What::Add { things } => spoken_of.extend(things.iter().map(|t| t.noun)),
-            What::Replace { things, .. } => spoken_of.extend(things.iter().map(|t| t.noun)),
-            What::Go { who, .. } => {
+            ActKind::Add { things } => spoken_of.extend(things.iter().map(|t| t.noun)),
+            ActKind::Replace { things, .. } => spoken_of.extend(things.iter().map(|t| t.noun)),
+            ActKind::Go { who, .. } => {
                 for thing in who {
                     if is_any(thing) && !spoken_of.contains(&thing.noun) && is_indefinite(thing.noun, tokens)
                     {
@@ -31,7 +31,7 @@ pub(super) fn set_right(reading: &mut Reading, tokens: &[Token]) {
     }
 }
 
-fn is_any(thing: &Thing) -> bool {
+fn is_any(thing: &ObjectPhrase) -> bool {
     let told = thing.id.is_some() || thing.nth.is_some() || thing.pick.is_some() || thing.other;
     !told && matches!(thing.quantity, Quantity::The | Quantity::Unsaid)
 }

@@ -3,11 +3,11 @@
 //! thirty things.
 
 use super::tokens::Token;
-use place::beside_road::Span;
+use place::beside_road::TextSpan;
 
 /// Quantity that a number measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
+pub enum MeasuredQuantity {
     /// A count, or a number without a unit.
     Count,
     /// m.
@@ -34,7 +34,7 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
     /// Quantity that it measures.
-    pub kind: Kind,
+    pub kind: MeasuredQuantity,
     /// Value in the unit of its kind.
     pub value: f64,
     /// The number as it was typed.
@@ -47,33 +47,53 @@ pub struct Measure {
 
 impl Measure {
     /// Bytes of the text that it takes.
-    pub fn span(&self, tokens: &[Token]) -> Span {
+    pub fn span(&self, tokens: &[Token]) -> TextSpan {
         let last = tokens[self.to - 1].span;
         tokens[self.from].span.to(last)
     }
 }
 
 /// Units that are separate words, with their size in the kind's unit.
-const UNITS: [(Kind, f64, &[&str]); 10] = [
-    (Kind::Time, 1.0, &["s", "sec", "secs", "second", "seconds"]),
+const UNITS: [(MeasuredQuantity, f64, &[&str]); 10] = [
     (
-        Kind::Time,
+        MeasuredQuantity::Time,
+        1.0,
+        &["s", "sec", "secs", "second", "seconds"],
+    ),
+    (
+        MeasuredQuantity::Time,
         0.001,
         &["ms", "msec", "msecs", "millisecond", "milliseconds"],
     ),
-    (Kind::Time, 60.0, &["min", "mins", "minute", "minutes"]),
-    (Kind::Time, 3600.0, &["h", "hr", "hrs", "hour", "hours"]),
-    (Kind::Angle, 1.0, &["deg", "degs", "degree", "degrees", "°"]),
-    (Kind::Angle, 57.295_779_513, &["rad", "rads", "radian", "radians"]),
-    (Kind::Share, 1.0, &["%", "percent", "pct"]),
-    (Kind::Rate, 9.81, &["g"]),
     (
-        Kind::Length,
+        MeasuredQuantity::Time,
+        60.0,
+        &["min", "mins", "minute", "minutes"],
+    ),
+    (
+        MeasuredQuantity::Time,
+        3600.0,
+        &["h", "hr", "hrs", "hour", "hours"],
+    ),
+    (
+        MeasuredQuantity::Angle,
+        1.0,
+        &["deg", "degs", "degree", "degrees", "°"],
+    ),
+    (
+        MeasuredQuantity::Angle,
+        57.295_779_513,
+        &["rad", "rads", "radian", "radians"],
+    ),
+    (MeasuredQuantity::Share, 1.0, &["%", "percent", "pct"]),
+    (MeasuredQuantity::Rate, 9.81, &["g"]),
+    (
+        MeasuredQuantity::Length,
         0.001,
         &["mm", "millimetre", "millimetres", "millimeter", "millimeters"],
     ),
     (
-        Kind::Storeys,
+        MeasuredQuantity::Storeys,
         1.0,
         &[
             "storey", "storeys", "story", "stories", "storeyed", "floor", "floors",
@@ -209,14 +229,14 @@ fn measure(tokens: &[Token], i: usize) -> Option<Measure> {
     let next = word(tokens, i + 1);
     if t.is_length {
         return match power(tokens, i + 1) {
-            Some(to) => made(Kind::Foreign, value, to),
-            None => made(Kind::Length, value, i + 1),
+            Some(to) => made(MeasuredQuantity::Foreign, value, to),
+            None => made(MeasuredQuantity::Length, value, i + 1),
         };
     }
     if t.is_speed {
         return match power(tokens, i + 1).or(per_second(tokens, i + 1)) {
-            Some(to) => made(Kind::Rate, value / 3.6, to),
-            None => made(Kind::Speed, value, i + 1),
+            Some(to) => made(MeasuredQuantity::Rate, value / 3.6, to),
+            None => made(MeasuredQuantity::Speed, value, i + 1),
         };
     }
     // "17:30", "5 pm", "8 o'clock"
@@ -228,35 +248,38 @@ fn measure(tokens: &[Token], i: usize) -> Option<Measure> {
     };
     if let Some(minutes) = minutes.filter(|_| touches(i + 1) && touches(i + 2)) {
         let (half, to) = half_of_day(tokens, i + 3).unwrap_or((None, i + 3));
-        return made(Kind::Clock, hour(value, half) + minutes / 60.0, to);
+        return made(MeasuredQuantity::Clock, hour(value, half) + minutes / 60.0, to);
     }
     if let Some((half, to)) = half_of_day(tokens, i + 1) {
-        return made(Kind::Clock, hour(value, half), to);
+        return made(MeasuredQuantity::Clock, hour(value, half), to);
     }
     if next == "per" && word(tokens, i + 2) == "cent" {
-        return made(Kind::Share, value, i + 3);
+        return made(MeasuredQuantity::Share, value, i + 3);
     }
     if let Some((kind, times, _)) = UNITS.iter().find(|u| u.2.contains(&next)) {
         let after = word(tokens, i + 2);
-        let warm =
-            *kind == Kind::Angle && matches!(after, "c" | "f" | "celsius" | "fahrenheit" | "centigrade");
+        let warm = *kind == MeasuredQuantity::Angle
+            && matches!(after, "c" | "f" | "celsius" | "fahrenheit" | "centigrade");
         return match warm {
-            true => made(Kind::Foreign, value, i + 3),
+            true => made(MeasuredQuantity::Foreign, value, i + 3),
             false => made(*kind, value * times, i + 2),
         };
     }
     if FOREIGN.contains(&next) {
-        return made(Kind::Foreign, value, i + 2);
+        return made(MeasuredQuantity::Foreign, value, i + 2);
     }
     // "five cars per minute" are not five cars
     let per = (i + 1..=i + PER_WITHIN).find(|k| {
         let unit = word(tokens, k + 1);
-        word(tokens, *k) == "per" && UNITS.iter().any(|u| u.0 == Kind::Time && u.2.contains(&unit))
+        word(tokens, *k) == "per"
+            && UNITS
+                .iter()
+                .any(|u| u.0 == MeasuredQuantity::Time && u.2.contains(&unit))
             || word(tokens, *k) == "per" && matches!(unit, "km" | "kilometre" | "kilometer" | "mile")
     });
     match per {
-        Some(_) => made(Kind::Foreign, value, i + 1),
-        None => made(Kind::Count, value, i + 1),
+        Some(_) => made(MeasuredQuantity::Foreign, value, i + 1),
+        None => made(MeasuredQuantity::Count, value, i + 1),
     }
 }
 
@@ -307,7 +330,11 @@ fn ranges(all: &mut [Measure], tokens: &[Token]) {
         let joint = word(tokens, one.to);
         let between = one.from > 0 && matches!(word(tokens, one.from - 1), "between" | "from");
         let joins = matches!(joint, "to" | "-" | "–" | "or") || joint == "and" && between;
-        if one.kind == Kind::Count && two.kind != Kind::Count && joins && two.from == one.to + 1 {
+        if one.kind == MeasuredQuantity::Count
+            && two.kind != MeasuredQuantity::Count
+            && joins
+            && two.from == one.to + 1
+        {
             let times = if two.raw == 0.0 { 1.0 } else { two.value / two.raw };
             all[k - 1].kind = two.kind;
             all[k - 1].value = one.raw * times;
@@ -324,44 +351,44 @@ mod tests {
     #[test]
     fn every_unit_has_its_kind() {
         for (text, kind, value) in [
-            ("8 km/h", Kind::Speed, 8.0),
-            ("30 mph", Kind::Speed, 48.28),
-            ("5 m/s", Kind::Speed, 18.0),
-            ("8 m", Kind::Length, 8.0),
-            ("80 cm", Kind::Length, 0.8),
-            ("800 mm", Kind::Length, 0.8),
-            ("30 feet", Kind::Length, 9.144),
-            ("5 s", Kind::Time, 5.0),
-            ("5s", Kind::Time, 5.0),
-            ("five seconds", Kind::Time, 5.0),
-            ("500 ms", Kind::Time, 0.5),
-            ("2 minutes", Kind::Time, 120.0),
-            ("1 hour", Kind::Time, 3600.0),
-            ("3 m/s²", Kind::Rate, 3.0),
-            ("3 m/s^2", Kind::Rate, 3.0),
-            ("3 m/s2", Kind::Rate, 3.0),
-            ("3 metres per second squared", Kind::Rate, 3.0),
-            ("3 m/s per second", Kind::Rate, 3.0),
-            ("0.5 g", Kind::Rate, 4.905),
-            ("45 degrees", Kind::Angle, 45.0),
-            ("45°", Kind::Angle, 45.0),
-            ("2 rad", Kind::Angle, 114.59),
-            ("50 %", Kind::Share, 50.0),
-            ("50 per cent", Kind::Share, 50.0),
-            ("5 pm", Kind::Clock, 17.0),
-            ("17:30", Kind::Clock, 17.5),
-            ("8 o'clock", Kind::Clock, 8.0),
-            ("12 a.m.", Kind::Clock, 0.0),
-            ("3 storeys", Kind::Storeys, 3.0),
-            ("40 t", Kind::Foreign, 40.0),
-            ("3-ton", Kind::Foreign, 3.0),
-            ("20 m²", Kind::Foreign, 20.0),
-            ("20 square metres", Kind::Foreign, 20.0),
-            ("20 °C", Kind::Foreign, 20.0),
-            ("5-year-old", Kind::Foreign, 5.0),
-            ("5 cars per minute", Kind::Foreign, 5.0),
-            ("5 cars", Kind::Count, 5.0),
-            ("five", Kind::Count, 5.0),
+            ("8 km/h", MeasuredQuantity::Speed, 8.0),
+            ("30 mph", MeasuredQuantity::Speed, 48.28),
+            ("5 m/s", MeasuredQuantity::Speed, 18.0),
+            ("8 m", MeasuredQuantity::Length, 8.0),
+            ("80 cm", MeasuredQuantity::Length, 0.8),
+            ("800 mm", MeasuredQuantity::Length, 0.8),
+            ("30 feet", MeasuredQuantity::Length, 9.144),
+            ("5 s", MeasuredQuantity::Time, 5.0),
+            ("5s", MeasuredQuantity::Time, 5.0),
+            ("five seconds", MeasuredQuantity::Time, 5.0),
+            ("500 ms", MeasuredQuantity::Time, 0.5),
+            ("2 minutes", MeasuredQuantity::Time, 120.0),
+            ("1 hour", MeasuredQuantity::Time, 3600.0),
+            ("3 m/s²", MeasuredQuantity::Rate, 3.0),
+            ("3 m/s^2", MeasuredQuantity::Rate, 3.0),
+            ("3 m/s2", MeasuredQuantity::Rate, 3.0),
+            ("3 metres per second squared", MeasuredQuantity::Rate, 3.0),
+            ("3 m/s per second", MeasuredQuantity::Rate, 3.0),
+            ("0.5 g", MeasuredQuantity::Rate, 4.905),
+            ("45 degrees", MeasuredQuantity::Angle, 45.0),
+            ("45°", MeasuredQuantity::Angle, 45.0),
+            ("2 rad", MeasuredQuantity::Angle, 114.59),
+            ("50 %", MeasuredQuantity::Share, 50.0),
+            ("50 per cent", MeasuredQuantity::Share, 50.0),
+            ("5 pm", MeasuredQuantity::Clock, 17.0),
+            ("17:30", MeasuredQuantity::Clock, 17.5),
+            ("8 o'clock", MeasuredQuantity::Clock, 8.0),
+            ("12 a.m.", MeasuredQuantity::Clock, 0.0),
+            ("3 storeys", MeasuredQuantity::Storeys, 3.0),
+            ("40 t", MeasuredQuantity::Foreign, 40.0),
+            ("3-ton", MeasuredQuantity::Foreign, 3.0),
+            ("20 m²", MeasuredQuantity::Foreign, 20.0),
+            ("20 square metres", MeasuredQuantity::Foreign, 20.0),
+            ("20 °C", MeasuredQuantity::Foreign, 20.0),
+            ("5-year-old", MeasuredQuantity::Foreign, 5.0),
+            ("5 cars per minute", MeasuredQuantity::Foreign, 5.0),
+            ("5 cars", MeasuredQuantity::Count, 5.0),
+            ("five", MeasuredQuantity::Count, 5.0),
         ] {
             let found = measures(&tokens(text, None));
             assert_eq!(found.len(), 1, "{text}: {found:?}");
@@ -378,12 +405,15 @@ mod tests {
             ("20-30 m", [20.0, 30.0]),
         ] {
             let found = measures(&tokens(text, None));
-            assert!(found.iter().all(|m| m.kind == Kind::Length), "{text}: {found:?}");
+            assert!(
+                found.iter().all(|m| m.kind == MeasuredQuantity::Length),
+                "{text}: {found:?}"
+            );
             for (m, v) in found.iter().zip(values) {
                 assert!((m.value - v).abs() < 1e-9, "{text}: {found:?}");
             }
         }
         let found = measures(&tokens("two cars and 30 m", None));
-        assert_eq!(found[0].kind, Kind::Count);
+        assert_eq!(found[0].kind, MeasuredQuantity::Count);
     }
 }

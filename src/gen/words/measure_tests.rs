@@ -3,7 +3,7 @@
 
 use super::account::Why;
 use super::hear::hear;
-use super::measure::{Kind, Measure, measures};
+use super::measure::{Measure, MeasuredQuantity, measures};
 use super::reader::{LearnedReader, Mode};
 use super::slots::{SlotKind, slots};
 use super::tokens::tokens;
@@ -78,13 +78,16 @@ fn unnamed(text: &str, mode: Mode) -> Vec<String> {
             .background
             .iter()
             .any(|s| s.span.is_some_and(|s| s.start <= span.start && s.end >= span.end));
-        let own = matches!(m.kind, Kind::Count | Kind::Length | Kind::Storeys);
-        let night = m.kind == Kind::Clock
+        let own = matches!(
+            m.kind,
+            MeasuredQuantity::Count | MeasuredQuantity::Length | MeasuredQuantity::Storeys
+        );
+        let night = m.kind == MeasuredQuantity::Clock
             && heard
                 .reading
                 .acts
                 .iter()
-                .any(|a| matches!(a.what, super::reading::What::Time { .. }));
+                .any(|a| matches!(a.what, super::reading::ActKind::Time { .. }));
         if !(is_named(m) || held.iter().any(|s| s.is(m)) || beside && own || night) {
             out.push(format!(
                 "{text}: {:?} {} is in nothing and not named",
@@ -94,7 +97,7 @@ fn unnamed(text: &str, mode: Mode) -> Vec<String> {
     }
     // No slot holds a number of another kind.
     for s in &held {
-        let small = s.kind == SlotKind::Of(Kind::Count) && s.value <= 1.0;
+        let small = s.kind == SlotKind::Of(MeasuredQuantity::Count) && s.value <= 1.0;
         let wrong = numbers.iter().any(|m| !s.is(m) && (m.raw - s.value).abs() < 0.01);
         if wrong && !small && !numbers.iter().any(|m| s.is(m)) {
             out.push(format!("{text}: {s:?} is another number"));
@@ -103,7 +106,7 @@ fn unnamed(text: &str, mode: Mode) -> Vec<String> {
     // Clauses on scenery count only with numbers that are counts.
     for said in &heard.reading.background {
         let n = said.count.map(f64::from);
-        let counts = |m: &Measure| m.kind != Kind::Count && n == Some(m.raw);
+        let counts = |m: &Measure| m.kind != MeasuredQuantity::Count && n == Some(m.raw);
         if numbers.iter().any(counts) {
             out.push(format!("{text}: {n:?} things"));
         }

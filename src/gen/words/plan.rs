@@ -2,7 +2,7 @@
 //! scene, anchors are its boxes; without one, they are things named before.
 
 use super::nouns::Noun;
-use super::reading::{Anchor as Said, PaintWish, Place, Quantity, Relation, Thing};
+use super::reading::{AnchorPhrase as Said, ObjectPhrase, PaintWish, PlacePhrase, Quantity, Relation};
 use super::resolve::kind_of;
 use place::description::{Anchor, Count, ObjectSpec, Stated};
 use place::to_graph::MOST_OF_ONE;
@@ -13,9 +13,9 @@ use scene::{BoxLabel, Class, SceneBox};
 const MOST_SPECS: usize = 200;
 
 /// The scene that new things are added to.
-pub(super) trait Site {
+pub(super) trait AnchorResolver {
     /// The boxes that an anchor means; `Err` after a question.
-    fn find(&mut self, t: &Thing) -> Result<Vec<SceneBox>, ()>;
+    fn find(&mut self, t: &ObjectPhrase) -> Result<Vec<SceneBox>, ()>;
     /// The lane or strip that a box of it is in.
     fn role(&self, b: &SceneBox) -> Option<LaneRole>;
     /// The noun of the thing that was named last.
@@ -25,8 +25,8 @@ pub(super) trait Site {
 /// A site without a scene: all anchors are named in the text.
 pub(super) struct Nowhere;
 
-impl Site for Nowhere {
-    fn find(&mut self, _: &Thing) -> Result<Vec<SceneBox>, ()> {
+impl AnchorResolver for Nowhere {
+    fn find(&mut self, _: &ObjectPhrase) -> Result<Vec<SceneBox>, ()> {
         Ok(Vec::new())
     }
     fn role(&self, _: &SceneBox) -> Option<LaneRole> {
@@ -39,13 +39,13 @@ impl Site for Nowhere {
 
 /// Things to be placed, and boxes that stand already.
 #[derive(Default)]
-pub(super) struct Plan {
+pub(super) struct PlacementPlan {
     /// One spec for each kind that was named, anchors included.
     pub(super) specs: Vec<ObjectSpec>,
     /// Boxes of the specs that stand already.
     pub(super) held: Vec<Option<Vec<SceneBox>>>,
     /// Thing that each spec was named by.
-    pub(super) named: Vec<Thing>,
+    pub(super) named: Vec<ObjectPhrase>,
     /// Act that named each spec, and index of the thing in the act.
     pub(super) from: Vec<(usize, usize)>,
     /// Act and thing that are being added now.
@@ -56,9 +56,9 @@ pub(super) struct Plan {
     pub(super) follows: bool,
 }
 
-impl Plan {
+impl PlacementPlan {
     /// Adds new things, with the anchors that they are placed by.
-    pub(super) fn add(&mut self, things: &[Thing], site: &mut dyn Site) {
+    pub(super) fn add(&mut self, things: &[ObjectPhrase], site: &mut dyn AnchorResolver) {
         let mut own = Vec::new();
         for (k, t) in things.iter().enumerate() {
             self.at.1 = k;
@@ -76,7 +76,13 @@ impl Plan {
         }
     }
 
-    fn thing(&mut self, t: &Thing, new: bool, site: &mut dyn Site, depth: u8) -> Option<usize> {
+    fn thing(
+        &mut self,
+        t: &ObjectPhrase,
+        new: bool,
+        site: &mut dyn AnchorResolver,
+        depth: u8,
+    ) -> Option<usize> {
         if self.specs.len() >= MOST_SPECS || depth > 4 {
             return None;
         }
@@ -100,7 +106,14 @@ impl Plan {
         Some(i)
     }
 
-    fn place(&mut self, i: usize, p: &Place, state: Option<ObjectState>, site: &mut dyn Site, depth: u8) {
+    fn place(
+        &mut self,
+        i: usize,
+        p: &PlacePhrase,
+        state: Option<ObjectState>,
+        site: &mut dyn AnchorResolver,
+        depth: u8,
+    ) {
         let Some(to) = &p.to else { return };
         if matches!(to, Said::EachOther) {
             return;
@@ -203,7 +216,7 @@ impl Plan {
     }
 
     /// Places a thing in the lane or strip of an anchor, or beside the anchor where that is unknown.
-    fn like(&mut self, i: usize, anchor: Anchor, site: &dyn Site) {
+    fn like(&mut self, i: usize, anchor: Anchor, site: &dyn AnchorResolver) {
         let Anchor::Object(j) = anchor else { return };
         let mut lanes: Vec<(RelationKind, Anchor)> = self.specs[j]
             .relations
@@ -224,7 +237,7 @@ impl Plan {
         }
     }
 
-    fn anchor(&mut self, i: usize, a: &Said, site: &mut dyn Site, depth: u8) -> Option<Anchor> {
+    fn anchor(&mut self, i: usize, a: &Said, site: &mut dyn AnchorResolver, depth: u8) -> Option<Anchor> {
         Some(match a {
             Said::Ego => Anchor::Ego,
             Said::Crossing => Anchor::Crossing,
@@ -264,7 +277,7 @@ impl Plan {
     }
 
     /// The last spec named before that fits the thing: `the bus`, `it`.
-    fn named_before(&self, of: usize, t: &Thing) -> Option<usize> {
+    fn named_before(&self, of: usize, t: &ObjectPhrase) -> Option<usize> {
         if t.id.is_some() || t.pick.is_some() || t.nth.is_some() {
             return None;
         }
@@ -285,7 +298,7 @@ impl Plan {
     }
 
     /// Adds places to a thing.
-    pub(super) fn also_at(&mut self, i: usize, places: &[Place], site: &mut dyn Site) {
+    pub(super) fn also_at(&mut self, i: usize, places: &[PlacePhrase], site: &mut dyn AnchorResolver) {
         let state = self.named[i].state;
         for p in places {
             self.place(i, p, state, site, 1);
@@ -294,12 +307,12 @@ impl Plan {
     }
 
     /// The thing that a spec was named by.
-    pub(super) fn thing_of(&self, i: usize) -> &Thing {
+    pub(super) fn thing_of(&self, i: usize) -> &ObjectPhrase {
         &self.named[i]
     }
 
     /// Applies the places of a group: in a row, side by side, facing each other.
-    fn group(&mut self, i: usize, t: &Thing, mate: Option<usize>) {
+    fn group(&mut self, i: usize, t: &ObjectPhrase, mate: Option<usize>) {
         for p in &t.places {
             let each = matches!(p.to, Some(Said::EachOther));
             let relation = match p.relation {
@@ -371,7 +384,7 @@ pub fn count_of(q: Quantity) -> Count {
 }
 
 /// The spec of a thing without its places.
-fn spec_of(t: &Thing) -> ObjectSpec {
+fn spec_of(t: &ObjectPhrase) -> ObjectSpec {
     let noun = match t.noun {
         // (a vehicle or thing of no stated kind is added as a car)
         Noun::Vehicle | Noun::Thing | Noun::It | Noun::One => Noun::Car,
@@ -391,7 +404,7 @@ fn spec_of(t: &Thing) -> ObjectSpec {
 }
 
 /// The name and paint that a thing gives a box.
-pub(super) fn label_of(t: &Thing) -> BoxLabel {
+pub(super) fn label_of(t: &ObjectPhrase) -> BoxLabel {
     BoxLabel {
         name: t.noun.label(),
         paint: match t.paint {

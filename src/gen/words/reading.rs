@@ -4,10 +4,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::beside::Said;
+use super::beside::SceneryClause;
 use super::named::named;
 use super::nouns::Noun;
-use place::beside_road::Span;
+use place::beside_road::TextSpan;
 use place::description::{Density, Environment, Road};
 use scene::clip::Manoeuvre;
 use scene::graph::{LaneRole, ObjectState, SizeHint};
@@ -21,7 +21,7 @@ pub struct Reading {
     pub acts: Vec<Act>,
     /// Requests about buildings, trees and other things beside the road.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub background: Vec<Said>,
+    pub background: Vec<SceneryClause>,
 }
 
 impl Reading {
@@ -44,10 +44,10 @@ impl Reading {
 pub struct Act {
     /// The kind of act.
     #[serde(flatten)]
-    pub what: What,
+    pub what: ActKind,
     /// Bytes of the text that say it, if the reader knows them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub span: Option<Span>,
+    pub span: Option<TextSpan>,
     /// How sure the reader is, 0 to 1: the learned one is as sure as of the symbol it is least sure of.
     #[serde(default = "sure", skip_serializing_if = "is_sure")]
     pub confidence: f64,
@@ -61,8 +61,8 @@ fn is_sure(x: &f64) -> bool {
     *x >= 1.0
 }
 
-impl From<What> for Act {
-    fn from(what: What) -> Self {
+impl From<ActKind> for Act {
+    fn from(what: ActKind) -> Self {
         Self {
             what,
             span: None,
@@ -74,57 +74,57 @@ impl From<What> for Act {
 /// A kind of act.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "act", rename_all = "snake_case")]
-pub enum What {
+pub enum ActKind {
     /// New things.
     Add {
         /// Which.
-        things: Vec<Thing>,
+        things: Vec<ObjectPhrase>,
     },
     /// There shall be none of these.
     No {
         /// The things.
-        who: Vec<Thing>,
+        who: Vec<ObjectPhrase>,
     },
     /// These go.
     Remove {
         /// Which.
-        who: Vec<Thing>,
+        who: Vec<ObjectPhrase>,
     },
     /// All but these go.
     Keep {
         /// Which stay.
-        who: Vec<Thing>,
+        who: Vec<ObjectPhrase>,
     },
     /// These stay as they are; an empty list is all that is not spoken of.
     Leave {
         /// Which.
-        who: Vec<Thing>,
+        who: Vec<ObjectPhrase>,
     },
     /// New things stand where these are.
     Replace {
         /// Which go.
-        who: Vec<Thing>,
+        who: Vec<ObjectPhrase>,
         /// Which come.
-        things: Vec<Thing>,
+        things: Vec<ObjectPhrase>,
     },
     /// These go elsewhere.
     Move {
         /// Which.
-        who: Vec<Thing>,
+        who: Vec<ObjectPhrase>,
         /// Where to.
         to: Destination,
     },
     /// These are turned.
     Turn {
         /// Which.
-        who: Vec<Thing>,
+        who: Vec<ObjectPhrase>,
         /// How.
         turn: Turn,
     },
     /// These get other traits.
     Set {
         /// Which.
-        who: Vec<Thing>,
+        who: Vec<ObjectPhrase>,
         /// New traits.
         #[serde(rename = "look")]
         traits: Traits,
@@ -132,22 +132,22 @@ pub enum What {
     /// So many of these there shall be.
     Count {
         /// The things.
-        who: Vec<Thing>,
+        who: Vec<ObjectPhrase>,
         /// How many.
         amount: Amount,
     },
     /// Two change places.
     Swap {
         /// One.
-        one: Box<Thing>,
+        one: Box<ObjectPhrase>,
         /// The other.
-        other: Box<Thing>,
+        other: Box<ObjectPhrase>,
     },
     /// Things that move in the course of time.
     Go {
         /// The things that move; the ego vehicle if the list is empty.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        who: Vec<Thing>,
+        who: Vec<ObjectPhrase>,
         /// How.
         how: Manoeuvre,
     },
@@ -187,7 +187,7 @@ pub enum What {
         what: Feature,
         /// Its places.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        places: Vec<Place>,
+        places: Vec<PlacePhrase>,
     },
     /// The road has none.
     Lacks {
@@ -212,9 +212,9 @@ pub enum What {
     },
 }
 
-impl What {
+impl ActKind {
     /// Visits the things that the act is about, those that it changes first; the anchors of their places are left out.
-    pub fn things(&self, visit: &mut dyn FnMut(&Thing)) {
+    pub fn things(&self, visit: &mut dyn FnMut(&ObjectPhrase)) {
         match self {
             Self::Add { things } => things.iter().for_each(visit),
             Self::No { who }
@@ -321,7 +321,7 @@ pub enum PaintWish {
 /// Things, new ones or some that are there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Thing {
+pub struct ObjectPhrase {
     /// Their kind.
     pub noun: Noun,
     /// How many.
@@ -350,17 +350,17 @@ pub struct Thing {
     pub id: Option<u32>,
     /// Their places.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub places: Vec<Place>,
+    pub places: Vec<PlacePhrase>,
     /// Things that are excluded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub except: Vec<Thing>,
+    pub except: Vec<ObjectPhrase>,
 }
 
 fn is_unsaid(q: &Quantity) -> bool {
     *q == Quantity::Unsaid
 }
 
-impl Thing {
+impl ObjectPhrase {
     /// A thing of which only the kind is stated.
     pub fn new(noun: Noun) -> Self {
         Self {
@@ -388,15 +388,15 @@ impl Thing {
 /// Where something is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Place {
+pub struct PlacePhrase {
     /// How it stands.
     pub relation: Relation,
     /// To what.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub to: Option<Anchor>,
+    pub to: Option<AnchorPhrase>,
     /// The second one of `between`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub and: Option<Anchor>,
+    pub and: Option<AnchorPhrase>,
     /// How far, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub metres: Option<f64>,
@@ -405,7 +405,7 @@ pub struct Place {
 /// Reference of a place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Anchor {
+pub enum AnchorPhrase {
     /// The ego vehicle.
     Ego,
     /// A pedestrian crossing.
@@ -421,7 +421,7 @@ pub enum Anchor {
     /// The others of the same group.
     EachOther,
     /// A thing: there, named before, or new if it has a number.
-    Thing(Box<Thing>),
+    Thing(Box<ObjectPhrase>),
 }
 
 /// Where something moves.
@@ -429,7 +429,7 @@ pub enum Anchor {
 #[serde(rename_all = "snake_case")]
 pub enum Destination {
     /// To where this holds.
-    To(Vec<Place>),
+    To(Vec<PlacePhrase>),
     /// That way.
     By {
         /// Which.
@@ -455,7 +455,7 @@ pub enum Turn {
     /// Along its lane.
     Along,
     /// So that this holds.
-    To(Vec<Place>),
+    To(Vec<PlacePhrase>),
 }
 
 /// New traits of something: its look and its state from now on.
@@ -473,7 +473,7 @@ pub struct Traits {
     pub paint: Option<Paint>,
     /// The paint of another thing.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub paint_of: Option<Box<Thing>>,
+    pub paint_of: Option<Box<ObjectPhrase>>,
 }
 
 /// How many there shall be.

@@ -3,10 +3,10 @@
 
 use super::notation;
 use super::nouns::Noun;
-use super::reading::{Anchor, PaintWish, Pick, Place, Quantity, Relation, Thing};
+use super::reading::{AnchorPhrase, ObjectPhrase, PaintWish, Pick, PlacePhrase, Quantity, Relation};
 use super::remark::Remark;
 use super::stage::{Question, Stage};
-use place::holds::{Target, ego, holds, in_role, role_of};
+use place::holds::{RelationReference, ego, holds, in_role, role_of};
 use scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
 use scene::{BoxId, SceneBox};
 
@@ -20,11 +20,15 @@ pub enum Spare {
 }
 
 /// The relation kind that a relation is measured as; `None` if boxes of a scene cannot be distinguished by it.
-pub fn kind_of(relation: Relation, anchor: &Anchor, state: Option<ObjectState>) -> Option<RelationKind> {
+pub fn kind_of(
+    relation: Relation,
+    anchor: &AnchorPhrase,
+    state: Option<ObjectState>,
+) -> Option<RelationKind> {
     use RelationKind as K;
     let strip = matches!(
         anchor,
-        Anchor::Lane(
+        AnchorPhrase::Lane(
             LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside | LaneRole::Carpark
         )
     );
@@ -54,7 +58,7 @@ pub fn kind_of(relation: Relation, anchor: &Anchor, state: Option<ObjectState>) 
 
 impl Stage<'_> {
     /// The boxes that several things mean together; `None` after a question, and if nothing fits.
-    pub(super) fn those(&mut self, who: &[Thing], spare: Spare) -> Option<Vec<BoxId>> {
+    pub(super) fn those(&mut self, who: &[ObjectPhrase], spare: Spare) -> Option<Vec<BoxId>> {
         let mut all = Vec::new();
         let mut missing = false;
         for t in who {
@@ -86,7 +90,7 @@ impl Stage<'_> {
     }
 
     /// The boxes that a thing means.
-    pub(super) fn that(&mut self, t: &Thing, spare: Spare) -> Option<Vec<BoxId>> {
+    pub(super) fn that(&mut self, t: &ObjectPhrase, spare: Spare) -> Option<Vec<BoxId>> {
         let words = words_of(t);
         let mut fits = self.fitting(t);
         if fits.is_empty() {
@@ -187,7 +191,7 @@ impl Stage<'_> {
         }
     }
 
-    fn ask(&mut self, t: &Thing, fits: &[BoxId]) {
+    fn ask(&mut self, t: &ObjectPhrase, fits: &[BoxId]) {
         let thing = notation::thing(t);
         if self
             .out
@@ -246,7 +250,7 @@ impl Stage<'_> {
 
     /// The `n` boxes of several that a listener would take: the ones named last, the ones in our lane, or the ones
     /// without a name. All of them if that gives another number.
-    fn likely(&self, fits: Vec<BoxId>, t: &Thing, n: usize) -> Vec<BoxId> {
+    fn likely(&self, fits: Vec<BoxId>, t: &ObjectPhrase, n: usize) -> Vec<BoxId> {
         let just = |test: &dyn Fn(&BoxId) -> bool| -> Option<Vec<BoxId>> {
             let found: Vec<BoxId> = fits.iter().copied().filter(|id| test(id)).collect();
             (found.len() == n).then_some(found)
@@ -258,7 +262,7 @@ impl Stage<'_> {
             return found;
         }
         let before_us = t.places.iter().any(|p| {
-            p.to == Some(Anchor::Ego)
+            p.to == Some(AnchorPhrase::Ego)
                 && p.metres.is_none()
                 && matches!(p.relation, Relation::Ahead | Relation::Behind)
         });
@@ -276,7 +280,7 @@ impl Stage<'_> {
     }
 
     /// Adds remarks on places that do not distinguish boxes.
-    fn passed_over(&mut self, t: &Thing) {
+    fn passed_over(&mut self, t: &ObjectPhrase) {
         for p in &t.places {
             if matches!(
                 p.relation,
@@ -290,7 +294,7 @@ impl Stage<'_> {
 
     /// The only box of the kind, although more was stated about it than holds; never if a paint or a size does not
     /// match.
-    fn only_one(&self, t: &Thing) -> Option<BoxId> {
+    fn only_one(&self, t: &ObjectPhrase) -> Option<BoxId> {
         if t.quantity != Quantity::The
             || t.other
             || t.noun == Noun::Thing
@@ -298,7 +302,7 @@ impl Stage<'_> {
         {
             return None;
         }
-        let bare = Thing {
+        let bare = ObjectPhrase {
             places: Vec::new(),
             state: None,
             ..t.clone()
@@ -310,14 +314,14 @@ impl Stage<'_> {
         }
     }
 
-    fn fitting_loosely(&self, t: &Thing) -> Vec<BoxId> {
+    fn fitting_loosely(&self, t: &ObjectPhrase) -> Vec<BoxId> {
         let waits = t.state == Some(ObjectState::Waiting) || t.state == Some(ObjectState::Moving);
         let walks = t.noun.classes() == Noun::Person.classes();
         if !(waits && walks && !t.places.is_empty()) && t.size.is_none() {
             return Vec::new();
         }
         // (a person by the bus may have moved; "the big truck" may be no larger than others)
-        self.fitting(&Thing {
+        self.fitting(&ObjectPhrase {
             state: if walks { None } else { t.state },
             size: None,
             ..t.clone()
@@ -325,11 +329,11 @@ impl Stage<'_> {
     }
 
     /// All boxes that fit a thing, regardless of its number.
-    pub(super) fn fitting(&self, t: &Thing) -> Vec<BoxId> {
+    pub(super) fn fitting(&self, t: &ObjectPhrase) -> Vec<BoxId> {
         self.fitting_deep(t, 0)
     }
 
-    fn fitting_deep(&self, t: &Thing, depth: u8) -> Vec<BoxId> {
+    fn fitting_deep(&self, t: &ObjectPhrase, depth: u8) -> Vec<BoxId> {
         if let Some(id) = t.id {
             return self
                 .boxes
@@ -370,13 +374,13 @@ impl Stage<'_> {
     }
 
     /// The boxes of `among` that an exception means: a number of them, a picked one, or all that fit.
-    fn excepted(&self, e: &Thing, among: &[BoxId]) -> Vec<BoxId> {
+    fn excepted(&self, e: &ObjectPhrase, among: &[BoxId]) -> Vec<BoxId> {
         let one = matches!(e.noun, Noun::One | Noun::Thing);
         let mut fit = if one && e.places.is_empty() && e.paint.is_none() && e.state.is_none() {
             among.to_vec()
         } else {
             self.fitting_deep(
-                &Thing {
+                &ObjectPhrase {
                     noun: if one { Noun::Thing } else { e.noun },
                     ..e.clone()
                 },
@@ -398,7 +402,7 @@ impl Stage<'_> {
     }
 
     /// Boxes of the noun. A specific noun means boxes with that name; if there are none, boxes without a name.
-    fn of_noun(&self, t: &Thing) -> Vec<&SceneBox> {
+    fn of_noun(&self, t: &ObjectPhrase) -> Vec<&SceneBox> {
         let noun = match t.noun {
             Noun::It => {
                 return self.last.iter().filter_map(|id| self.boxes.get(id)).collect();
@@ -425,11 +429,11 @@ impl Stage<'_> {
     }
 
     /// The anchors of a place.
-    fn anchors(&self, p: &Place, depth: u8) -> Anchors {
-        let of = |a: &Option<Anchor>| -> Vec<SceneBox> {
+    fn anchors(&self, p: &PlacePhrase, depth: u8) -> Anchors {
+        let of = |a: &Option<AnchorPhrase>| -> Vec<SceneBox> {
             match a {
-                Some(Anchor::Ego) => vec![ego()],
-                Some(Anchor::Thing(t)) if depth < 3 => self
+                Some(AnchorPhrase::Ego) => vec![ego()],
+                Some(AnchorPhrase::Thing(t)) if depth < 3 => self
                     .fitting_deep(t, depth + 1)
                     .iter()
                     .map(|id| self.boxes[id])
@@ -446,7 +450,7 @@ impl Stage<'_> {
     }
 
     /// True if a place holds for a box.
-    fn stands(&self, b: &SceneBox, p: &Place, state: Option<ObjectState>, anchors: &Anchors) -> bool {
+    fn stands(&self, b: &SceneBox, p: &PlacePhrase, state: Option<ObjectState>, anchors: &Anchors) -> bool {
         use LaneRole as L;
         let Some(to) = &p.to else {
             return true;
@@ -456,29 +460,32 @@ impl Stage<'_> {
             let alike = |o: &SceneBox| o.id != b.id && role_of(&self.map, o) == own;
             return p.relation != Relation::Like || anchors.first.iter().any(alike);
         };
-        let at = |target: &Target, and: Option<&SceneBox>| {
+        let at = |target: &RelationReference, and: Option<&SceneBox>| {
             holds(&self.map, kind, b, target, and, p.metres) || loosely(&self.map, kind, b, target, p.metres)
         };
         match to {
-            Anchor::Ego => match (side_of_ego(kind, b), p.metres) {
+            AnchorPhrase::Ego => match (side_of_ego(kind, b), p.metres) {
                 (Some(held), None) => held,
-                _ => at(&Target::Thing(ego()), anchors.second.first()),
+                _ => at(&RelationReference::Thing(ego()), anchors.second.first()),
             },
-            Anchor::Lane(role) => at(&Target::Lane(*role), None),
-            Anchor::Crossing => at(&Target::Crossing, None),
-            Anchor::Junction => at(&Target::Junction, None),
+            AnchorPhrase::Lane(role) => at(&RelationReference::Lane(*role), None),
+            AnchorPhrase::Crossing => at(&RelationReference::Crossing, None),
+            AnchorPhrase::Junction => at(&RelationReference::Junction, None),
             // (seen from the ego vehicle)
-            Anchor::OtherSide => matches!(
+            AnchorPhrase::OtherSide => matches!(
                 role_of(&self.map, b),
                 Some(L::LeftRoadside | L::LeftSidewalk | L::Oncoming)
             ),
-            Anchor::OtherLane => matches!(role_of(&self.map, b), Some(L::Left | L::Right | L::Oncoming)),
-            Anchor::EachOther => true,
-            Anchor::Thing(_) => anchors.first.iter().filter(|o| o.id != b.id).any(|o| {
-                let between = |s: &SceneBox| s.id != o.id && s.id != b.id && at(&Target::Thing(*o), Some(s));
+            AnchorPhrase::OtherLane => {
+                matches!(role_of(&self.map, b), Some(L::Left | L::Right | L::Oncoming))
+            }
+            AnchorPhrase::EachOther => true,
+            AnchorPhrase::Thing(_) => anchors.first.iter().filter(|o| o.id != b.id).any(|o| {
+                let between =
+                    |s: &SceneBox| s.id != o.id && s.id != b.id && at(&RelationReference::Thing(*o), Some(s));
                 match kind {
                     RelationKind::Between => anchors.second.iter().any(between),
-                    _ => at(&Target::Thing(*o), None),
+                    _ => at(&RelationReference::Thing(*o), None),
                 }
             }),
         }
@@ -508,23 +515,25 @@ fn loosely(
     map: &place::lanes::LaneMap<'_>,
     kind: RelationKind,
     b: &SceneBox,
-    to: &Target,
+    to: &RelationReference,
     metres: Option<f64>,
 ) -> bool {
     use RelationKind as K;
     let near = || holds(map, K::Near, b, to, None, metres);
     let stands = b.velocity_mps.length() < 0.5;
     match (kind, to) {
-        (K::WaitingAt, Target::Crossing | Target::Junction) => stands && near(),
-        (K::On | K::Crossing, Target::Crossing) => holds(map, K::Crossing, b, to, None, metres),
-        (K::Crossing, Target::Lane(_)) => holds(map, K::On, b, &Target::Crossing, None, metres),
-        (K::Near | K::On, Target::Junction) => {
+        (K::WaitingAt, RelationReference::Crossing | RelationReference::Junction) => stands && near(),
+        (K::On | K::Crossing, RelationReference::Crossing) => holds(map, K::Crossing, b, to, None, metres),
+        (K::Crossing, RelationReference::Lane(_)) => {
+            holds(map, K::On, b, &RelationReference::Crossing, None, metres)
+        }
+        (K::Near | K::On, RelationReference::Junction) => {
             let close = |c: glam::DVec2| c.distance(b.center_m.truncate()) < 24.0;
             b.center_m.x > 2.0 && map.junction.is_some_and(close)
         }
-        (K::Blocking, Target::Lane(_)) => holds(map, K::On, b, to, None, metres),
-        (K::NextTo, Target::Thing(_)) => near(),
-        (K::Following, Target::Thing(o)) if o.id.0 == u32::MAX => {
+        (K::Blocking, RelationReference::Lane(_)) => holds(map, K::On, b, to, None, metres),
+        (K::NextTo, RelationReference::Thing(_)) => near(),
+        (K::Following, RelationReference::Thing(o)) if o.id.0 == u32::MAX => {
             b.center_m.x < 0.0 && b.center_m.y.abs() < 2.5
         }
         _ => false,
@@ -559,7 +568,7 @@ fn rank(b: &SceneBox, pick: Pick) -> f64 {
 }
 
 /// A thing in words, without number and places: `parked red car`.
-pub fn words_of(t: &Thing) -> String {
+pub fn words_of(t: &ObjectPhrase) -> String {
     let mut out: Vec<String> = Vec::new();
     out.extend(t.state.map(|s| match s {
         ObjectState::Moving => "moving".into(),

@@ -1,15 +1,17 @@
 //! Numbers of a reading, each with its quantity. Numbers that the text states as another quantity are removed, so that
 //! none is carried out as something else.
 
-use super::measure::{Kind, Measure};
-use super::reading::{Amount, Anchor, Destination, Place, Quantity, Reading, Relation, Thing, Turn, What};
+use super::measure::{Measure, MeasuredQuantity};
+use super::reading::{
+    ActKind, Amount, AnchorPhrase, Destination, ObjectPhrase, PlacePhrase, Quantity, Reading, Relation, Turn,
+};
 use super::tokens::Token;
 
 /// Quantity of a number in a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlotKind {
     /// A quantity that the text measures.
-    Of(Kind),
+    Of(MeasuredQuantity),
     /// A factor.
     Times,
 }
@@ -30,17 +32,17 @@ impl Slot {
     }
 
     /// True if the kinds fit; a number without a unit fits any kind.
-    fn fits(&self, kind: Kind) -> bool {
+    fn fits(&self, kind: MeasuredQuantity) -> bool {
         match self.kind {
-            SlotKind::Of(own) => own == kind || kind == Kind::Count,
-            SlotKind::Times => matches!(kind, Kind::Count | Kind::Share),
+            SlotKind::Of(own) => own == kind || kind == MeasuredQuantity::Count,
+            SlotKind::Times => matches!(kind, MeasuredQuantity::Count | MeasuredQuantity::Share),
         }
     }
 
     /// The values that a number of the text may stand for here: "30 % more" are 1.3 times as many.
-    fn shares(&self, kind: Kind, value: f64) -> impl Iterator<Item = f64> {
+    fn shares(&self, kind: MeasuredQuantity, value: f64) -> impl Iterator<Item = f64> {
         let times = [value / 100.0, 1.0 + value / 100.0, 1.0 - value / 100.0];
-        let of_share = self.kind == SlotKind::Times && kind == Kind::Share;
+        let of_share = self.kind == SlotKind::Times && kind == MeasuredQuantity::Share;
         let n = if of_share { 3 } else { 1 };
         let list = if of_share { times } else { [value; 3] };
         list.into_iter().take(n)
@@ -95,7 +97,7 @@ const WORKED_OUT: [&str; 16] = [
 pub fn set_right(reading: &mut Reading, tokens: &[Token], measures: &[Measure]) {
     let works_out = tokens.iter().any(|t| WORKED_OUT.contains(&t.text.as_str()));
     let judge = |slot: Slot| -> Verdict {
-        let is_count = slot.kind == SlotKind::Of(Kind::Count);
+        let is_count = slot.kind == SlotKind::Of(MeasuredQuantity::Count);
         let by_words = (is_count || slot.kind == SlotKind::Times) && works_out;
         if measures.iter().any(|m| slot.is(m)) || by_words || is_count && slot.value <= 1.0 {
             return Verdict::Keep;
@@ -107,7 +109,7 @@ pub fn set_right(reading: &mut Reading, tokens: &[Token], measures: &[Measure]) 
         let foreign = |m: &Measure| {
             let as_typed = near(m.raw, slot.value);
             // ("7 %" is not seven times as many)
-            let is_share = m.kind == Kind::Share;
+            let is_share = m.kind == MeasuredQuantity::Share;
             (!slot.fits(m.kind) && (as_typed || near(m.value, slot.value))) || is_share && as_typed
         };
         match measures.iter().any(foreign) {
@@ -134,50 +136,50 @@ fn one(kind: SlotKind, value: f64, visit: Visit<'_>) -> Option<f64> {
     }
 }
 
-fn of(kind: Kind, value: &mut Option<f64>, visit: Visit<'_>) {
+fn of(kind: MeasuredQuantity, value: &mut Option<f64>, visit: Visit<'_>) {
     if let Some(v) = *value {
         *value = one(SlotKind::Of(kind), v, visit);
     }
 }
 
 fn count(n: u32, visit: Visit<'_>) -> Option<u32> {
-    let found = one(SlotKind::Of(Kind::Count), f64::from(n), visit)?;
+    let found = one(SlotKind::Of(MeasuredQuantity::Count), f64::from(n), visit)?;
     Some(found.clamp(0.0, f64::from(u32::MAX)) as u32)
 }
 
-fn act_stays(what: &mut What, visit: Visit<'_>) -> bool {
+fn act_stays(what: &mut ActKind, visit: Visit<'_>) -> bool {
     match what {
-        What::Add { things } => each_thing(things, visit),
-        What::No { who } | What::Remove { who } | What::Keep { who } | What::Leave { who } => {
+        ActKind::Add { things } => each_thing(things, visit),
+        ActKind::No { who } | ActKind::Remove { who } | ActKind::Keep { who } | ActKind::Leave { who } => {
             each_thing(who, visit)
         }
-        What::Replace { who, things } => {
+        ActKind::Replace { who, things } => {
             each_thing(who, visit);
             each_thing(things, visit);
         }
-        What::Move { who, to } => {
+        ActKind::Move { who, to } => {
             each_thing(who, visit);
             return destination_stays(to, visit);
         }
-        What::Turn { who, turn } => {
+        ActKind::Turn { who, turn } => {
             each_thing(who, visit);
             match turn {
                 Turn::Left(degrees) => {
                     let side = degrees.signum();
-                    let found = one(SlotKind::Of(Kind::Angle), degrees.abs(), visit);
+                    let found = one(SlotKind::Of(MeasuredQuantity::Angle), degrees.abs(), visit);
                     *degrees = side * found.unwrap_or(90.0);
                 }
                 Turn::To(places) => each_place(places, visit),
                 Turn::Around | Turn::Along => {}
             }
         }
-        What::Set { who, traits } => {
+        ActKind::Set { who, traits } => {
             each_thing(who, visit);
             if let Some(of) = &mut traits.paint_of {
                 each_thing(std::slice::from_mut(of), visit);
             }
         }
-        What::Count { who, amount } => {
+        ActKind::Count { who, amount } => {
             each_thing(who, visit);
             match amount {
                 Amount::To(least, most) => {
@@ -191,35 +193,35 @@ fn act_stays(what: &mut What, visit: Visit<'_>) -> bool {
                 },
             }
         }
-        What::Swap { one, other } => {
+        ActKind::Swap { one, other } => {
             each_thing(std::slice::from_mut(one), visit);
             each_thing(std::slice::from_mut(other), visit);
         }
-        What::Go { who, how } => {
+        ActKind::Go { who, how } => {
             each_thing(who, visit);
-            of(Kind::Time, &mut how.from_s, visit);
-            of(Kind::Length, &mut how.gap_m, visit);
-            of(Kind::Speed, &mut how.kmh, visit);
+            of(MeasuredQuantity::Time, &mut how.from_s, visit);
+            of(MeasuredQuantity::Length, &mut how.gap_m, visit);
+            of(MeasuredQuantity::Speed, &mut how.kmh, visit);
         }
-        What::Length { seconds } => match one(SlotKind::Of(Kind::Time), *seconds, visit) {
+        ActKind::Length { seconds } => match one(SlotKind::Of(MeasuredQuantity::Time), *seconds, visit) {
             Some(found) => *seconds = found,
             None => return false,
         },
-        What::Lanes { n } => match count(*n, visit) {
+        ActKind::Lanes { n } => match count(*n, visit) {
             Some(found) => *n = found,
             None => return false,
         },
-        What::Has { places, .. } => each_place(places, visit),
-        What::Time { .. }
-        | What::Weather { .. }
-        | What::Road { .. }
-        | What::Env { .. }
-        | What::Density { .. }
-        | What::Lacks { .. }
-        | What::OneWay
-        | What::Narrow
-        | What::Wide
-        | What::OwnLane { .. } => {}
+        ActKind::Has { places, .. } => each_place(places, visit),
+        ActKind::Time { .. }
+        | ActKind::Weather { .. }
+        | ActKind::Road { .. }
+        | ActKind::Env { .. }
+        | ActKind::Density { .. }
+        | ActKind::Lacks { .. }
+        | ActKind::OneWay
+        | ActKind::Narrow
+        | ActKind::Wide
+        | ActKind::OwnLane { .. } => {}
     }
     true
 }
@@ -230,7 +232,7 @@ fn destination_stays(to: &mut Destination, visit: Visit<'_>) -> bool {
             each_place(places, visit);
             return !places.is_empty();
         }
-        Destination::By { metres, .. } => of(Kind::Length, metres, visit),
+        Destination::By { metres, .. } => of(MeasuredQuantity::Length, metres, visit),
         Destination::Lanes(n) => {
             let lanes = count(n.unsigned_abs(), visit).unwrap_or(1).min(20);
             *n = n.signum() * lanes as i32;
@@ -243,7 +245,7 @@ fn destination_stays(to: &mut Destination, visit: Visit<'_>) -> bool {
     true
 }
 
-fn each_thing(things: &mut [Thing], visit: Visit<'_>) {
+fn each_thing(things: &mut [ObjectPhrase], visit: Visit<'_>) {
     for t in things {
         t.quantity = match t.quantity {
             Quantity::N(n) => Quantity::N(count(n, visit).unwrap_or(1)),
@@ -266,12 +268,12 @@ fn each_thing(things: &mut [Thing], visit: Visit<'_>) {
     }
 }
 
-fn each_place(places: &mut Vec<Place>, visit: Visit<'_>) {
+fn each_place(places: &mut Vec<PlacePhrase>, visit: Visit<'_>) {
     places.retain_mut(|p| {
         let measured = p.metres.is_some();
-        of(Kind::Length, &mut p.metres, visit);
+        of(MeasuredQuantity::Length, &mut p.metres, visit);
         for anchor in [&mut p.to, &mut p.and].into_iter().flatten() {
-            if let Anchor::Thing(t) = anchor {
+            if let AnchorPhrase::Thing(t) = anchor {
                 each_thing(std::slice::from_mut(t), visit);
             }
         }

@@ -82,7 +82,7 @@ impl Done {
 
 /// Result of a reading.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Outcome {
+pub struct ReadingOutcome {
     /// Changes, in order.
     pub edits: Vec<Edit>,
     /// Questions that must be answered first; the edits are not applied before.
@@ -122,7 +122,7 @@ pub struct Stage<'a> {
     pub(super) group: Vec<BoxId>,
     /// Boxes that were removed last: their places are "there".
     pub(super) gone: Vec<SceneBox>,
-    pub(super) out: Outcome,
+    pub(super) out: ReadingOutcome,
 }
 
 impl<'a> Stage<'a> {
@@ -147,7 +147,7 @@ impl<'a> Stage<'a> {
             last_noun: None,
             group: Vec::new(),
             gone: Vec::new(),
-            out: Outcome::default(),
+            out: ReadingOutcome::default(),
         }
     }
 

@@ -103,7 +103,7 @@ fn a_pronoun_silences_no_noun() {
 
 #[test]
 fn who_shall_stand_is_not_taken_away() {
-    use super::reading::What;
+    use super::reading::ActKind;
     for text in [
         "nobody moves any more",
         "nobody moves anymore",
@@ -113,7 +113,12 @@ fn who_shall_stand_is_not_taken_away() {
     ] {
         let heard = hear(text, Mode::Edit).expect("weights");
         let line = notation::write(&heard.reading);
-        let takes = |w: &What| matches!(w, What::No { .. } | What::Remove { .. } | What::Keep { .. });
+        let takes = |w: &ActKind| {
+            matches!(
+                w,
+                ActKind::No { .. } | ActKind::Remove { .. } | ActKind::Keep { .. }
+            )
+        };
         assert!(
             !heard.reading.acts.iter().any(|a| takes(&a.what)),
             "{text}: {line}"

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-pub use place::beside_road::Span;
+pub use place::beside_road::TextSpan;
 
 use super::lexicon::{LONGEST_PHRASE, Lexicon, Sense, is_english};
 
@@ -16,7 +16,7 @@ pub struct Token {
     /// The word in lower case, corrected; `<n>` for digits, `<m>` for a length.
     pub text: String,
     /// Bytes of the text.
-    pub span: Span,
+    pub span: TextSpan,
     /// Value of a number, or of a length in metres.
     pub value: Option<f64>,
     /// The number as it was typed, without regard to its unit.
@@ -90,7 +90,7 @@ fn is_letter(c: char) -> bool {
 }
 
 /// Pieces of the text: numbers, words (with an apostrophe in them), marks.
-fn pieces(text: &str) -> Vec<(String, Span)> {
+fn pieces(text: &str) -> Vec<(String, TextSpan)> {
     let chars: Vec<(usize, char)> = text.char_indices().collect();
     let at = |i: usize| chars.get(i).map(|c| c.1);
     let end_of = |i: usize| chars.get(i).map_or(text.len(), |c| c.0);
@@ -118,7 +118,7 @@ fn pieces(text: &str) -> Vec<(String, Span)> {
             i += 1;
             continue;
         }
-        let span = Span {
+        let span = TextSpan {
             start: end_of(i),
             end: end_of(j),
         };
@@ -129,8 +129,8 @@ fn pieces(text: &str) -> Vec<(String, Span)> {
 }
 
 /// Words and marks: `'s` separated, hyphens between words removed.
-fn words(text: &str) -> Vec<(String, Span)> {
-    let mut out: Vec<(String, Span)> = Vec::new();
+fn words(text: &str) -> Vec<(String, TextSpan)> {
+    let mut out: Vec<(String, TextSpan)> = Vec::new();
     for (piece, span) in pieces(text) {
         let Some((head, tail)) = piece
             .split_once(is_apostrophe)
@@ -142,8 +142,8 @@ fn words(text: &str) -> Vec<(String, Span)> {
         if matches!(tail, "s" | "re" | "ll" | "ve" | "d" | "m") && head != "let" {
             let raw = span.of(text);
             let cut = span.start + raw.find(is_apostrophe).unwrap_or(raw.len());
-            out.push((head.to_owned(), Span { end: cut, ..span }));
-            out.push((format!("'{tail}"), Span { start: cut, ..span }));
+            out.push((head.to_owned(), TextSpan { end: cut, ..span }));
+            out.push((format!("'{tail}"), TextSpan { start: cut, ..span }));
         } else {
             out.push((format!("{head}{tail}"), span));
         }

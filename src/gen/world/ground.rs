@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{BIN_M, BINS, Hit, scenery};
+use super::{BIN_M, BINS, WorldHit, scenery};
 use scene::draw::{Draw, Noise};
 use scene::{BevLayer, BevLayout, Class, Relief, Window};
 
@@ -13,14 +13,14 @@ const MOST_ABOVE_RELIEF_M: f64 = 0.35;
 /// A ray over uneven ground is tested at steps of this length on the ground, m.
 const STEP_M: f64 = 0.4;
 
-pub(super) struct Ground {
+pub(super) struct WorldGround {
     classes: Vec<Class>, // [x][y]
     above_m: Vec<f32>,   // kerbs and bumps over the relief, [x][y]
     relief: Relief,
     highest_m: Vec<f64>, // per bin of the world
 }
 
-impl Ground {
+impl WorldGround {
     pub(super) fn new(layout: &BevLayout, seed: u64) -> Self {
         let relief = layout.relief.clone();
         let highest = |bin: usize| {
@@ -71,7 +71,7 @@ impl Ground {
     }
 
     /// The hit of a ray on ground without relief; `None` if there is relief.
-    pub(super) fn cast_flat(&self, origin: DVec3, dir: DVec3) -> Option<Hit> {
+    pub(super) fn cast_flat(&self, origin: DVec3, dir: DVec3) -> Option<WorldHit> {
         if dir.z >= -1e-6 || !self.relief.is_flat() {
             return None;
         }
@@ -92,7 +92,7 @@ impl Ground {
         dir: DVec3,
         from: f64,
         to: f64,
-    ) -> Option<Hit> {
+    ) -> Option<WorldHit> {
         let highest = *self.highest_m.get(bin)?;
         let z = |t: f64| origin.z + dir.z * t;
         if z(from).min(z(to)) > highest || from >= to {
@@ -121,9 +121,9 @@ impl Ground {
         None
     }
 
-    fn hit(&self, p: DVec3, range_m: f64) -> Option<Hit> {
+    fn hit(&self, p: DVec3, range_m: f64) -> Option<WorldHit> {
         let [x, y] = Window::column_at(p.x, p.y)?;
-        (range_m > 0.0).then(|| Hit {
+        (range_m > 0.0).then(|| WorldHit {
             range_m,
             class: self.class(x, y),
             solid: None,

@@ -13,14 +13,14 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use ground::Ground;
+use ground::WorldGround;
 pub use scene::draw;
 use scene::solid::Solid;
 use scene::{Background, BevLayout, BoxId, Class, SceneBox, ThingId};
 
 /// A point where a ray met the world.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit {
+pub struct WorldHit {
     /// Distance along the ray, m.
     pub range_m: f64,
     /// Class of the surface that was hit.
@@ -31,7 +31,7 @@ pub struct Hit {
 
 /// Properties of a point of a surface, as far as the world knows them.
 #[derive(Clone, Copy, Debug)]
-pub struct Surface {
+pub struct SurfacePoint {
     /// Outward unit normal.
     pub normal: DVec3,
     /// Number of the thing it belongs to: the same for all solids of one object. 0 is the ground.
@@ -86,7 +86,7 @@ pub struct World {
     spheres: Vec<Sphere>,   // around each solid
     owners: Vec<(u32, u8)>, // instance and part of each solid
     bins: Vec<Vec<u32>>,    // [x][y] of 4 m, indices of solids that reach in
-    ground: Ground,
+    ground: WorldGround,
     seed: u64,
 }
 
@@ -114,7 +114,7 @@ impl World {
                     .map(|(part, _)| (instance, part as u8)),
             );
         }
-        let ground = Ground::new(&layout, seed);
+        let ground = WorldGround::new(&layout, seed);
         for thing in background.iter() {
             thing.solids(&|p| ground.height_m(p), &mut solids);
             owners.resize(solids.len(), (THING_BIT | thing.id.0, 0));
@@ -172,17 +172,17 @@ impl World {
     }
 
     /// The surface at a point that [`cast`](Self::cast) found.
-    pub fn surface(&self, hit: &Hit, p: DVec3) -> Surface {
+    pub fn surface(&self, hit: &WorldHit, p: DVec3) -> SurfacePoint {
         let solid = hit
             .solid
             .and_then(|i| self.solids.get(i as usize).zip(self.owners.get(i as usize)));
         match solid {
-            Some((solid, &(instance, part))) => Surface {
+            Some((solid, &(instance, part))) => SurfacePoint {
                 normal: solid.normal(p),
                 instance,
                 part,
             },
-            None => Surface {
+            None => SurfacePoint {
                 normal: self.layout.relief.normal(p.truncate()),
                 instance: 0,
                 part: 0,
@@ -206,7 +206,7 @@ impl World {
     }
 
     /// The first surface along a ray of the ego frame within `max_range_m`; `dir` is a unit vector.
-    pub fn cast(&self, origin: DVec3, dir: DVec3, max_range_m: f64) -> Option<Hit> {
+    pub fn cast(&self, origin: DVec3, dir: DVec3, max_range_m: f64) -> Option<WorldHit> {
         let flat = self
             .ground
             .cast_flat(origin, dir)
@@ -240,7 +240,7 @@ impl World {
                     && t < best
                 {
                     best = t;
-                    hit = Some(Hit {
+                    hit = Some(WorldHit {
                         range_m: t,
                         class: s.class,
                         solid: Some(i),

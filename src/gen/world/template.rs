@@ -66,7 +66,7 @@ impl Usual {
 
 /// Streets and areas of a layout before they become cells.
 #[derive(Default)]
-struct Plan {
+struct StreetPlan {
     streets: Vec<Street>,
     junctions: Vec<(DVec2, f64)>, // centre and radius without lane lines
     crossings: Vec<Vec<DVec2>>,
@@ -107,7 +107,7 @@ pub fn layout(name: &str, seed: u64) -> Option<BevLayout> {
 /// The layout of [`layout`] with at least `room_m` of the ego's street before a roundabout begins.
 pub fn layout_with_room(name: &str, seed: u64, room_m: f64) -> Option<BevLayout> {
     let mut draw = Draw::new(seed, name);
-    let mut plan = Plan::default();
+    let mut plan = StreetPlan::default();
     let lane_m = draw.range(3.1, 3.8);
     let walk_m = if draw.chance(0.85) {
         draw.range(1.6, 4.0)
@@ -171,7 +171,7 @@ pub fn layout_with_room(name: &str, seed: u64, room_m: f64) -> Option<BevLayout>
 }
 
 /// One lane each way, and driveways.
-fn suburb(plan: &mut Plan, draw: &mut Draw, s: &mut Street, lane_m: f64) {
+fn suburb(plan: &mut StreetPlan, draw: &mut Draw, s: &mut Street, lane_m: f64) {
     let far = FAR_M;
     (s.forward, s.backward, s.parking_m) = (1, 1, 0.0);
     s.axis = straight(DVec2::new(-far, lane_m / 2.0), DVec2::new(far, lane_m / 2.0));
@@ -190,7 +190,7 @@ fn suburb(plan: &mut Plan, draw: &mut Draw, s: &mut Street, lane_m: f64) {
 }
 
 /// A bend to the left or the right.
-fn curve(plan: &mut Plan, draw: &mut Draw, usual: &Usual, y: f64) {
+fn curve(plan: &mut StreetPlan, draw: &mut Draw, usual: &Usual, y: f64) {
     let (here, street) = (DVec2::new(-FAR_M, y), |axis| usual.street(axis));
     let radius = draw.range(25.0, 90.0) * if draw.chance(0.5) { 1.0 } else { -1.0 };
     let start = draw.range(-15.0, 10.0);
@@ -207,7 +207,7 @@ fn curve(plan: &mut Plan, draw: &mut Draw, usual: &Usual, y: f64) {
 }
 
 /// A ring of one lane with two to four arms.
-fn roundabout(plan: &mut Plan, draw: &mut Draw, usual: &Usual, y: f64, room_m: f64) {
+fn roundabout(plan: &mut StreetPlan, draw: &mut Draw, usual: &Usual, y: f64, room_m: f64) {
     let (far, walk_m, street) = (FAR_M, usual.walk_m, |axis| usual.street(axis));
     let radius = draw.range(9.0, 14.0);
     let mut center = DVec2::new(draw.range(18.0, 26.0), y);
@@ -242,7 +242,7 @@ fn roundabout(plan: &mut Plan, draw: &mut Draw, usual: &Usual, y: f64, room_m: f
 }
 
 /// Two carriageways with a strip between them.
-fn highway(plan: &mut Plan, draw: &mut Draw, lane_m: f64) {
+fn highway(plan: &mut StreetPlan, draw: &mut Draw, lane_m: f64) {
     let far = FAR_M;
     let n = 2 + draw.below(3);
     let own = draw.below(n) as f64 + 0.5;
@@ -272,7 +272,7 @@ fn highway(plan: &mut Plan, draw: &mut Draw, lane_m: f64) {
 }
 
 /// A car park beside the street, with a gate.
-fn parking(plan: &mut Plan, draw: &mut Draw, usual: &Usual, y: f64) {
+fn parking(plan: &mut StreetPlan, draw: &mut Draw, usual: &Usual, y: f64) {
     let Usual {
         lanes,
         lane_m,
@@ -348,7 +348,7 @@ fn transform(layout: &BevLayout, dx: f64, dy: f64, yaw: f64) -> BevLayout {
 }
 
 /// A crossing over a street at distance `at` along x from the ego.
-fn crossing(plan: &mut Plan, s: &Street, at: f64, width: f64) {
+fn crossing(plan: &mut StreetPlan, s: &Street, at: f64, width: f64) {
     let Some(i) = s.axis.iter().position(|p| p.x > at) else {
         return;
     };
@@ -361,7 +361,7 @@ fn crossing(plan: &mut Plan, s: &Street, at: f64, width: f64) {
 }
 
 /// Adds a junction: rounds its corners, clears the lane lines and puts crossings on its arms.
-fn junction(plan: &mut Plan, draw: &mut Draw, center: DVec2, both: bool, side: f64, across: DVec2) {
+fn junction(plan: &mut StreetPlan, draw: &mut Draw, center: DVec2, both: bool, side: f64, across: DVec2) {
     let widest = plan
         .streets
         .iter()
@@ -410,7 +410,7 @@ fn junction(plan: &mut Plan, draw: &mut Draw, center: DVec2, both: bool, side: f
 /// Calls back with every cell of a shape.
 type Visitor<'a> = &'a dyn Fn(&mut dyn FnMut(usize, usize));
 
-impl Plan {
+impl StreetPlan {
     fn draw(self) -> BevLayout {
         let mut out = BevLayout::default();
         let mut paint = |layer: BevLayer, visit: Visitor<'_>| {

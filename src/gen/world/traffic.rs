@@ -38,7 +38,7 @@ impl TrafficSpec {
     };
 }
 
-struct Placer<'a> {
+struct TrafficPlacer<'a> {
     layout: &'a BevLayout,
     draw: Draw,
     taken: Vec<bool>,
@@ -48,7 +48,7 @@ struct Placer<'a> {
 
 /// Boxes for a layout, drawn from `seed`; none overlap, none stands on the ego vehicle.
 pub fn place(layout: &BevLayout, seed: u64, spec: &TrafficSpec) -> BTreeMap<BoxId, SceneBox> {
-    let mut p = Placer {
+    let mut p = TrafficPlacer {
         layout,
         draw: Draw::new(seed, "traffic"),
         taken: vec![false; layout.extent().columns()],
@@ -63,7 +63,7 @@ pub fn place(layout: &BevLayout, seed: u64, spec: &TrafficSpec) -> BTreeMap<BoxI
     p.boxes
 }
 
-impl Placer<'_> {
+impl TrafficPlacer<'_> {
     fn keep_ego_clear(&mut self) {
         let ego = SceneBox {
             id: BoxId(0),

@@ -8,15 +8,15 @@ use crate::solid::fill::{fill, smear_down};
 use crate::{BevLayout, Class, Extent};
 
 /// Labels by column `[x, y]`; free where a thing leaves a bin alone.
-pub type Columns = BTreeMap<[usize; 2], [u8; Extent::NZ]>;
+pub type ColumnLabels = BTreeMap<[usize; 2], [u8; Extent::NZ]>;
 
 impl Thing {
     /// Its voxels in the Occ3D convention, from the bin of the ground upward, on the relief of a layout of the same
     /// frame.
-    pub fn columns(&self, layout: &BevLayout) -> Columns {
+    pub fn columns(&self, layout: &BevLayout) -> ColumnLabels {
         let mut solids = Vec::new();
         self.solids(&|p| layout.relief.height_m(p), &mut solids);
-        let mut columns = Columns::new();
+        let mut columns = ColumnLabels::new();
         for solid in &solids {
             fill(
                 layout.extent(),

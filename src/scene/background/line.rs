@@ -74,7 +74,7 @@ impl LineKind {
 /// A thing along a line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Line {
+pub struct SceneryLine {
     /// Kind.
     pub kind: LineKind,
     /// Vertices on the ground, world frame, m; at least two.
@@ -86,7 +86,7 @@ pub struct Line {
     pub width_m: f64,
 }
 
-impl Line {
+impl SceneryLine {
     /// A line of the usual height and width of its kind.
     pub fn typical(kind: LineKind, points_m: Vec<DVec2>) -> Self {
         let (height_m, width_m) = kind.typical_m();

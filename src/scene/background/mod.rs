@@ -21,8 +21,8 @@ use super::{Class, Extent, Pose};
 
 pub use bridge::Bridge;
 pub use building::{Building, Facade, Roof, STOREY_M};
-pub use columns::Columns;
-pub use line::{Line, LineKind};
+pub use columns::ColumnLabels;
+pub use line::{LineKind, SceneryLine};
 pub use post::{Post, PostKind};
 pub use problem::crossing_edges;
 pub use shrubs::Shrubs;
@@ -44,7 +44,7 @@ pub enum Form {
     /// An area of shrubs and undergrowth.
     Shrubs(Shrubs),
     /// A hedge, wall, fence or rail.
-    Line(Line),
+    Line(SceneryLine),
     /// A pole, sign, lamp, stop, bench or bin.
     Post(Post),
     /// A road or path carried over the ground.

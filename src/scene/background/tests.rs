@@ -52,7 +52,7 @@ fn some_of_each() -> Vec<Form> {
         }));
     }
     let run = vec![corner(-5.0, 3.0), corner(5.0, 3.0), corner(8.0, 9.0)];
-    forms.extend(LineKind::ALL.map(|kind| Form::Line(Line::typical(kind, run.clone()))));
+    forms.extend(LineKind::ALL.map(|kind| Form::Line(SceneryLine::typical(kind, run.clone()))));
     forms.extend(PostKind::ALL.map(|kind| Form::Post(Post::typical(kind, corner(-7.0, 2.0), 0.4))));
     forms
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Clip, MARGIN_M, Moving, ObjectVoxels, Sampling, Track};
+use super::{Clip, KeyframeSampling, MARGIN_M, Moving, ObjectVoxels, Track};
 use crate::grid::NOT_PAINTED;
 use crate::raster::box_cells;
 use crate::{BoxId, Frame, SceneBox, SourceFrame, VoxelGrid, VoxelPaint};
@@ -34,7 +34,7 @@ impl Scope {
 }
 
 /// A frame as it was made from the canvas, with the places of the tracks in it.
-pub struct Seen<'a> {
+pub struct ComposedFrame<'a> {
     /// The frame.
     pub frame: &'a Frame,
     /// Boxes of the tracks that are in it.
@@ -44,7 +44,13 @@ pub struct Seen<'a> {
 }
 
 /// The canvas and the clip whose view is `after`, if their view was `seen` before.
-pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: Scope) -> (Frame, Clip) {
+pub fn fold(
+    canvas: &Frame,
+    clip: &Clip,
+    seen: &ComposedFrame<'_>,
+    after: &Frame,
+    scope: Scope,
+) -> (Frame, Clip) {
     let before = seen.frame;
     let moving: BTreeMap<BoxId, SceneBox> = seen.boxes.iter().map(|b| (b.id, *b)).collect();
     let mut next = Frame {
@@ -163,7 +169,7 @@ fn follow(track: &mut Track, clip: &Clip, (was, now): (&SceneBox, &SceneBox), ti
         return;
     }
     let parent = |id: BoxId, time_s: f64| clip.moving(id, time_s);
-    let sampling = Sampling {
+    let sampling = KeyframeSampling {
         length_s: clip.length_s,
         parent: &parent,
     };

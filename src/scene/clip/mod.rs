@@ -12,8 +12,8 @@ mod view;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use fold::{Scope, Seen, fold};
-pub use motion::{Key, Motion, Moving, Sampling};
+pub use fold::{ComposedFrame, Scope, fold};
+pub use motion::{Key, KeyframeSampling, Motion, Moving};
 pub use object_voxels::{MARGIN_M, ObjectVoxels, OwnShape, upright};
 pub use path::{Path, Speed};
 pub use template::{Manoeuvre, Pace, Template};

@@ -155,7 +155,7 @@ impl Motion {
 
     /// The motion changed from `time_s` on by the move that takes `from` (its place then) to `to`; the transition takes
     /// the second before. A path becomes keyframes.
-    pub fn carried_from(&self, time_s: f64, from: &Moving, to: &Moving, sampling: &Sampling) -> Self {
+    pub fn carried_from(&self, time_s: f64, from: &Moving, to: &Moving, sampling: &KeyframeSampling) -> Self {
         let mut keys = self.as_keys(sampling);
         self.hold(&mut keys, time_s - COME_OVER_S, sampling);
         set_key(&mut keys, key(time_s, from));
@@ -171,7 +171,7 @@ impl Motion {
     }
 
     /// The motion changed so that it passes through `to` at a time; its other keyframes stay. A path becomes keyframes.
-    pub fn through(&self, time_s: f64, to: &Moving, sampling: &Sampling) -> Self {
+    pub fn through(&self, time_s: f64, to: &Moving, sampling: &KeyframeSampling) -> Self {
         let mut keys = self.as_keys(sampling);
         self.hold(&mut keys, time_s - COME_OVER_S, sampling);
         self.hold(&mut keys, time_s + COME_OVER_S, sampling);
@@ -180,7 +180,7 @@ impl Motion {
     }
 
     /// Adds a key at the place of a motion without keys of its own, if the time lies between the keys made of it.
-    fn hold(&self, keys: &mut Vec<Key>, time_s: f64, sampling: &Sampling) {
+    fn hold(&self, keys: &mut Vec<Key>, time_s: f64, sampling: &KeyframeSampling) {
         let inside =
             keys.first().is_some_and(|k| k.time_s < time_s) && keys.last().is_some_and(|k| time_s < k.time_s);
         if !matches!(self, Self::Keys(_))
@@ -192,11 +192,11 @@ impl Motion {
     }
 
     /// The motion as keyframes; for a path, as few as reproduce it.
-    fn as_keys(&self, sampling: &Sampling) -> Vec<Key> {
+    fn as_keys(&self, sampling: &KeyframeSampling) -> Vec<Key> {
         match self {
             Self::Keys(keys) => keys.clone(),
             _ => {
-                let steps = (sampling.length_s / Sampling::EVERY_S).ceil().max(1.0) as usize;
+                let steps = (sampling.length_s / KeyframeSampling::EVERY_S).ceil().max(1.0) as usize;
                 let time_s = |i: usize| sampling.length_s * i as f64 / steps as f64;
                 let pose = |i| {
                     self.at(time_s(i), |id| (sampling.parent)(id, time_s(i)))
@@ -251,14 +251,14 @@ impl Motion {
 }
 
 /// Parameters for sampling keyframes from a motion that has none.
-pub struct Sampling<'a> {
+pub struct KeyframeSampling<'a> {
     /// Length of the clip, s.
     pub length_s: f64,
     /// Where another track is at a time.
     pub parent: &'a dyn Fn(BoxId, f64) -> Option<Moving>,
 }
 
-impl Sampling<'_> {
+impl KeyframeSampling<'_> {
     /// Time between the sampled poses that the keyframes must reproduce, s.
     const EVERY_S: f64 = 0.1;
 }

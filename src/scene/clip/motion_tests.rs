@@ -131,7 +131,7 @@ fn a_path_is_driven_with_its_speeds() {
 fn carried_motions_keep_their_shape() {
     let from = at(&Motion::Path(path()), 2.0);
     let to = Moving::still(DVec2::new(-3.0, 8.0), 0.6);
-    let sampling = Sampling {
+    let sampling = KeyframeSampling {
         length_s: 8.0,
         parent: &|_, _| None,
     };

@@ -105,7 +105,7 @@ fn components(labels: &VoxelGrid, class: Class, relief: &Relief) -> Vec<Componen
 
 /// An upright rectangle on the ground.
 #[derive(Clone, Copy, Debug)]
-struct Rectangle {
+struct BoxFootprint {
     center_m: DVec2,
     /// Along the heading and across it.
     size_m: DVec2,
@@ -113,7 +113,7 @@ struct Rectangle {
     height_m: f64,
 }
 
-impl Rectangle {
+impl BoxFootprint {
     fn to_box(self, id: BoxId, class: Class) -> SceneBox {
         SceneBox {
             id,
@@ -186,7 +186,7 @@ fn heading_of_moments(points: &[DVec2]) -> f64 {
 }
 
 /// One rectangle per object of the component.
-fn split(class: Class, component: &Component) -> Vec<Rectangle> {
+fn split(class: Class, component: &Component) -> Vec<BoxFootprint> {
     let typical = DVec3::from_array(class.typical_size_m().unwrap_or([1.0; 3]));
     // The longer side of a barrier is its width.
     let sideways = typical.y > typical.x;
@@ -231,7 +231,7 @@ fn split(class: Class, component: &Component) -> Vec<Rectangle> {
 }
 
 /// Grown to the class's usual size where the labels show only the near side: away from the ego.
-fn fitted(middle: DVec2, part: DVec2, yaw: f64, usual: DVec2, height_m: f64, sideways: bool) -> Rectangle {
+fn fitted(middle: DVec2, part: DVec2, yaw: f64, usual: DVec2, height_m: f64, sideways: bool) -> BoxFootprint {
     let along = DVec2::from_angle(yaw);
     let axes = [along, along.perp()];
     let size = part.max(usual * 0.9).min(usual * SEVERAL);
@@ -245,7 +245,7 @@ fn fitted(middle: DVec2, part: DVec2, yaw: f64, usual: DVec2, height_m: f64, sid
     } else {
         (size, yaw)
     };
-    Rectangle {
+    BoxFootprint {
         center_m,
         size_m,
         yaw_rad,

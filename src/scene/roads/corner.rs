@@ -18,7 +18,7 @@ const CLEAR_M: f64 = 0.6;
 
 /// Geometry that the nodes of a network draw, and the part of each road that belongs to them.
 #[derive(Debug, Default)]
-pub(super) struct Corners {
+pub(super) struct JunctionGeometry {
     /// Distance that markings keep from an end of a road, m.
     pub setback_m: BTreeMap<(RoadId, usize), f64>,
     /// Distance that they keep on one side of the road, m: true is the right of its line.
@@ -34,7 +34,7 @@ pub(super) struct Corners {
 }
 
 /// An arm as a node sees it.
-pub(super) struct Seen<'a> {
+pub(super) struct JunctionArm<'a> {
     pub arm: Arm,
     pub road: &'a Road,
     /// Its line from the node outward, m.
@@ -42,7 +42,7 @@ pub(super) struct Seen<'a> {
     pub length_m: f64,
 }
 
-impl Seen<'_> {
+impl JunctionArm<'_> {
     /// Side of the road that is on the given side of an arm, looking outward: true for the road's right side.
     pub fn side(&self, left: bool) -> bool {
         (self.arm.end == 1) == left
@@ -69,8 +69,8 @@ impl Seen<'_> {
 }
 
 /// Geometry that all nodes draw.
-pub(super) fn corners(net: &RoadNetwork, lines: &BTreeMap<RoadId, Vec<DVec2>>) -> Corners {
-    let mut out = Corners::default();
+pub(super) fn corners(net: &RoadNetwork, lines: &BTreeMap<RoadId, Vec<DVec2>>) -> JunctionGeometry {
+    let mut out = JunctionGeometry::default();
     let mut at: BTreeMap<NodeId, Vec<(Arm, &Road)>> = BTreeMap::new();
     for road in &net.roads {
         for end in [0, 1] {
@@ -79,7 +79,7 @@ pub(super) fn corners(net: &RoadNetwork, lines: &BTreeMap<RoadId, Vec<DVec2>>) -
         }
     }
     for node in &net.nodes {
-        let mut arms: Vec<Seen<'_>> = at
+        let mut arms: Vec<JunctionArm<'_>> = at
             .get(&node.id)
             .into_iter()
             .flatten()
@@ -97,13 +97,13 @@ pub(super) fn corners(net: &RoadNetwork, lines: &BTreeMap<RoadId, Vec<DVec2>>) -
     out
 }
 
-fn seen<'a>(road: &'a Road, lines: &BTreeMap<RoadId, Vec<DVec2>>, arm: Arm) -> Option<Seen<'a>> {
+fn seen<'a>(road: &'a Road, lines: &BTreeMap<RoadId, Vec<DVec2>>, arm: Arm) -> Option<JunctionArm<'a>> {
     let mut out_m = lines.get(&arm.road)?.clone();
     if arm.end == 1 {
         out_m.reverse();
     }
     let length_m = curve::length_m(&out_m);
-    (out_m.len() > 1).then_some(Seen {
+    (out_m.len() > 1).then_some(JunctionArm {
         arm,
         road,
         out_m,
@@ -111,7 +111,7 @@ fn seen<'a>(road: &'a Road, lines: &BTreeMap<RoadId, Vec<DVec2>>, arm: Arm) -> O
     })
 }
 
-fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners) {
+fn junction(node: &RoadNode, arms: &[JunctionArm<'_>], corner_m: f64, out: &mut JunctionGeometry) {
     for (i, a) in arms.iter().enumerate() {
         let b = &arms[(i + 1) % arms.len()];
         let (kerb_a, kerb_b) = (a.kerb(true), b.kerb(false));
@@ -122,7 +122,7 @@ fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners
         let (meet, way_a) = curve::at(&kerb_a, at_a);
         let (_, way_b) = curve::at(&kerb_b, at_b);
         let half = way_a.angle_to(way_b).abs() / 2.0;
-        let room = |seen: &Seen<'_>, at: f64| (seen.length_m * CORNER_SHARE - at).clamp(0.0, CORNER_M);
+        let room = |seen: &JunctionArm<'_>, at: f64| (seen.length_m * CORNER_SHARE - at).clamp(0.0, CORNER_M);
         let reach = (corner_m / half.tan().max(0.05))
             .min(room(a, at_a))
             .min(room(b, at_b));
@@ -153,7 +153,7 @@ fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners
 }
 
 /// Makes the markings of an arm begin beyond a point beside it, on its left or right, looking outward.
-pub(super) fn set_back(out: &mut Corners, seen: &Seen<'_>, left: bool, beside_m: DVec2) {
+pub(super) fn set_back(out: &mut JunctionGeometry, seen: &JunctionArm<'_>, left: bool, beside_m: DVec2) {
     let along = curve::project(&seen.out_m, beside_m).map_or(0.0, |p| p.0);
     let reach = (along + CLEAR_M).min(seen.length_m * 0.5);
     let arm = seen.arm;

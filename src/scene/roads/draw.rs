@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use super::area::alongside;
-use super::corner::{Corners, corners};
+use super::corner::{JunctionGeometry, corners};
 use super::{Arm, LaneKind, NodeId, NodeKind, Road, RoadId, RoadLane, RoadNetwork, RoadNode, curve};
 use crate::{BevLayer, BevLayout, Extent, Polyline, PolylineKind, raster};
 
@@ -22,11 +22,11 @@ pub const LAYERS: [BevLayer; 7] = [
 
 /// The drawing of a network, without anything else.
 #[derive(Clone, Debug)]
-pub struct Drawn {
+pub struct RoadDrawing {
     /// Layers over the map, on flat ground; no lines.
     pub layout: BevLayout,
     /// Lines by their owner.
-    pub owners: BTreeMap<Owner, Vec<Polyline>>,
+    pub owners: BTreeMap<RoadElement, Vec<Polyline>>,
 }
 
 /// A node at which roads meet, with everything that its corners depend on.
@@ -42,7 +42,7 @@ pub struct Junction {
 
 /// Owner of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Owner {
+pub enum RoadElement {
     /// A road.
     Road(RoadId),
     /// A roundabout.
@@ -51,7 +51,7 @@ pub enum Owner {
 
 /// Surface of a cell, in the order in which one covers another.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Surface {
+enum CellSurface {
     Nothing,
     Walk,
     Park,
@@ -61,11 +61,11 @@ enum Surface {
 impl RoadNetwork {
     /// The drawing of the network over a map. Cells: road over parking over walkway. Lines: lane middles, dividers up
     /// to the junctions, stop lines and crossings.
-    pub fn draw(&self, extent: Extent) -> Drawn {
+    pub fn draw(&self, extent: Extent) -> RoadDrawing {
         let lines = self.lines();
         let corners = corners(self, &lines);
-        let mut surface = vec![Surface::Nothing; extent.columns()];
-        let mut put = |[x, y]: [usize; 2], what: Surface| {
+        let mut surface = vec![CellSurface::Nothing; extent.columns()];
+        let mut put = |[x, y]: [usize; 2], what: CellSurface| {
             let at = &mut surface[extent.index(x, y)];
             *at = what.max(*at);
         };
@@ -82,23 +82,23 @@ impl RoadNetwork {
             }
         }
         for (line, walk_m) in &corners.walks {
-            raster::line_cells(extent, line, *walk_m, |x, y| put([x, y], Surface::Walk));
+            raster::line_cells(extent, line, *walk_m, |x, y| put([x, y], CellSurface::Walk));
         }
         for outline in &corners.paved {
-            raster::polygon_cells(extent, outline, |x, y| put([x, y], Surface::Road));
+            raster::polygon_cells(extent, outline, |x, y| put([x, y], CellSurface::Road));
         }
         for (center, radius_m) in &corners.islands {
             raster::disc_cells(extent, *center, *radius_m, |x, y| {
-                surface[extent.index(x, y)] = Surface::Nothing;
+                surface[extent.index(x, y)] = CellSurface::Nothing;
             });
         }
         let mut layout = BevLayout::over(extent);
         for ([x, y], what) in extent.all_columns().zip(surface) {
             let layer = match what {
-                Surface::Nothing => continue,
-                Surface::Walk => BevLayer::Walkway,
-                Surface::Park => BevLayer::CarparkArea,
-                Surface::Road => BevLayer::DrivableArea,
+                CellSurface::Nothing => continue,
+                CellSurface::Walk => BevLayer::Walkway,
+                CellSurface::Park => BevLayer::CarparkArea,
+                CellSurface::Road => BevLayer::DrivableArea,
             };
             layout.set(layer, x, y, true);
         }
@@ -106,26 +106,26 @@ impl RoadNetwork {
         for line in owners.values().flatten() {
             raster::draw_polyline(&mut layout, line);
         }
-        Drawn { layout, owners }
+        RoadDrawing { layout, owners }
     }
 
     /// All of its roads and roundabouts.
-    pub fn owners(&self) -> Vec<Owner> {
+    pub fn owners(&self) -> Vec<RoadElement> {
         let rings = self
             .nodes
             .iter()
             .filter(|n| matches!(n.kind, NodeKind::Roundabout { .. }));
-        let roads = self.roads.iter().map(|r| Owner::Road(r.id));
-        roads.chain(rings.map(|n| Owner::Node(n.id))).collect()
+        let roads = self.roads.iter().map(|r| RoadElement::Road(r.id));
+        roads.chain(rings.map(|n| RoadElement::Node(n.id))).collect()
     }
 
     /// The columns that roads and roundabouts cover, without walkways, and a rim of `rim_m` around them.
-    pub fn surface_of(&self, extent: Extent, owners: &[Owner], rim_m: f64) -> Vec<bool> {
+    pub fn surface_of(&self, extent: Extent, owners: &[RoadElement], rim_m: f64) -> Vec<bool> {
         let mut out = vec![false; extent.columns()];
         let lines = self.lines();
         for owner in owners {
             match owner {
-                Owner::Road(id) => {
+                RoadElement::Road(id) => {
                     let (Some(road), Some(line)) = (self.road(*id), lines.get(id)) else {
                         continue;
                     };
@@ -135,7 +135,7 @@ impl RoadNetwork {
                         out[extent.index(x, y)] |= near.left_m <= kerbs[0] && -near.left_m <= kerbs[1];
                     }
                 }
-                Owner::Node(id) => {
+                RoadElement::Node(id) => {
                     let Some(node) = self.node(*id) else { continue };
                     if let NodeKind::Roundabout { island_m, ring_m } = node.kind {
                         let radius_m = island_m + ring_m + rim_m;
@@ -185,12 +185,12 @@ impl RoadNetwork {
     fn marks(
         &self,
         lines: &BTreeMap<RoadId, Vec<DVec2>>,
-        corners: &Corners,
-    ) -> BTreeMap<Owner, Vec<Polyline>> {
-        let mut out: BTreeMap<Owner, Vec<Polyline>> = BTreeMap::new();
+        corners: &JunctionGeometry,
+    ) -> BTreeMap<RoadElement, Vec<Polyline>> {
+        let mut out: BTreeMap<RoadElement, Vec<Polyline>> = BTreeMap::new();
         for road in &self.roads {
             out.insert(
-                Owner::Road(road.id),
+                RoadElement::Road(road.id),
                 self.marks_of(road, &lines[&road.id], corners),
             );
         }
@@ -199,12 +199,12 @@ impl RoadNetwork {
                 kind: PolylineKind::LaneCenter,
                 points_m: points_m.clone(),
             };
-            out.entry(Owner::Node(*node)).or_default().push(line);
+            out.entry(RoadElement::Node(*node)).or_default().push(line);
         }
         out
     }
 
-    fn marks_of(&self, road: &Road, line: &[DVec2], corners: &Corners) -> Vec<Polyline> {
+    fn marks_of(&self, road: &Road, line: &[DVec2], corners: &JunctionGeometry) -> Vec<Polyline> {
         let mut out = Vec::new();
         let mut push = |kind, points_m: Vec<DVec2>| {
             if points_m.len() > 1 {
@@ -263,7 +263,7 @@ impl RoadNetwork {
     }
 
     /// The part of a road along which its lanes run: up to its nodes, but not into roundabouts.
-    fn lane_part(&self, road: &Road, corners: &Corners, length_m: f64) -> [f64; 2] {
+    fn lane_part(&self, road: &Road, corners: &JunctionGeometry, length_m: f64) -> [f64; 2] {
         let ring = |end: usize| {
             let node = self.node(road.ends[end]);
             node.is_some_and(|n| matches!(n.kind, NodeKind::Roundabout { .. }))
@@ -277,7 +277,7 @@ impl RoadNetwork {
 }
 
 /// The part of a road outside of its junctions, from and to, m.
-fn free_part(road: &Road, corners: &Corners, length_m: f64) -> [f64; 2] {
+fn free_part(road: &Road, corners: &JunctionGeometry, length_m: f64) -> [f64; 2] {
     let back = |end: usize| corners.setback_m.get(&(road.id, end)).copied().unwrap_or(0.0);
     [back(0), length_m - back(1)]
 }
@@ -294,13 +294,13 @@ fn beyond_corners(at_m: f64, reach_m: f64, free_m: [f64; 2]) -> f64 {
 }
 
 /// The part of a road outside of its junctions on one side, from and to, m.
-fn free_side(road: &Road, right: bool, corners: &Corners, length_m: f64) -> [f64; 2] {
+fn free_side(road: &Road, right: bool, corners: &JunctionGeometry, length_m: f64) -> [f64; 2] {
     let back = |end: usize| corners.side_m.get(&(road.id, end, right)).copied().unwrap_or(0.0);
     [back(0), length_m - back(1)]
 }
 
 /// The surface at `left_m` to the left of a road's line; `None` where the road has none.
-fn surface_at(road: &Road, left_m: f64, at_junction: bool) -> Option<Surface> {
+fn surface_at(road: &Road, left_m: f64, at_junction: bool) -> Option<CellSurface> {
     let right = left_m < 0.0;
     let mut edge = 0.0;
     let lane = road.side(right).iter().find(|lane| {
@@ -309,9 +309,9 @@ fn surface_at(road: &Road, left_m: f64, at_junction: bool) -> Option<Surface> {
     });
     match lane?.kind {
         LaneKind::Verge => None,
-        LaneKind::Walk => Some(Surface::Walk),
-        LaneKind::Parking if !at_junction => Some(Surface::Park),
-        _ => Some(Surface::Road),
+        LaneKind::Walk => Some(CellSurface::Walk),
+        LaneKind::Parking if !at_junction => Some(CellSurface::Park),
+        _ => Some(CellSurface::Road),
     }
 }
 

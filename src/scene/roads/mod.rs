@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::SceneBox;
 
 pub use area::Alongside;
-pub use draw::{Drawn, Junction, LAYERS, Owner};
+pub use draw::{Junction, LAYERS, RoadDrawing, RoadElement};
 pub use network::{Arm, RoadNetwork};
 
 /// Number of a road in its network.

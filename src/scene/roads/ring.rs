@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::corner::{Corners, Seen, set_back};
+use super::corner::{JunctionArm, JunctionGeometry, set_back};
 use super::{RoadNode, curve};
 
 /// Distance before the ring at which an arm begins to widen, m.
@@ -15,7 +15,7 @@ const JOIN_RAD: f64 = 0.5;
 const STEP_RAD: f64 = 0.05;
 
 /// Draws the ring of a node with its arms; `size_m` holds the radius of the island and the width of the ring.
-pub(super) fn draw(node: &RoadNode, arms: &[Seen<'_>], size_m: [f64; 2], out: &mut Corners) {
+pub(super) fn draw(node: &RoadNode, arms: &[JunctionArm<'_>], size_m: [f64; 2], out: &mut JunctionGeometry) {
     let ([island_m, ring_m], center) = (size_m, node.at_m);
     let (outer_m, middle_m) = (island_m + ring_m, island_m + ring_m / 2.0);
     let on_ring = |angle: f64, radius_m: f64| center + DVec2::from_angle(angle) * radius_m;
@@ -86,13 +86,13 @@ pub(super) fn draw(node: &RoadNode, arms: &[Seen<'_>], size_m: [f64; 2], out: &m
 }
 
 /// The direction in which an arm leaves the ring, rad.
-fn heading(seen: &Seen<'_>, center: DVec2, outer_m: f64) -> Option<f64> {
+fn heading(seen: &JunctionArm<'_>, center: DVec2, outer_m: f64) -> Option<f64> {
     let beyond = seen.out_m.iter().find(|p| p.distance(center) >= outer_m)?;
     Some((*beyond - center).to_angle())
 }
 
 /// The smallest angle between neighbouring arms, rad.
-fn neighbours(arms: &[Seen<'_>], center: DVec2, outer_m: f64) -> f64 {
+fn neighbours(arms: &[JunctionArm<'_>], center: DVec2, outer_m: f64) -> f64 {
     let mut all: Vec<f64> = arms.iter().filter_map(|a| heading(a, center, outer_m)).collect();
     all.sort_by(f64::total_cmp);
     let Some(first) = all.first().copied() else {
@@ -103,7 +103,7 @@ fn neighbours(arms: &[Seen<'_>], center: DVec2, outer_m: f64) -> f64 {
 }
 
 /// Widens the kerb of an arm into that of the ring.
-fn flare(seen: &Seen<'_>, left: bool, center: DVec2, outer_m: f64, out: &mut Corners) {
+fn flare(seen: &JunctionArm<'_>, left: bool, center: DVec2, outer_m: f64, out: &mut JunctionGeometry) {
     let kerb = seen.kerb(left);
     let Some(last) = kerb
         .array_windows::<2>()
@@ -137,7 +137,7 @@ fn flare(seen: &Seen<'_>, left: bool, center: DVec2, outer_m: f64, out: &mut Cor
 }
 
 /// Middles of the driven lanes of an arm that lead to the node, or away from it; from the node outward.
-fn lanes(seen: &Seen<'_>, inward: bool) -> Vec<Vec<DVec2>> {
+fn lanes(seen: &JunctionArm<'_>, inward: bool) -> Vec<Vec<DVec2>> {
     // Lanes on the right of the line are driven along it: outward at its beginning.
     let right = (seen.arm.end == 0) != inward;
     let sign = if seen.side(true) == right { 1.0 } else { -1.0 };

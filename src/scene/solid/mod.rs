@@ -14,7 +14,7 @@ use super::road_map::inside;
 
 /// Geometry of a solid.
 #[derive(Clone, Debug)]
-pub enum Shape {
+pub enum SolidShape {
     /// An upright box whose sides may lean in: half extents at the bottom, and at the top
     /// (`top` holds half length and half width there).
     Hull {
@@ -52,7 +52,7 @@ pub enum Shape {
 #[derive(Clone, Debug)]
 pub struct Solid {
     /// Geometry.
-    pub shape: Shape,
+    pub shape: SolidShape,
     /// Its middle in the ego frame, m.
     pub center: DVec3,
     /// Label of its surface.
@@ -73,7 +73,7 @@ impl Solid {
     pub fn tapered(class: Class, base: DVec3, size: DVec3, taper: DVec2, heading: DVec2) -> Self {
         let half = size / 2.0;
         let (center, top) = (base + DVec3::Z * half.z, half.truncate() * taper);
-        let shape = Shape::Hull { half, top, heading };
+        let shape = SolidShape::Hull { half, top, heading };
         Self {
             shape,
             center,
@@ -85,7 +85,7 @@ impl Solid {
     /// A cylinder or cone standing on `base`.
     pub fn frustum(class: Class, base: DVec3, height: f64, bottom: f64, top: f64) -> Self {
         let half_height = height / 2.0;
-        let shape = Shape::Frustum {
+        let shape = SolidShape::Frustum {
             bottom,
             top,
             half_height,
@@ -101,7 +101,7 @@ impl Solid {
     /// An ellipsoid around `center`.
     pub fn ellipsoid(class: Class, center: DVec3, radii: DVec3, porosity: f64) -> Self {
         Self {
-            shape: Shape::Ellipsoid { radii },
+            shape: SolidShape::Ellipsoid { radii },
             center,
             class,
             porosity,
@@ -122,7 +122,7 @@ impl Solid {
         }
         let half = ((max - min) / 2.0).extend((top_m - bottom_m) / 2.0);
         Self {
-            shape: Shape::Prism {
+            shape: SolidShape::Prism {
                 outline: outline.into(),
                 half,
             },
@@ -136,17 +136,17 @@ impl Solid {
     fn at_least(&self, half_m: f64) -> Self {
         let mut out = self.clone();
         match &mut out.shape {
-            Shape::Hull { half, top, .. } => {
+            SolidShape::Hull { half, top, .. } => {
                 let thin = half.truncate().cmplt(DVec2::splat(half_m));
                 *top = DVec2::select(thin, top.max(DVec2::splat(half_m)), *top);
                 let floor = DVec2::splat(half_m);
                 *half = half.truncate().max(floor).extend(half.z);
             }
-            Shape::Frustum { bottom, top, .. } => {
+            SolidShape::Frustum { bottom, top, .. } => {
                 *bottom = bottom.max(half_m);
                 *top = if *top > 0.02 { top.max(half_m) } else { *top };
             }
-            Shape::Ellipsoid { .. } | Shape::Prism { .. } => {}
+            SolidShape::Ellipsoid { .. } | SolidShape::Prism { .. } => {}
         }
         out
     }
@@ -154,13 +154,13 @@ impl Solid {
     /// Half extents of the axis-aligned box around it, m.
     pub fn reach(&self) -> DVec3 {
         match &self.shape {
-            Shape::Prism { half, .. } => *half,
-            &Shape::Hull { half, top, heading } => {
+            SolidShape::Prism { half, .. } => *half,
+            &SolidShape::Hull { half, top, heading } => {
                 let wide = half.truncate().max(top);
                 let h = heading.abs();
                 DVec3::new(wide.x * h.x + wide.y * h.y, wide.x * h.y + wide.y * h.x, half.z)
             }
-            &Shape::Frustum {
+            &SolidShape::Frustum {
                 bottom,
                 top,
                 half_height,
@@ -168,7 +168,7 @@ impl Solid {
                 let r = bottom.max(top);
                 DVec3::new(r, r, half_height)
             }
-            Shape::Ellipsoid { radii } => *radii,
+            SolidShape::Ellipsoid { radii } => *radii,
         }
     }
 
@@ -185,9 +185,9 @@ impl Solid {
     fn lump(&self, p: DVec3) -> u64 {
         let q = ((p - self.center) / LUMP_M).floor();
         let size = match &self.shape {
-            Shape::Hull { half, .. } | Shape::Prism { half, .. } => half.x,
-            Shape::Frustum { bottom, .. } => *bottom,
-            Shape::Ellipsoid { radii } => radii.x,
+            SolidShape::Hull { half, .. } | SolidShape::Prism { half, .. } => half.x,
+            SolidShape::Frustum { bottom, .. } => *bottom,
+            SolidShape::Ellipsoid { radii } => radii.x,
         };
         hash(q.x as i64 as u64 ^ hash(q.y as i64 as u64 ^ hash(q.z as i64 as u64 ^ size.to_bits())))
     }
@@ -202,7 +202,7 @@ impl Solid {
 
     /// True if all its levels look the same, so that a point is inside if its height and its place on the ground are.
     fn is_upright(&self) -> bool {
-        matches!(self.shape, Shape::Prism { .. }) && self.porosity <= 0.0
+        matches!(self.shape, SolidShape::Prism { .. }) && self.porosity <= 0.0
     }
 
     /// True if the height `z_m` is between its bottom and its top.
@@ -213,17 +213,17 @@ impl Solid {
     /// True if the point is in the solid and not in one of its pores.
     pub fn contains(&self, p: DVec3) -> bool {
         let inside = match &self.shape {
-            Shape::Prism { outline, half } => {
+            SolidShape::Prism { outline, half } => {
                 let q = p - self.center;
                 q.abs().cmple(*half).all() && inside(outline, q.truncate())
             }
-            &Shape::Hull { half, top, heading } => {
+            &SolidShape::Hull { half, top, heading } => {
                 let q = self.local(p, heading);
                 let t = (q.z + half.z) / (2.0 * half.z).max(1e-9);
                 let wide = half.truncate().lerp(top, t);
                 q.z.abs() <= half.z && q.x.abs() <= wide.x && q.y.abs() <= wide.y
             }
-            &Shape::Frustum {
+            &SolidShape::Frustum {
                 bottom,
                 top,
                 half_height,
@@ -233,7 +233,7 @@ impl Solid {
                 let r = bottom + (top - bottom) * t;
                 q.z.abs() <= half_height && q.truncate().length_squared() <= r * r
             }
-            &Shape::Ellipsoid { radii } => ((p - self.center) / radii).length_squared() <= 1.0,
+            &SolidShape::Ellipsoid { radii } => ((p - self.center) / radii).length_squared() <= 1.0,
         };
         inside && !self.is_pore(p)
     }
@@ -260,8 +260,8 @@ impl Solid {
             )
         };
         match &self.shape {
-            Shape::Prism { outline, half } => prism::normal_at(outline, *half, p - self.center),
-            &Shape::Hull { half, top, heading } => {
+            SolidShape::Prism { outline, half } => prism::normal_at(outline, *half, p - self.center),
+            &SolidShape::Hull { half, top, heading } => {
                 let q = self.local(p, heading);
                 let mut best = (half.z - q.z.abs(), DVec3::Z * q.z.signum());
                 for axis in 0..2 {
@@ -276,7 +276,7 @@ impl Solid {
                 }
                 in_world(best.1, heading).normalize_or(DVec3::Z)
             }
-            &Shape::Frustum {
+            &SolidShape::Frustum {
                 bottom,
                 top,
                 half_height,
@@ -290,7 +290,7 @@ impl Solid {
                 let out = q.truncate().normalize_or(DVec2::X);
                 out.extend(-slope).normalize_or(DVec3::Z)
             }
-            &Shape::Ellipsoid { radii } => ((p - self.center) / (radii * radii)).normalize_or(DVec3::Z),
+            &SolidShape::Ellipsoid { radii } => ((p - self.center) / (radii * radii)).normalize_or(DVec3::Z),
         }
     }
 
@@ -298,18 +298,18 @@ impl Solid {
     /// inside a solid pass out of it unseen. `dir` is a unit vector.
     pub fn enter(&self, origin: DVec3, dir: DVec3, limit: f64) -> Option<f64> {
         let (near, far) = match &self.shape {
-            Shape::Prism { outline, half } => prism::clip(outline, *half, origin - self.center, dir)?,
-            &Shape::Hull { half, top, heading } => {
+            SolidShape::Prism { outline, half } => prism::clip(outline, *half, origin - self.center, dir)?,
+            &SolidShape::Hull { half, top, heading } => {
                 let (o, r2) = (self.local(origin, heading), dir.truncate());
                 let d = DVec3::new(r2.dot(heading), -r2.perp_dot(heading), dir.z);
                 clip_hull(o, d, half, top)?
             }
-            &Shape::Frustum {
+            &SolidShape::Frustum {
                 bottom,
                 top,
                 half_height,
             } => clip_frustum(origin - self.center, dir, bottom, top, half_height)?,
-            &Shape::Ellipsoid { radii } => {
+            &SolidShape::Ellipsoid { radii } => {
                 let (o, d) = ((origin - self.center) / radii, dir / radii);
                 roots(d.length_squared(), o.dot(d), o.length_squared() - 1.0)?
             }

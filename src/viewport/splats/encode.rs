@@ -5,7 +5,7 @@ use super::pipelines::{DIGIT_BITS, GROUP, Pipelines, SORT_BLOCK};
 
 /// Lists and intermediate results of a batch; none of them outlives it.
 #[derive(Debug)]
-pub(super) struct Work {
+pub(super) struct SplatWorkspace {
     pub settings: PassSettings,
     pub ledger: Growing,
     items: [Growing; 2],
@@ -16,7 +16,7 @@ pub(super) struct Work {
 
 /// How large a batch is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shape {
+pub(super) struct SplatBatchSize {
     pub gaussians: u32,
     pub views: u32,
     pub tiles: [u32; 2],
@@ -41,7 +41,7 @@ pub(super) const PAIR_BYTES: u64 = 8;
 /// A splat in `shaders/shared/splat.wgsl`.
 pub(super) const SPLAT_BYTES: u64 = 32;
 
-impl Shape {
+impl SplatBatchSize {
     fn items(&self) -> u32 {
         self.gaussians * self.views
     }
@@ -51,11 +51,11 @@ impl Shape {
     }
 }
 
-impl Work {
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Work {
+impl SplatWorkspace {
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> SplatWorkspace {
         let storage = wgpu::BufferUsages::STORAGE;
         let (from, to) = (wgpu::BufferUsages::COPY_SRC, wgpu::BufferUsages::COPY_DST);
-        Work {
+        SplatWorkspace {
             settings: PassSettings::new(device, queue),
             ledger: Growing::new("splat ledger", storage | from | to),
             items: [(); 2].map(|()| Growing::new("splat items", storage | from | to)),
@@ -66,7 +66,7 @@ impl Work {
     }
 
     pub fn clear(&mut self) {
-        let Work {
+        let SplatWorkspace {
             ledger,
             items,
             pairs,
@@ -85,7 +85,7 @@ impl Work {
         encoder: &mut wgpu::CommandEncoder,
         pipelines: &Pipelines,
         data: Data<'_>,
-        shape: Shape,
+        shape: SplatBatchSize,
     ) {
         let (items, tiles) = (u64::from(shape.items()), u64::from(shape.all_tiles()));
         let room = u64::from(shape.room);

@@ -18,7 +18,7 @@ pub use error::SplatError;
 pub use layout::SPLAT_UNIFORM_BYTES;
 
 use buffers::Growing;
-use encode::{Data, LEDGER_BYTES, PAIR_BYTES, SPLAT_BYTES, Shape, Work};
+use encode::{Data, LEDGER_BYTES, PAIR_BYTES, SPLAT_BYTES, SplatBatchSize, SplatWorkspace};
 use layout::{GpuBatch, GpuGaussian, MAX_VIEWS};
 use pipelines::{GROUP, Pipelines, checked};
 use scene::splats::{Gaussian, RawMaps, SplatOptions};
@@ -35,7 +35,7 @@ const MAX_SIDE: u32 = 16384;
 
 /// Maps that are computed, in the order in which they lie in the device's buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Planes {
+enum SplatMapSet {
     /// Coverage, expected depth, median depth, label.
     Maps = 4,
     /// Then margin and the light that was left.
@@ -49,12 +49,12 @@ pub struct SplatRenderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
     pipelines: Pipelines,
-    work: Work,
+    work: SplatWorkspace,
     batch: Growing,
     gaussians: Growing,
     count: u32,
     room: u32,
-    drawn: Vec<Drawn>,
+    drawn: Vec<SplatBatch>,
     /// Maps of each batch of the last drawing, and where they are read from.
     maps: Vec<Growing>,
     staging: Growing,
@@ -62,7 +62,7 @@ pub struct SplatRenderer {
 
 /// One batch of the last drawing.
 #[derive(Debug)]
-struct Drawn {
+struct SplatBatch {
     cameras: Range<usize>,
     bytes_per_camera: u64,
 }
@@ -74,7 +74,7 @@ impl SplatRenderer {
         use wgpu::BufferUsages as U;
         Ok(SplatRenderer {
             pipelines,
-            work: checked(device, || Work::new(device, queue))?,
+            work: checked(device, || SplatWorkspace::new(device, queue))?,
             batch: Growing::new("splat batch", U::UNIFORM | U::COPY_DST),
             gaussians: Growing::new("splat gaussians", U::STORAGE | U::COPY_DST),
             count: 0,
@@ -119,7 +119,7 @@ impl SplatRenderer {
         options: &SplatOptions,
     ) -> Result<(), SplatError> {
         let nobody: Option<fn(usize, &[u32])> = None;
-        self.draw_and(cameras, size_px, options, Planes::Maps, nobody)
+        self.draw_and(cameras, size_px, options, SplatMapSet::Maps, nobody)
     }
 
     /// Draws the maps of a rig's cameras, in the rig's order, and reads them back.
@@ -129,7 +129,7 @@ impl SplatRenderer {
         [width, height]: [u32; 2],
         options: &SplatOptions,
     ) -> Result<Vec<CameraMaps>, SplatError> {
-        let raw = self.read(&rig.cameras, [width, height], options, Planes::Maps)?;
+        let raw = self.read(&rig.cameras, [width, height], options, SplatMapSet::Maps)?;
         let named = raw.into_iter().zip(&rig.cameras);
         Ok(named.map(|(m, c)| m.into_camera_maps(&c.name, options)).collect())
     }
@@ -141,7 +141,7 @@ impl SplatRenderer {
         size_px: [u32; 2],
         options: &SplatOptions,
     ) -> Result<Vec<RawMaps>, SplatError> {
-        self.read(cameras, size_px, options, Planes::All)
+        self.read(cameras, size_px, options, SplatMapSet::All)
     }
 
     /// Where the last drawing's maps of a camera begin on the device: buffer and byte. Four planes
@@ -159,7 +159,7 @@ impl SplatRenderer {
         cameras: &[Camera],
         [width, height]: [u32; 2],
         options: &SplatOptions,
-        planes: Planes,
+        planes: SplatMapSet,
     ) -> Result<Vec<RawMaps>, SplatError> {
         let (w, h) = (width as usize, height as usize);
         let mut out: Vec<RawMaps> = Vec::with_capacity(cameras.len());
@@ -177,7 +177,7 @@ impl SplatRenderer {
         cameras: &[Camera],
         size_px: [u32; 2],
         options: &SplatOptions,
-        planes: Planes,
+        planes: SplatMapSet,
         mut each: Option<impl FnMut(usize, &[u32])>,
     ) -> Result<(), SplatError> {
         self.drawn.clear();
@@ -208,14 +208,14 @@ impl SplatRenderer {
                 planes as u32,
                 options,
             );
-            let shape = Shape {
+            let shape = SplatBatchSize {
                 gaussians: self.count,
                 views: range.len() as u32,
                 tiles,
                 room: self.room,
                 key_bits: layout::key_bits(options),
             };
-            let drawn = Drawn {
+            let drawn = SplatBatch {
                 cameras: range.clone(),
                 bytes_per_camera,
             };
@@ -242,8 +242,8 @@ impl SplatRenderer {
     fn draw_batch(
         &mut self,
         uniforms: &GpuBatch,
-        shape: Shape,
-        drawn: Drawn,
+        shape: SplatBatchSize,
+        drawn: SplatBatch,
         each: &mut Option<impl FnMut(usize, &[u32])>,
     ) -> Result<u32, SplatError> {
         let Self {

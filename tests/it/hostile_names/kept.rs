@@ -62,7 +62,7 @@ fn names_of_versions_move_no_cursor() {
         starred: true,
         loom: packed.into(),
     };
-    scene.kept = std::sync::Arc::new(scene::Kept {
+    scene.kept = std::sync::Arc::new(scene::ProjectHistory {
         versions: vec![version],
         typed: Vec::new(),
     });

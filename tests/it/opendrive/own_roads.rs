@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use formats::opendrive::geometry::Shape;
+use formats::opendrive::geometry::CurveShape;
 use formats::opendrive::lanes::MarkStyle;
 use formats::opendrive::objects::ObjectKind;
 use glam::DVec2;
@@ -189,12 +189,12 @@ fn every_kind_of_geometry_joins_and_is_paved() {
         .records()
         .iter()
         .map(|g| match g.shape() {
-            Shape::Line => "line",
-            Shape::Arc { .. } => "arc",
-            Shape::Spiral { .. } => "spiral",
-            Shape::Poly3 { .. } => "poly3",
-            Shape::ParamPoly3 { normalized: true, .. } => "normalized",
-            Shape::ParamPoly3 { .. } => "arcLength",
+            CurveShape::Line => "line",
+            CurveShape::Arc { .. } => "arc",
+            CurveShape::Spiral { .. } => "spiral",
+            CurveShape::Poly3 { .. } => "poly3",
+            CurveShape::ParamPoly3 { normalized: true, .. } => "normalized",
+            CurveShape::ParamPoly3 { .. } => "arcLength",
         })
         .collect();
     assert_eq!(

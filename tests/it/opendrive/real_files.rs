@@ -1,8 +1,8 @@
 //! Every real file at hand: counts as measured in the data folder's own table, and ground under the suggested place.
 
-use formats::opendrive::geometry::Shape;
+use formats::opendrive::geometry::CurveShape;
 use formats::opendrive::objects::{ObjectKind, RoadObject};
-use formats::opendrive::standing::Standing;
+use formats::opendrive::standing::RoadsideObject;
 use formats::opendrive::{self, RoadNetwork};
 use glam::DVec2;
 use scene::BevLayer;
@@ -46,7 +46,7 @@ const TABLE: [(&str, [usize; 11], f64); 15] = [
 
 fn counts(network: &RoadNetwork) -> [usize; 11] {
     let records = || network.roads.iter().flat_map(|r| r.reference.records());
-    let of_kind = |kind: fn(&Shape) -> bool| records().filter(|g| kind(g.shape())).count();
+    let of_kind = |kind: fn(&CurveShape) -> bool| records().filter(|g| kind(g.shape())).count();
     let sections = || network.roads.iter().flat_map(|r| &r.sections);
     let skipped = |prefix: &str| -> usize {
         network
@@ -60,7 +60,7 @@ fn counts(network: &RoadNetwork) -> [usize; 11] {
     let is_signal = |o: &&RoadObject| {
         matches!(
             o.kind,
-            ObjectKind::StopLine { .. } | ObjectKind::Standing(Standing::Signal(_))
+            ObjectKind::StopLine { .. } | ObjectKind::Standing(RoadsideObject::Signal(_))
         )
     };
     let placed = |signal: bool| -> usize {
@@ -71,10 +71,10 @@ fn counts(network: &RoadNetwork) -> [usize; 11] {
         network.roads.len(),
         network.roads.iter().filter(|r| r.junction.is_some()).count(),
         network.junctions.len(),
-        of_kind(|s| matches!(s, Shape::Line)),
-        of_kind(|s| matches!(s, Shape::Arc { .. })),
-        of_kind(|s| matches!(s, Shape::Spiral { .. })),
-        of_kind(|s| matches!(s, Shape::ParamPoly3 { .. })),
+        of_kind(|s| matches!(s, CurveShape::Line)),
+        of_kind(|s| matches!(s, CurveShape::Arc { .. })),
+        of_kind(|s| matches!(s, CurveShape::Spiral { .. })),
+        of_kind(|s| matches!(s, CurveShape::ParamPoly3 { .. })),
         skipped("signal") + placed(true),
         skipped("object ") + placed(false),
         sections().count(),

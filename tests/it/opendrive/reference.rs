@@ -1,7 +1,7 @@
 //! Geometry against `tests/reference/opendrive_points.json`: mpmath 1.3.0 quadrature at 40 digits,
 //! cross-checked with SciPy 1.17.1 (see its `meta`, where the tolerances below come from).
 
-use formats::opendrive::geometry::{Geometry, Shape};
+use formats::opendrive::geometry::{CurveShape, Geometry};
 use glam::DVec2;
 use serde_json::Value;
 
@@ -11,17 +11,17 @@ fn number(curve: &Value, key: &str) -> f64 {
         .unwrap_or_else(|| panic!("{key} of {}", curve["name"]))
 }
 
-fn shape(curve: &Value) -> Shape {
+fn shape(curve: &Value) -> CurveShape {
     match curve["kind"].as_str() {
-        Some("line") => Shape::Line,
-        Some("arc") => Shape::Arc {
+        Some("line") => CurveShape::Line,
+        Some("arc") => CurveShape::Arc {
             curvature_per_m: number(curve, "curvature"),
         },
-        Some("spiral") => Shape::Spiral {
+        Some("spiral") => CurveShape::Spiral {
             start_per_m: number(curve, "curvStart"),
             end_per_m: number(curve, "curvEnd"),
         },
-        Some("paramPoly3") => Shape::ParamPoly3 {
+        Some("paramPoly3") => CurveShape::ParamPoly3 {
             u: ["aU", "bU", "cU", "dU"].map(|k| number(curve, k)),
             v: ["aV", "bV", "cV", "dV"].map(|k| number(curve, k)),
             normalized: curve["pRange"] == "normalized",

@@ -11,7 +11,7 @@ use glam::DVec3;
 use job::pipeline::OccPipeline;
 use job::refine::decode_refined;
 use job::{GenParams, Job, JobCtx, Pipeline, RegionMode};
-use nets::lidar::field::Ray;
+use nets::lidar::field::LidarRay;
 use nets::lidar::{LearnedRay, LidarNet};
 use nets::refiner::{Refiner, Rough};
 use nets::scenery::{self, SceneryCondition, SceneryNet};
@@ -487,7 +487,7 @@ fn lidar_agrees_with_python() {
     let samples = t.len() / (d.len() / 3);
     let (mut sdf, mut met) = (Vec::new(), Vec::new());
     for (t, d) in t.chunks_exact(samples).zip(d.chunks_exact(3)) {
-        let ray = Ray {
+        let ray = LidarRay {
             origin: vector(&origin),
             direction: vector(d),
             range_m: [1.0, 100.0],

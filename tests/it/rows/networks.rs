@@ -2,8 +2,8 @@
 
 use nets::lidar::{drop_probability, neus};
 use nn::kernels::{argmax, gelu, likeliest, norm_rows, silu, softmax_rows};
-use nn::layers::{Head, View, matmul};
-use nn::packed_matrix::{PackedMatrix, Start};
+use nn::layers::{Head, MatrixView, matmul};
+use nn::packed_matrix::{InitialSum, PackedMatrix};
 use nn::weights::{WeightFile, WeightsError};
 use safetensors::{Dtype, tensor::TensorView};
 
@@ -207,14 +207,14 @@ fn row_17_products() {
             *v = (*v + 1.5) * [1e18, 1e-18, 1.0, 1e-40][i % 4];
         }
         let (mut ours, mut theirs) = (vec![f32::NAN; m * n], vec![f32::NAN; m * n]);
-        let panels = PackedMatrix::new(View::rows(&b, n), k, n);
-        panels.multiply(&a, k, [m, 0, k], Start::Zero, &mut ours, n);
+        let panels = PackedMatrix::new(MatrixView::rows(&b, n), k, n);
+        panels.multiply(&a, k, [m, 0, k], InitialSum::Zero, &mut ours, n);
         matmul(
             &mut theirs,
             n,
             false,
-            View::rows(&a, k),
-            View::rows(&b, n),
+            MatrixView::rows(&a, k),
+            MatrixView::rows(&b, n),
             [m, n, k],
         );
         for at in 0..m * n {

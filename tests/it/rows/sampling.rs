@@ -1,7 +1,7 @@
 //! Rows 5, 21 and 22: solvers against a plain program of their own, and the exact inversion.
 
 use diffusion::inversion::{Refinement, invert, round_trip_error};
-use diffusion::schedule::{Betas, Level, Schedule, Spacing};
+use diffusion::schedule::{Betas, NoiseLevel, Schedule, Spacing};
 use diffusion::solver::{Branch, Denoiser, Guidance, Prediction, Sampler, SolverError, SolverKind};
 use numeric::philox::{Stream, normal_field};
 
@@ -130,7 +130,7 @@ fn row_05_every_spacing_and_one_step() {
 }
 
 /// Levels even in log SNR between the noisiest and the cleanest training step of the linear schedule.
-fn even_in_log_snr(n: usize) -> Vec<Level> {
+fn even_in_log_snr(n: usize) -> Vec<NoiseLevel> {
     let schedule = Schedule::new(betas()[0], 1000, false).expect("valid");
     let log_ratio = |t: usize| (schedule.level(t).sigma / schedule.level(t).alpha).ln();
     let (first, last) = (log_ratio(999), log_ratio(0));
@@ -138,7 +138,7 @@ fn even_in_log_snr(n: usize) -> Vec<Level> {
         let wanted = first + (last - first) * i as f64 / n as f64;
         let near = |t: &usize| ((log_ratio(*t) - wanted).abs() * 1e12) as u64;
         let t = (0..1000).min_by_key(near).unwrap_or(0);
-        Level::from_log_alpha_bar(t as f64, -(2.0 * wanted).exp().ln_1p())
+        NoiseLevel::from_log_alpha_bar(t as f64, -(2.0 * wanted).exp().ln_1p())
     };
     (0..=n).map(level).collect()
 }

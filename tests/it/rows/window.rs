@@ -4,7 +4,7 @@ use app::live::{Advice, Live};
 use app::open;
 use app::recovery::{Recovery, ago};
 use editor::{Document, Edit};
-use job::{GenParams, Named};
+use job::{ChosenDensities, GenParams};
 use scene::{BoxId, Conditions};
 use sensors::appearance::{Appearance, Quality};
 use sensors::cloud::GaussianCloud;
@@ -48,7 +48,7 @@ fn row_61_sliders_and_sizes() {
             |p, v| p.strength = v,
             |p, v| p.named.vegetation = Some(v as f32),
             |p, v| {
-                p.named = Named {
+                p.named = ChosenDensities {
                     clutter: Some(v as f32),
                     ..p.named
                 }

@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable;
 
 use super::bench::Bench;
 use app::batch::marks::Marks;
-use app::batch::queue::State;
+use app::batch::queue::BatchState;
 
 impl Bench {
     pub fn type_into(&mut self, label: &str, text: &str) {
@@ -31,7 +31,7 @@ fn variants_are_made_marked_and_opened() {
     bench.click("Add to the queue");
     assert_eq!(bench.app().batches().items().len(), 1);
     bench.wait_until("the batch", |b| {
-        matches!(b.app().batches().items()[0].state, State::Done(_))
+        matches!(b.app().batches().items()[0].state, BatchState::Done(_))
     });
     bench.steps(4);
     for name in [

@@ -10,7 +10,7 @@ use editor::tools::beside;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
-use scene::background::{Building, Line, LineKind, Tree, TreeKind};
+use scene::background::{Building, LineKind, SceneryLine, Tree, TreeKind};
 use scene::{Background, Class, Form, ThingId, Window};
 
 use super::bench::Bench;
@@ -245,7 +245,7 @@ fn strokes_posts_corners_and_fields() {
     );
     // A wall drawn elsewhere, one corner of it pulled.
     let points_m = vec![DVec2::new(-20.0, -24.0), DVec2::new(-10.0, -24.0)];
-    let wall = Form::Line(Line::typical(LineKind::Wall, points_m));
+    let wall = Form::Line(SceneryLine::typical(LineKind::Wall, points_m));
     let ctx = bench.harness.ctx.clone();
     bench.app().execute(
         Command::Apply("Add wall", vec![Edit::AddThings { forms: vec![wall] }]),
@@ -364,7 +364,7 @@ fn things_are_put_in_rows_and_mirrored_with_boxes() {
     assert_eq!(bench.things_chosen(), [4, 5, 6, 7]);
     let at = |b: &Bench, id: u32| b.background().get(ThingId(id)).expect("there").form.middle_m();
     let step = at(&bench, 5) - at(&bench, 4);
-    assert_eq!(step, DVec2::new(editor::rows::Row::default().spacing_m, 0.0));
+    assert_eq!(step, DVec2::new(editor::rows::CopyRows::default().spacing_m, 0.0));
     bench.key(Modifiers::CTRL, Key::Z);
     assert_eq!(bench.background().len(), 3);
 

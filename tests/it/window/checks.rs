@@ -4,9 +4,9 @@ use app::command::{Command, FileCommand, RepairCommand, ViewCommand};
 use app::dock::Dock;
 use app::panes::id::PaneId;
 use app::settings::Settings;
-use app::shell::planning::Shown;
+use app::shell::planning::RepairPlanState;
 use editor::Edit;
-use editor::checks::{Counts, run_checks};
+use editor::checks::{SeverityCounts, run_checks};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use formats::loom;
@@ -170,13 +170,16 @@ fn crash(bench: &mut Bench) {
 
 fn errors(bench: &Bench) -> usize {
     let scene = bench.harness.state().document.scene().clone();
-    Counts::of(&run_checks(&scene, None)).errors
+    SeverityCounts::of(&run_checks(&scene, None)).errors
 }
 
 impl Bench {
     pub(super) fn planned(&mut self) {
         self.wait_until("the plan", |b| {
-            matches!(b.app().threads.planning.shown(), Some(Shown::Planned(_)))
+            matches!(
+                b.app().threads.planning.shown(),
+                Some(RepairPlanState::Planned(_))
+            )
         });
         self.steps(3);
     }
@@ -231,7 +234,7 @@ fn a_plan_is_made_beside_the_window_and_is_of_one_state() {
     // The command has returned, and the plan is still to come.
     assert!(matches!(
         bench.app().threads.planning.shown(),
-        Some(Shown::Planning(None))
+        Some(RepairPlanState::Planning(None))
     ));
     bench.planned();
     assert!(bench.shows("Move apart: "));

@@ -2,14 +2,14 @@
 
 use app::command::{Command, GenerationCommand};
 use app::compare::CompareMode;
-use app::scenery::Drawer;
+use app::scenery::SceneryMethod;
 use editor::Edit;
 use egui::Modifiers;
 use egui_kittest::kittest::Queryable;
 use job::RegionMode;
 use job::inpaint::InpaintMask;
 use scene::{Class, VoxelGrid, Window};
-use world::scenery::Setting;
+use world::scenery::RoadsideKind;
 
 use super::bench::{Bench, Do, PATIENCE};
 
@@ -170,7 +170,7 @@ fn scenery_is_regenerated_by_rules_everywhere_or_in_a_region() {
     let mut bench = Bench::new();
     bench.off();
     let before = bench.frame().occupancy.clone();
-    bench.app().state.tools.drawer = Drawer::Rules(Some(Setting::OldTown));
+    bench.app().state.tools.drawer = SceneryMethod::Rules(Some(RoadsideKind::OldTown));
     let ctx = bench.harness.ctx.clone();
     bench
         .app()
@@ -218,7 +218,7 @@ fn scenery_is_regenerated_by_rules_everywhere_or_in_a_region() {
 fn a_network_draws_scenery_while_the_window_goes_on() {
     let mut bench = Bench::new();
     bench.off();
-    bench.app().state.tools.drawer = Drawer::Network;
+    bench.app().state.tools.drawer = SceneryMethod::Network;
     let ctx = bench.harness.ctx.clone();
     bench
         .app()

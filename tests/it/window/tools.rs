@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use app::Command;
 use app::tools::ToolCommand;
 use editor::Edit;
-use editor::rows::{Row, RowAlong};
+use editor::rows::{CopyRows, RowAlong};
 use editor::tools::voxel::Joins;
 use editor::tools::{brush, circle, measure};
 use egui::{Key, Modifiers};
@@ -135,17 +135,17 @@ fn copies_rows_mirror_images_and_lanes() {
     bench.harness.get_by_label("Add copies").click();
     bench.steps(3);
     // The last of the four would stand beside the map.
-    let fit = Row::default().copies - 1;
+    let fit = CopyRows::default().copies - 1;
     assert_eq!(bench.frame().boxes.len(), 4 + fit);
     assert_eq!(bench.chosen().len(), fit);
     bench.click("Undo");
     assert_eq!(bench.chosen().len(), 1, "what was chosen before is chosen again");
     bench.click_at(14.0, 3.0, Modifiers::NONE);
-    let row = Row {
+    let row = CopyRows {
         copies: 2,
         spacing_m: -8.0,
         along: RowAlong::Lane,
-        ..Row::default()
+        ..CopyRows::default()
     };
     bench.ask(ToolCommand::Row(row));
     assert_eq!(bench.frame().boxes.len(), 6);

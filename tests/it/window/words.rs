@@ -1,6 +1,6 @@
 //! Words: typed into the prompt, they change the scene or make another one, and all of it can be undone.
 
-use editor::tools::Area;
+use editor::tools::InpaintArea;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
@@ -146,7 +146,7 @@ fn words_change_only_what_lies_in_the_marked_region() {
     assert_eq!(bench.frame().boxes.len(), 2);
     // What is marked lies behind us, the car of the scene ahead.
     let extent = bench.frame().extent();
-    let behind = Area::Rect(DVec2::new(-30.0, -10.0), DVec2::new(-5.0, 10.0));
+    let behind = InpaintArea::Rect(DVec2::new(-30.0, -10.0), DVec2::new(-5.0, 10.0));
     bench.app().state.tools.mark(extent, &behind, true);
     bench.steps(2);
     bench.click("Only in the marked region");

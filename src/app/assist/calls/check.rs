@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::call::Operation;
 use crate::desk::{Desk, Done};
 use app::findings;
-use editor::checks::{self, Counts, Finding, waive};
+use editor::checks::{self, Finding, SeverityCounts, waive};
 use editor::fix::plan_at_once;
 use scene::Scene;
 
@@ -16,7 +16,7 @@ const MOST_FINDINGS: usize = 200;
 /// Arguments of `check`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Check {
+pub struct CheckCall {
     /// Also look with cameras and LiDAR, which takes a few seconds.
     #[serde(default = "yes")]
     sensors: bool,
@@ -33,7 +33,7 @@ fn yes() -> bool {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Checked {
     /// Findings, errors first; at most 200.
-    findings: Vec<Found>,
+    findings: Vec<CheckFinding>,
     /// Open findings that are errors.
     errors: usize,
     /// Open findings that are warnings.
@@ -50,7 +50,7 @@ pub struct Checked {
 
 /// A finding of a check.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Found {
+pub struct CheckFinding {
     /// Name of the check.
     check: String,
     /// `error`, `warning` or `info`.
@@ -70,9 +70,9 @@ pub struct Found {
     fixes: Vec<String>,
 }
 
-fn found(scene: &Scene, f: &Finding) -> Found {
+fn found(scene: &Scene, f: &Finding) -> CheckFinding {
     let tidy = |v: f64| (v * 100.0).round() / 100.0 + 0.0;
-    Found {
+    CheckFinding {
         check: f.check.to_owned(),
         severity: f.severity.name().to_owned(),
         where_m: f.where_m.to_array().map(tidy),
@@ -84,7 +84,7 @@ fn found(scene: &Scene, f: &Finding) -> Found {
     }
 }
 
-impl Operation for Check {
+impl Operation for CheckCall {
     const NAME: &'static str = "check";
     const ABOUT: &'static str = "Runs the quality checks: boxes that overlap, float, stand off the road or against the lane, voxels without a box, boxes that no sensor sees. Call it before export. An edit `waive` lets a finding stand.";
     const EXAMPLE: &'static str = r#"{"sensors": false, "fix": false}"#;
@@ -108,7 +108,7 @@ impl Operation for Check {
             }
         }
         let open: Vec<&Finding> = waive::open(scene.frame(), &findings).collect();
-        let counts = Counts::of(open.iter().copied());
+        let counts = SeverityCounts::of(open.iter().copied());
         let waived = findings.len() - open.len();
         Ok(Checked {
             findings: findings

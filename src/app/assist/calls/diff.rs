@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::call::Operation;
-use crate::change::Change;
+use crate::change::ChangeSummary;
 use crate::desk::Desk;
 use authoring::open;
 
@@ -23,11 +23,11 @@ pub struct Diff {
 
 /// Receipt of `diff`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Difference {
+pub struct DiffReceipt {
     /// Name of the version or file it was compared with.
     against: String,
     /// From there to the scene as it is now.
-    changed: Change,
+    changed: ChangeSummary,
     /// Number of the state that the scene is in.
     revision: u64,
 }
@@ -37,9 +37,9 @@ impl Operation for Diff {
     const ABOUT: &'static str = "Counts what changed from a kept version or a file to the scene as it is now: boxes, cells of the map, voxels by class.";
     const EXAMPLE: &'static str = r#"{"version": "before"}"#;
     const CHANGES: bool = false;
-    type Receipt = Difference;
+    type Receipt = DiffReceipt;
 
-    fn run(self, desk: &mut Desk) -> anyhow::Result<Difference> {
+    fn run(self, desk: &mut Desk) -> anyhow::Result<DiffReceipt> {
         let now = desk.scene()?;
         let (against, before) = match (&self.version, &self.file) {
             (Some(name), None) => (name.clone(), desk.version(name)?),
@@ -50,9 +50,9 @@ impl Operation for Diff {
             }
             _ => bail!("expected exactly one of version and file"),
         };
-        Ok(Difference {
+        Ok(DiffReceipt {
             against,
-            changed: Change::between(&before, &now),
+            changed: ChangeSummary::between(&before, &now),
             revision: desk.number(now.content()),
         })
     }

@@ -19,7 +19,7 @@ use trade::Presets;
 /// Arguments of `generate`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Generate {
+pub struct GenerateCall {
     /// A preset of speed against accuracy, the fastest first; a usual one if left out.
     #[serde(default)]
     #[schemars(schema_with = "names::preset")]
@@ -55,7 +55,7 @@ pub struct Generated {
     notes: Vec<String>,
 }
 
-impl Generate {
+impl GenerateCall {
     fn params(&self) -> anyhow::Result<GenParams> {
         let usual = match self.whole {
             true => GenParams::whole_scene(),
@@ -82,7 +82,7 @@ impl Generate {
     }
 }
 
-impl Operation for Generate {
+impl Operation for GenerateCall {
     const NAME: &'static str = "generate";
     const ABOUT: &'static str = "Lets the networks draw the voxels under what was edited since they last did (or of the whole map), so that they follow map and boxes. One undo step. Takes from a second to minutes: the quality decides.";
     const EXAMPLE: &'static str = r#"{"quality": "draft", "seed": 0}"#;

@@ -8,7 +8,7 @@ use super::names;
 use crate::call::Operation;
 use crate::desk::{Desk, Done};
 use authoring::open;
-use world::scenery::Setting;
+use world::scenery::RoadsideKind;
 use world::template::TEMPLATES;
 use world::terrain::Terrain;
 
@@ -24,7 +24,7 @@ pub struct New {
     seed: u64,
     /// Kind of place; one that suits the road if left out.
     #[serde(default)]
-    setting: Option<Setting>,
+    setting: Option<RoadsideKind>,
     /// The lie of the land.
     #[serde(default)]
     terrain: Terrain,
@@ -32,7 +32,7 @@ pub struct New {
 
 /// Receipt of `new`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Made {
+pub struct NewSceneReceipt {
     /// Changes of the scene.
     #[serde(flatten)]
     done: Done,
@@ -52,9 +52,9 @@ impl Operation for New {
     const EXAMPLE: &'static str =
         r#"{"template": "t-junction", "seed": 3, "setting": "city", "terrain": "flat"}"#;
     const CHANGES: bool = true;
-    type Receipt = Made;
+    type Receipt = NewSceneReceipt;
 
-    fn run(self, desk: &mut Desk) -> anyhow::Result<Made> {
+    fn run(self, desk: &mut Desk) -> anyhow::Result<NewSceneReceipt> {
         names::check("template", &self.template, &TEMPLATES)?;
         let from = desk.scene()?.content();
         let scene = open::from_template_on(&self.template, self.seed, self.setting, self.terrain)
@@ -62,7 +62,7 @@ impl Operation for New {
         let (frame, name) = (scene.frame().clone(), scene.name.to_string());
         let things = scene.background.len();
         let done = desk.put(format!("New {}", self.template), from, scene)?;
-        Ok(Made {
+        Ok(NewSceneReceipt {
             done,
             name,
             boxes: frame.boxes.len(),

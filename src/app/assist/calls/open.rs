@@ -14,7 +14,7 @@ use formats::import::{self, Content};
 /// Arguments of `open`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Open {
+pub struct OpenCall {
     /// File in the folder of this session, such as `a.loom`, `road.xodr` or `labels.npz`; without it the scene that ships with
     /// the program.
     #[serde(default)]
@@ -36,7 +36,7 @@ pub struct Open {
 
 /// Receipt of `open`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Opened {
+pub struct OpenReceipt {
     /// Changes of the scene.
     #[serde(flatten)]
     done: Done,
@@ -55,14 +55,14 @@ pub struct Opened {
     notes: Vec<String>,
 }
 
-impl Operation for Open {
+impl Operation for OpenCall {
     const NAME: &'static str = "open";
     const ABOUT: &'static str = "Replaces the scene by one from a file: a project (.loom), roads (.xodr), occupancy labels (.npz), a picture that this program made (.png), or another format that is read. It can be undone. list_files tells what is there.";
     const EXAMPLE: &'static str = r#"{"file": "a.loom"}"#;
     const CHANGES: bool = true;
-    type Receipt = Opened;
+    type Receipt = OpenReceipt;
 
-    fn run(self, desk: &mut Desk) -> anyhow::Result<Opened> {
+    fn run(self, desk: &mut Desk) -> anyhow::Result<OpenReceipt> {
         let from = desk.scene()?.content();
         let placement = Placement {
             at_m: self.at_m.map(DVec2::from),
@@ -109,7 +109,7 @@ impl Operation for Open {
         );
         let length_s = scene.clip().length_s;
         let step = format!("Open {}", self.file.as_deref().unwrap_or("the first scene"));
-        Ok(Opened {
+        Ok(OpenReceipt {
             done: desk.put(step, from, scene)?,
             name,
             format: format.to_owned(),

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::call::Operation;
 use crate::desk::{Desk, Done};
 use editor::EditError;
-use editor::models::{self, Placed};
+use editor::models::{self, ModelPlacement};
 use formats::model;
 use scene::{BoxId, Class};
 
@@ -67,7 +67,7 @@ impl Operation for PlaceModel {
         let placed = match self.to {
             Some(id) => {
                 let b = scene.frame().boxes.get(&id).ok_or(EditError::UnknownBox { id })?;
-                Placed {
+                ModelPlacement {
                     edits: models::give(&model, b),
                     id,
                 }

@@ -13,13 +13,13 @@ use authoring::text::{self, Edited, doubts};
 use editor::Edit;
 use words::account::Why;
 use words::answer::sentence;
-use words::hear::Heard;
+use words::hear::CheckedReading;
 use words::notation;
 
 /// Arguments of `prompt`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Prompt {
+pub struct PromptCall {
     /// Content of the new scene, or changes of this one; plain English.
     text: String,
     /// Purpose of the words.
@@ -113,7 +113,7 @@ pub struct Fits {
 }
 
 /// The receipt of a text as it was read: phrases, words that were not understood, shortfalls.
-fn heard(done: Done, text: &str, heard: &Heard, answer: String) -> Prompted {
+fn heard(done: Done, text: &str, heard: &CheckedReading, answer: String) -> Prompted {
     let phrases = heard.reading.acts.iter().map(|act| Phrase {
         words: act.span.map(|span| span.of(text).to_owned()),
         became: sentence(&act.what),
@@ -177,7 +177,7 @@ fn step_name(text: &str) -> String {
     format!("\u{201c}{}\u{201d}", scene::message::quoted(&words, 60))
 }
 
-impl Prompt {
+impl PromptCall {
     fn change(self, desk: &mut Desk) -> anyhow::Result<Prompted> {
         let scene = desk.scene()?;
         let edited = text::read_edit(&self.text, &scene, self.seed)?;
@@ -237,7 +237,7 @@ impl Prompt {
     }
 }
 
-impl Operation for Prompt {
+impl Operation for PromptCall {
     const NAME: &'static str = "prompt";
     const ABOUT: &'static str = "Reads plain English and carries it out: make \"new\" builds a scene from a description (\"a T junction in the rain, two parked cars, a cyclist ahead\"), make \"change\" edits the scene that is there (\"remove the nearest car\", \"three pedestrians on the crossing\", \"at night\"). The receipt tells what each phrase became, which words had no effect, and asks if more than one thing fits. One undo step.";
     const EXAMPLE: &'static str =

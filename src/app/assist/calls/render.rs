@@ -14,7 +14,7 @@ use crate::desk::Desk;
 use crate::folder::FileEntry;
 use crate::render::{Rendering, check_what};
 use app::camera_views::LidarModel;
-use app::picture::Picture;
+use app::picture::RgbaPicture;
 use formats::{calibration, png};
 use scene::{Scene, TimeOfDay, Weather};
 use sensors::cameras::{self, SourceId, ViewId};
@@ -77,7 +77,7 @@ fn usual_folder() -> String {
 
 /// Receipt of `render`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Rendered {
+pub struct RenderReceipt {
     /// The files.
     files: Vec<FileEntry>,
     /// Rays of the LiDAR and points that came back, if it was asked for.
@@ -142,7 +142,7 @@ impl Render {
 }
 
 /// A small copy as PNG.
-fn small(picture: Picture) -> Option<Vec<u8>> {
+fn small(picture: RgbaPicture) -> Option<Vec<u8>> {
     let [width, height] = [picture.width, picture.height].map(|side| u32::try_from(side).ok());
     let (width, height) = (width?, height?);
     let shrink = f64::from(SMALL_SIDE) / f64::from(width.max(height).max(1));
@@ -163,9 +163,9 @@ impl Operation for Render {
     const ABOUT: &'static str = "Renders what cameras and LiDAR of the ego vehicle see at the moment that is shown, or the map from above, and writes PNG pictures and data into a folder. Over MCP the first picture comes with the answer, at most 640 pixels wide. Look at bev to see where things are. Files that are there are written over only with replace: call again with it, or name another folder.";
     const EXAMPLE: &'static str = r#"{"what": ["bev", "semantic"], "cameras": ["CAM_FRONT"], "size": [480, 270], "folder": "pictures", "replace": true}"#;
     const CHANGES: bool = false;
-    type Receipt = Rendered;
+    type Receipt = RenderReceipt;
 
-    fn run(self, desk: &mut Desk) -> anyhow::Result<Rendered> {
+    fn run(self, desk: &mut Desk) -> anyhow::Result<RenderReceipt> {
         check_what(&self.what, "what")?;
         names::check_size(self.size)?;
         names::check("source", &self.source, &names::sources())?;
@@ -203,7 +203,7 @@ impl Operation for Render {
         };
         let made = rendering.write(&shown, staging.path(), &mut listen)?;
         let wall_s = made.wall_s.iter().map(|(kind, s)| ((*kind).to_owned(), *s));
-        Ok(Rendered {
+        Ok(RenderReceipt {
             files: desk
                 .folder
                 .publish(staging.path(), (&self.folder, None), self.replace)?,
@@ -215,7 +215,7 @@ impl Operation for Render {
         })
     }
 
-    fn picture(receipt: &mut Rendered) -> Option<Vec<u8>> {
+    fn picture(receipt: &mut RenderReceipt) -> Option<Vec<u8>> {
         receipt.picture.take()
     }
 }

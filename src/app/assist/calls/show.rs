@@ -17,7 +17,7 @@ pub struct Show {
 
 /// Receipt of `show`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Shown {
+pub struct ShowReceipt {
     /// The moment that is shown now, s.
     time_s: f64,
     /// Length of the scene, s; 0 for one moment.
@@ -33,9 +33,9 @@ impl Operation for Show {
     const ABOUT: &'static str = "Goes to another moment of a scene that lasts. Edits, render, check, state and export look at the moment that is shown. It is not an undo step.";
     const EXAMPLE: &'static str = r#"{"time_s": 0}"#;
     const CHANGES: bool = false;
-    type Receipt = Shown;
+    type Receipt = ShowReceipt;
 
-    fn run(self, desk: &mut Desk) -> anyhow::Result<Shown> {
+    fn run(self, desk: &mut Desk) -> anyhow::Result<ShowReceipt> {
         let length_s = desk.scene()?.clip().length_s;
         // Written so that NaN fails too.
         if !(0.0..=length_s).contains(&self.time_s) {
@@ -45,7 +45,7 @@ impl Operation for Show {
         let frame = scene.frame();
         let pose = frame.world_from_ego;
         let ahead = pose.rotation * glam::DVec3::X;
-        Ok(Shown {
+        Ok(ShowReceipt {
             time_s: scene.time_s(),
             length_s,
             ego: [

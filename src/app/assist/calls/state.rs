@@ -39,7 +39,7 @@ fn yes() -> bool {
 
 /// Receipt of `state`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct State {
+pub struct StateReceipt {
     /// Number of the state that the scene is in.
     revision: u64,
     /// Name of the scene.
@@ -51,7 +51,7 @@ pub struct State {
     /// Light and air.
     conditions: Conditions,
     /// The area that the map covers.
-    map: Map,
+    map: MapArea,
     /// Time.
     clip: ClipState,
     /// How much of what there is.
@@ -61,7 +61,7 @@ pub struct State {
     /// True if there are more boxes than are listed.
     more_boxes: bool,
     /// Lines of the map, if they were asked for.
-    roads: Option<Roads>,
+    roads: Option<MapLines>,
     /// Columns of voxels that only sketch what was edited; `generate` draws them.
     draft_columns: usize,
     /// Name of the step that undo takes back; none if there is none.
@@ -76,7 +76,7 @@ pub struct State {
 
 /// The area that a map covers, world frame.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Map {
+pub struct MapArea {
     /// Its lower corner, x and y, m.
     min_m: [f64; 2],
     /// Its upper corner, m.
@@ -144,7 +144,7 @@ pub struct BoxState {
 
 /// Lines of the map, world frame, m; long ones are thinned out.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Roads {
+pub struct MapLines {
     /// Middles of lanes, in driving direction.
     lanes: Vec<Vec<[f64; 2]>>,
     /// Lines between opposite directions.
@@ -188,7 +188,7 @@ fn box_state(scene: &Scene, b: &SceneBox) -> BoxState {
     }
 }
 
-fn roads(frame: &Frame) -> Roads {
+fn roads(frame: &Frame) -> MapLines {
     let mut more = false;
     let mut of = |kind: PolylineKind| -> Vec<Vec<[f64; 2]>> {
         let lines = frame.layout.polylines.iter().filter(|l| l.kind == kind);
@@ -206,7 +206,7 @@ fn roads(frame: &Frame) -> Roads {
     };
     let (lanes, road_dividers) = (of(PolylineKind::LaneCenter), of(PolylineKind::RoadDivider));
     let (stop_lines, crossings) = (of(PolylineKind::StopLine), of(PolylineKind::PedCrossing));
-    Roads {
+    MapLines {
         lanes,
         road_dividers,
         stop_lines,
@@ -244,9 +244,9 @@ impl Operation for GetState {
     const ABOUT: &'static str = "Tells what is in the scene at the moment that is shown: boxes with id, class and place, lanes and crossings of the map, light and air, length, counts of voxels. World frame: x ahead at the start, y left, z up, m and degrees. Call it first, and whenever ids or places are needed.";
     const EXAMPLE: &'static str = r#"{"most_boxes": 50, "roads": true}"#;
     const CHANGES: bool = false;
-    type Receipt = State;
+    type Receipt = StateReceipt;
 
-    fn run(self, desk: &mut Desk) -> anyhow::Result<State> {
+    fn run(self, desk: &mut Desk) -> anyhow::Result<StateReceipt> {
         let (scene, undo, redo, unsaved) = desk.look(|document| {
             let name = |label: Option<&str>| label.map(str::to_owned);
             (
@@ -265,13 +265,13 @@ impl Operation for GetState {
         });
         let most = self.most_boxes.min(MOST_BOXES);
         let (min, max) = (frame.extent().min_m(), frame.extent().max_m());
-        Ok(State {
+        Ok(StateReceipt {
             revision: desk.number(scene.content()),
             name: scene.name.to_string(),
             prompt: scene.prompt.to_string(),
             words: scene.words.to_vec(),
             conditions: scene.conditions,
-            map: Map {
+            map: MapArea {
                 min_m: [min.x, min.y].map(tidy),
                 max_m: [max.x, max.y].map(tidy),
                 cells: [frame.extent().nx(), frame.extent().ny()],

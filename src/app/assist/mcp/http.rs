@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
-use callers::{Caller, Callers, Limits, Sending, Wait};
+use callers::{Caller, CallerLimits, Callers, Sending, Wait};
 use http_body_util::combinators::BoxBody;
 use http_body_util::{BodyExt, Full, LengthLimitError, Limited};
 use hyper::body::{Body, Bytes, Incoming};
@@ -32,7 +32,7 @@ const SHORTEST_TOKEN: usize = 16;
 const LONGEST_BODY: usize = LONGEST_CALL + 4096;
 /// Connections, bodies and answers: how many of each wait, and for how long. A stranger is a connection that has not
 /// shown the token.
-const CALLERS: Limits = Limits {
+const CALLERS: CallerLimits = CallerLimits {
     strangers: Wait {
         most: 128,
         within: Duration::from_secs(10),
@@ -130,11 +130,11 @@ pub fn http(service: Service, listen: SocketAddr, token: String) -> anyhow::Resu
 }
 
 type Mcp = StreamableHttpService<Server, LocalSessionManager>;
-type Answer = Response<Sending<BoxBody<Bytes, Infallible>>>;
+type McpResponse = Response<Sending<BoxBody<Bytes, Infallible>>>;
 
 /// State that connections share.
 #[derive(Clone)]
-struct Door {
+struct McpEndpoint {
     mcp: Mcp,
     /// Expected value of the `Authorization` header, with the token.
     expected: Arc<str>,
@@ -150,7 +150,7 @@ async fn accept(listener: TcpListener, service: Service, token: &str) {
         .enforce_origin_validation() // no page of a browser
         .with_max_request_body_bytes(LONGEST_BODY);
     let server = Server::new(service);
-    let door = Door {
+    let door = McpEndpoint {
         mcp: Mcp::new(move || Ok(server.clone()), Arc::default(), config),
         expected: format!("Bearer {token}").into(),
     };
@@ -176,8 +176,8 @@ async fn accept(listener: TcpListener, service: Service, token: &str) {
     }
 }
 
-impl Door {
-    async fn answer(&self, caller: &Arc<Caller>, request: Request<Incoming>) -> Answer {
+impl McpEndpoint {
+    async fn answer(&self, caller: &Arc<Caller>, request: Request<Incoming>) -> McpResponse {
         if request.uri().path() != PATH {
             return refused(StatusCode::NOT_FOUND, "expected the path /mcp");
         }
@@ -220,7 +220,7 @@ async fn read(body: Incoming, callers: &Callers) -> Result<Bytes, (StatusCode, &
 }
 
 /// A refusal in one line, and the end of the connection.
-fn refused(status: StatusCode, why: &'static str) -> Answer {
+fn refused(status: StatusCode, why: &'static str) -> McpResponse {
     let body = Full::new(Bytes::from_static(why.as_bytes())).boxed();
     let mut response = Response::new(Sending::short(body));
     *response.status_mut() = status;

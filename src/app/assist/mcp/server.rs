@@ -13,7 +13,7 @@ use rmcp::{ErrorData, RoleServer, ServerHandler};
 use tokio::sync::oneshot;
 
 use crate::LONGEST_CALL;
-use crate::call::{Answer, CallDef, find, table};
+use crate::call::{CallAnswer, CallDef, find, table};
 use crate::desk::Stop;
 use crate::schema;
 use crate::service::Service;
@@ -70,7 +70,7 @@ fn writes_files(name: &str) -> bool {
 }
 
 /// An answer as an MCP result: the receipt as values and as text, and its picture.
-fn result(answer: Answer) -> CallToolResult {
+fn result(answer: CallAnswer) -> CallToolResult {
     let mut result = CallToolResult::structured(answer.receipt);
     if let Some(png) = answer.picture {
         let image = ContentBlock::image(STANDARD.encode(png), "image/png");

@@ -14,7 +14,7 @@ use tokio::sync::mpsc;
 
 use super::server::{Server, too_long};
 use crate::LONGEST_CALL;
-use crate::lines::{Line, next_line};
+use crate::lines::{InputLine, next_line};
 use crate::service::Service;
 use scene::message::one_line;
 
@@ -72,9 +72,9 @@ fn read(mut input: impl BufRead, ahead: &mpsc::Sender<ClientJsonRpcMessage>, out
     };
     while let Ok(Some(line)) = next_line(&mut input, LONGEST_CALL + ENVELOPE) {
         let line = match line {
-            Line::Whole(line) if line.trim_ascii().is_empty() => continue,
-            Line::Whole(line) => line,
-            Line::TooLong { id, bytes } => {
+            InputLine::Whole(line) if line.trim_ascii().is_empty() => continue,
+            InputLine::Whole(line) => line,
+            InputLine::TooLong { id, bytes } => {
                 refuse(id.unwrap_or_default(), INVALID_REQUEST, &too_long(bytes));
                 continue;
             }

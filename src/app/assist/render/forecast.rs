@@ -4,15 +4,15 @@
 use std::time::Instant;
 
 use super::Rendering;
-use super::plan::Plan;
+use super::plan::RenderPlan;
 use app::truth;
 use scene::Scene;
 use sensors::appearance::Quality;
-use sensors::cameras::{Ready, RenderOptions};
+use sensors::cameras::{PreparedSource, RenderOptions};
 
 /// Progress report of a rendering.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Told {
+pub enum RenderProgress {
     /// Before anything is written, where there are many: pixels of all pictures, and about how long they take, s.
     Takes {
         /// Pixels of all cameras and kinds together.
@@ -30,14 +30,14 @@ pub enum Told {
 }
 
 /// Receives the reports of a rendering; an error ends the rendering.
-pub type Listen<'a> = dyn FnMut(Told) -> anyhow::Result<()> + 'a;
+pub type Listen<'a> = dyn FnMut(RenderProgress) -> anyhow::Result<()> + 'a;
 
 /// Up to so many pixels, no time is forecast.
 const FEW_PIXELS: u64 = 10_000_000;
 /// Sizes of the two pictures that are tried, as divisors of each side that was asked for.
 const PARTS: [u32; 2] = [16, 8];
 
-impl Plan {
+impl RenderPlan {
     /// Pictures of cameras in all.
     pub fn pictures(&self, scene: &Scene) -> usize {
         scene.rig.cameras.len() * (self.cameras.len() + usize::from(self.truth))
@@ -46,7 +46,12 @@ impl Plan {
 
 impl Rendering {
     /// Tells how long pictures will take, if there are many pixels.
-    pub(super) fn forecast(&self, plan: &Plan, scene: &Scene, listen: &mut Listen<'_>) -> anyhow::Result<()> {
+    pub(super) fn forecast(
+        &self,
+        plan: &RenderPlan,
+        scene: &Scene,
+        listen: &mut Listen<'_>,
+    ) -> anyhow::Result<()> {
         let of_one = u64::from(self.size[0]) * u64::from(self.size[1]);
         let pixels = of_one.saturating_mul(plan.pictures(scene) as u64);
         if pixels <= FEW_PIXELS {
@@ -65,7 +70,7 @@ impl Rendering {
         };
         for of in &plan.cameras {
             let start = Instant::now();
-            let ready = Ready::new(of.source, &self.input(scene));
+            let ready = PreparedSource::new(of.source, &self.input(scene));
             let prepared_s = start.elapsed().as_secs_f64();
             let tried = self.tried(|size| {
                 let options = RenderOptions { size, quality };
@@ -85,7 +90,7 @@ impl Rendering {
                 self.tried(|size| truth::each_camera(&one, &self.input(&one), size, quality, |_, _| Ok(())))?;
             add(0.0, tried);
         }
-        listen(Told::Takes { pixels, seconds })
+        listen(RenderProgress::Takes { pixels, seconds })
     }
 
     /// Pixels and seconds of two small pictures.

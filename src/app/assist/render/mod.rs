@@ -13,15 +13,15 @@ use anyhow::bail;
 
 use app::camera_views::{self, camera_input};
 use app::graphics::Graphics;
-use app::picture::{self, Picture};
+use app::picture::{self, RgbaPicture};
 use formats::recipe::Recipe;
 use scene::{Scene, TimeOfDay, Weather};
 use sensors::appearance::Quality;
-use sensors::cameras::{self, CameraInput, Card, Detail, Ready, RenderOptions, SourceId};
+use sensors::cameras::{self, CameraInput, Card, Detail, PreparedSource, RenderOptions, SourceId};
 use sensors::painter::PaintWith;
 
-pub use forecast::{Listen, Told};
-use plan::{Cameras, Plan};
+pub use forecast::{Listen, RenderProgress};
+use plan::{Cameras, RenderPlan};
 use write::Writer;
 
 /// Kinds of output besides the views of cameras.
@@ -50,7 +50,7 @@ pub struct Rendering {
 
 /// Result of a rendering.
 #[derive(Debug, Default)]
-pub struct Rendered {
+pub struct RenderedFiles {
     /// The files, in the order in which they were written.
     pub files: Vec<PathBuf>,
     /// Seconds that each part took, by its name in the report.
@@ -58,7 +58,7 @@ pub struct Rendered {
     /// Rays and returns of the LiDAR, if it was asked for.
     pub lidar: Option<[usize; 2]>,
     /// One of the pictures, to be looked at.
-    pub first: Option<Picture>,
+    pub first: Option<RgbaPicture>,
 }
 
 /// Names of everything that can be rendered.
@@ -105,12 +105,12 @@ impl Rendering {
         &self,
         scene: &Scene,
         cameras: &Cameras,
-        (writer, out): (&mut Writer, &mut Rendered),
+        (writer, out): (&mut Writer, &mut RenderedFiles),
         made: &mut dyn FnMut() -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let mut time_s = 0.0;
         let start = Instant::now();
-        let ready = Ready::new(cameras.source, &self.input(scene));
+        let ready = PreparedSource::new(cameras.source, &self.input(scene));
         // The same bytes on every machine, unless a card is asked for.
         let mut card = Graphics::forced();
         let on_card = ready.upload_to(|| card.as_mut().map(|card| card as &mut dyn Card));
@@ -144,18 +144,23 @@ impl Rendering {
     /// Renders the moment that a scene shows, and writes the files into a folder, which is made; `listen` gets the
     /// forecast of the time and the progress. Errors in one line, also those of `listen`; a missing sensor or network
     /// is reported before anything is written.
-    pub fn write(&self, scene: &Scene, folder: &Path, listen: &mut Listen<'_>) -> anyhow::Result<Rendered> {
+    pub fn write(
+        &self,
+        scene: &Scene,
+        folder: &Path,
+        listen: &mut Listen<'_>,
+    ) -> anyhow::Result<RenderedFiles> {
         let of_file = scene;
         let scene = &*of_file.with_rig_in_world();
-        let plan = Plan::new(self, scene)?;
+        let plan = RenderPlan::new(self, scene)?;
         self.forecast(&plan, scene, listen)?;
         let (mut pictures, of) = (0, plan.pictures(scene));
         let mut made = || {
             pictures += 1;
-            listen(Told::Made { pictures, of })
+            listen(RenderProgress::Made { pictures, of })
         };
         let mut writer = Writer::new(folder, self.recipe(of_file))?;
-        let mut out = Rendered::default();
+        let mut out = RenderedFiles::default();
         let frame = scene.frame();
         for cameras in &plan.cameras {
             self.cameras(scene, cameras, (&mut writer, &mut out), &mut made)?;

@@ -10,7 +10,7 @@ use app::camera_views;
 use app::picture::View3d;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene};
-use sensors::cameras::{self, CameraSource, View, bounds};
+use sensors::cameras::{self, CameraSource, SourceView, bounds};
 use sensors::learned::Drops;
 use sensors::rolling;
 
@@ -19,11 +19,11 @@ pub struct Cameras {
     /// Source of the pictures.
     pub source: &'static dyn CameraSource,
     /// Views that are written of each camera.
-    pub views: Vec<View>,
+    pub views: Vec<SourceView>,
 }
 
 /// How the LiDAR sweep is made.
-pub enum LidarModel {
+pub enum LoadedLidarModel {
     /// Every ray to the first voxel.
     Exact,
     /// By the network.
@@ -31,11 +31,11 @@ pub enum LidarModel {
 }
 
 /// Plan of a rendering: all outputs, ready to be made.
-pub struct Plan {
+pub struct RenderPlan {
     /// Camera pictures, in the order of the table.
     pub cameras: Vec<Cameras>,
     /// The sweep.
-    pub lidar: Option<LidarModel>,
+    pub lidar: Option<LoadedLidarModel>,
     /// Pictures with the truth about them.
     pub truth: bool,
     /// Pictures from above.
@@ -44,7 +44,7 @@ pub struct Plan {
     pub view: Option<View3d>,
 }
 
-impl Plan {
+impl RenderPlan {
     /// Plans what the arguments ask for. Errors in one line if the rig lacks a sensor for it, pictures are too large,
     /// the network or a graphics adapter is missing.
     pub fn new(wanted: &Rendering, scene: &Scene) -> anyhow::Result<Self> {
@@ -73,7 +73,7 @@ impl Plan {
             bounds::check(wanted.size, app::truth::BYTES_PER_PIXEL, 0).context("--size")?;
         }
         let lidar = wants("lidar")
-            .then(|| LidarModel::of(wanted, scene))
+            .then(|| LoadedLidarModel::of(wanted, scene))
             .transpose()?;
         Ok(Self {
             cameras,
@@ -85,7 +85,7 @@ impl Plan {
     }
 }
 
-impl LidarModel {
+impl LoadedLidarModel {
     fn of(wanted: &Rendering, scene: &Scene) -> anyhow::Result<Self> {
         if scene.rig.lidars.is_empty() {
             bail!("the rig {:?} has no lidar", scene.rig.name);

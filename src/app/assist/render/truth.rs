@@ -6,7 +6,7 @@ use super::Rendering;
 use super::write::Writer;
 use app::truth;
 use formats::export::truth as files;
-use formats::export::{OutFile, Picture};
+use formats::export::{ExportPicture, OutFile};
 use formats::sensor_names;
 use scene::Scene;
 use sensors::appearance::Quality;
@@ -49,7 +49,7 @@ impl Rendering {
             |image, mut truth| {
                 time_s += start.elapsed().as_secs_f64();
                 truth::place(&mut truth, &ego_from_world);
-                let picture = Picture {
+                let picture = ExportPicture {
                     camera: image.camera,
                     width: image.width,
                     height: image.height,

@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
-use app::picture::{self, Picture, SHEET_COLOR};
+use app::picture::{self, RgbaPicture, SHEET_COLOR};
 use formats::export::{OutFile, ply};
-use formats::npz::{self, Array, Values};
+use formats::npz::{self, Array, NpzValues};
 use formats::out_folder::OutFolder;
 use formats::recipe::Recipe;
 use formats::{calibration, multi_plane, png};
 use scene::{CameraMaps, Extent, LidarSweep, MultiPlaneImage, PerspectiveMap, Pose, Scene};
 use sensors::appearance::CameraImage;
-use sensors::cameras::{CameraPicture, View, ViewId};
+use sensors::cameras::{CameraPicture, SourceView, ViewId};
 use sensors::color;
 
 /// A folder, and the files written into it.
@@ -22,9 +22,9 @@ pub struct Writer {
     /// Paths of the files.
     pub files: Vec<PathBuf>,
     /// The first picture that was written.
-    pub first: Option<Picture>,
+    pub first: Option<RgbaPicture>,
     /// Pictures in colours of the cameras so far.
-    sheet: Option<Picture>,
+    sheet: Option<RgbaPicture>,
 }
 
 /// Pictures in a row of a sheet, and the space around each, pixels.
@@ -32,10 +32,10 @@ const SHEET_COLUMNS: usize = 3;
 const SHEET_MARGIN: usize = 6;
 
 /// A sheet for so many pictures of a size.
-fn empty_sheet([width, height]: [usize; 2], count: usize) -> Picture {
+fn empty_sheet([width, height]: [usize; 2], count: usize) -> RgbaPicture {
     let side = |n: usize, side: usize| n * (side + SHEET_MARGIN) + SHEET_MARGIN;
     let (columns, rows) = (count.min(SHEET_COLUMNS), count.div_ceil(SHEET_COLUMNS));
-    Picture::filled(side(columns, width), side(rows, height), SHEET_COLOR)
+    RgbaPicture::filled(side(columns, width), side(rows, height), SHEET_COLOR)
 }
 
 /// Memory that the sheet of so many pictures of a size takes, bytes.
@@ -87,7 +87,7 @@ impl Writer {
         let encode = |notes: &png::Notes<'_>| png::rgba(width, height, rgba, notes);
         let bytes = self.recipe.in_png(true, encode);
         let bytes = bytes.with_context(|| format!("encode {name}"))?;
-        self.first.get_or_insert_with(|| Picture {
+        self.first.get_or_insert_with(|| RgbaPicture {
             width,
             height,
             rgba: rgba.to_vec(),
@@ -102,7 +102,7 @@ impl Writer {
     }
 
     /// Any picture.
-    pub fn picture(&mut self, name: &str, picture: &Picture) -> anyhow::Result<()> {
+    pub fn picture(&mut self, name: &str, picture: &RgbaPicture) -> anyhow::Result<()> {
         self.png(name, picture.width, picture.height, &picture.rgba)
     }
 
@@ -135,12 +135,12 @@ impl Writer {
         let floats = |name, values: &[f32]| Array {
             name,
             shape: &shape,
-            values: Values::F32(values.to_vec()),
+            values: NpzValues::F32(values.to_vec()),
         };
         let labels = Array {
             name: "semantic",
             shape: &shape,
-            values: Values::U8(m.semantic.clone()),
+            values: NpzValues::U8(m.semantic.clone()),
         };
         let arrays = [
             labels,
@@ -157,7 +157,7 @@ impl Writer {
     pub fn camera(
         &mut self,
         picture: CameraPicture,
-        views: &[View],
+        views: &[SourceView],
         place: (usize, usize),
     ) -> anyhow::Result<()> {
         let wants = |id: ViewId| views.iter().any(|v| v.id == id);
@@ -174,7 +174,7 @@ impl Writer {
 
     /// A picture in colours; it is kept in the sheet of all cameras too.
     fn image(&mut self, image: CameraImage, view: ViewId, place: (usize, usize)) -> anyhow::Result<()> {
-        let picture = Picture {
+        let picture = RgbaPicture {
             width: image.width,
             height: image.height,
             rgba: image.rgba,
@@ -190,7 +190,7 @@ impl Writer {
     }
 
     /// Writes the sheet of all cameras, where pictures in colours were written.
-    pub fn finish_sheet(&mut self, views: &[View]) -> anyhow::Result<()> {
+    pub fn finish_sheet(&mut self, views: &[SourceView]) -> anyhow::Result<()> {
         match (self.sheet.take(), views.first()) {
             (Some(sheet), Some(view)) => self.picture(&format!("{}.png", view.id.name()), &sheet),
             _ => Ok(()),

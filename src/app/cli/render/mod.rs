@@ -7,11 +7,11 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use super::painting::Painting;
-use super::progress::{Progress, in_words};
-use super::{Common, Moment, Outcome, output};
+use super::progress::{ProgressLine, in_words};
+use super::{CommandResult, Common, Moment, output};
 use app::camera_views::LidarModel;
 use app::open;
-use assist::render::{Rendering, Told, check_what};
+use assist::render::{RenderProgress, Rendering, check_what};
 use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
 use sensors::cameras::{SourceId, learned};
 use sensors::rolling;
@@ -73,7 +73,7 @@ pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, Lida
 }
 
 impl Render {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(self) -> CommandResult {
         check_what(&self.what, "--what")?;
         let mut scene = self.moment.of(open::scene(&self.scene)?)?;
         if let Some(path) = &self.rig {
@@ -95,16 +95,16 @@ impl Render {
             },
             paint,
         };
-        let progress = Progress::new(&self.common);
+        let progress = ProgressLine::new(&self.common);
         let made = rendering.write(&scene, &self.output, &mut |told| {
             match told {
-                Told::Takes { pixels, seconds } if seconds >= LONG_S => eprintln!(
+                RenderProgress::Takes { pixels, seconds } if seconds >= LONG_S => eprintln!(
                     "sceneloom: {} million pixels will take about {} on this machine",
                     pixels / 1_000_000,
                     in_words(seconds)
                 ),
-                Told::Takes { .. } => {}
-                Told::Made { pictures, of } => progress.at("pictures", pictures, of),
+                RenderProgress::Takes { .. } => {}
+                RenderProgress::Made { pictures, of } => progress.at("pictures", pictures, of),
             }
             Ok(())
         })?;

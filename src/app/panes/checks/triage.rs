@@ -42,7 +42,7 @@ pub(super) struct Triage {
 
 /// A line of the list.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Line {
+pub(super) enum TriageRow {
     /// Header of a group.
     Group {
         /// Title of the group.
@@ -87,10 +87,10 @@ impl Triage {
     }
 
     /// The lines for findings that are sorted by severity, the worst first; `name` gives the name of a box.
-    pub(super) fn lines(&self, findings: &[&Finding], name: &dyn Fn(BoxId) -> String) -> Vec<Line> {
+    pub(super) fn lines(&self, findings: &[&Finding], name: &dyn Fn(BoxId) -> String) -> Vec<TriageRow> {
         let shown = (0..findings.len()).filter(|i| self.shows(findings[*i]));
         if self.grouping == Grouping::List {
-            return shown.map(Line::Finding).collect();
+            return shown.map(TriageRow::Finding).collect();
         }
         let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
         for i in shown {
@@ -104,13 +104,17 @@ impl Triage {
         for (title, of) in groups {
             // A single error or warning needs no header.
             if let ([only], true) = (&of[..], findings[of[0]].severity > Severity::Info) {
-                out.push(Line::Finding(*only));
+                out.push(TriageRow::Finding(*only));
                 continue;
             }
             let worst = findings[of[0]].severity;
             let folded = (worst == Severity::Info) != self.turned.contains(&title);
-            let below: Vec<Line> = of.iter().filter(|_| !folded).map(|i| Line::Finding(*i)).collect();
-            out.push(Line::Group {
+            let below: Vec<TriageRow> = of
+                .iter()
+                .filter(|_| !folded)
+                .map(|i| TriageRow::Finding(*i))
+                .collect();
+            out.push(TriageRow::Group {
                 title,
                 of,
                 worst,
@@ -139,12 +143,12 @@ mod tests {
         }
     }
 
-    fn titles(lines: &[Line]) -> Vec<(String, usize, bool)> {
-        let of = |line: &Line| match line {
-            Line::Group {
+    fn titles(lines: &[TriageRow]) -> Vec<(String, usize, bool)> {
+        let of = |line: &TriageRow| match line {
+            TriageRow::Group {
                 title, of, folded, ..
             } => Some((title.clone(), of.len(), *folded)),
-            Line::Finding(_) => None,
+            TriageRow::Finding(_) => None,
         };
         lines.iter().filter_map(of).collect()
     }
@@ -170,7 +174,7 @@ mod tests {
         let expected = [("Off the road", 2, false), ("No LiDAR return", 2, true)];
         assert_eq!(titles(&by_kind), expected.map(|(t, n, f)| (t.to_owned(), n, f)));
         assert_eq!(by_kind.len(), 5, "what is folded is not listed");
-        assert!(by_kind.contains(&Line::Finding(2)), "alone, without a head");
+        assert!(by_kind.contains(&TriageRow::Finding(2)), "alone, without a head");
         triage.turned.insert("No LiDAR return".into());
         assert_eq!(triage.lines(&all, &name).len(), 7);
         triage.grouping = Grouping::Object;
@@ -181,9 +185,9 @@ mod tests {
         assert_eq!(names, ["object 7", "object 9"]);
         triage.grouping = Grouping::List;
         triage.words = "LIDAR car".into();
-        assert_eq!(triage.lines(&all, &name), [Line::Finding(3)]);
+        assert_eq!(triage.lines(&all, &name), [TriageRow::Finding(3)]);
         triage.words.clear();
         triage.hidden = [false, false, true];
-        assert_eq!(triage.lines(&all, &name), [0, 1, 2].map(Line::Finding));
+        assert_eq!(triage.lines(&all, &name), [0, 1, 2].map(TriageRow::Finding));
     }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use egui::{RichText, Ui};
 
-use authoring::corner_case::{Sensor, Vary};
+use authoring::corner_case::{NetworkSensors, Vary};
 use language::{t, tf};
 use nets::perceiver::stands::{Stands, standing};
 use scene::{Extent, Scene, SceneRev};
@@ -19,7 +19,7 @@ use widgets::icons::{self, Icon};
 use widgets::theme;
 
 use super::id::PaneId;
-use super::pane::{Pane, PaneContext, Place};
+use super::pane::{Pane, PaneContext, PanePlacement};
 use crate::command::{Command, ViewCommand};
 use crate::detection_marks::DetectionMarks;
 use crate::perceiving::Perceiving;
@@ -33,12 +33,12 @@ const WIDE: f32 = 560.0;
 pub struct Perception {
     perceiving: Option<Perceiving>,
     vary: Vary,
-    by: Sensor,
+    by: NetworkSensors,
     /// True if the predicted kind of each column is shown over the map.
     stands: bool,
     /// True if the predicted voxels are shown in the 3D view.
     told: bool,
-    marks: Kept,
+    marks: ShownMarks,
     /// Last value of [`UiState::opened`](crate::state::UiState::opened), which counts opened scenes.
     opened: u64,
 }
@@ -48,7 +48,7 @@ impl Default for Perception {
         Self {
             perceiving: None,
             vary: Vary::Distance,
-            by: Sensor::Cameras,
+            by: NetworkSensors::Cameras,
             stands: false,
             told: true,
             opened: 0,
@@ -70,15 +70,16 @@ impl Pane for Perception {
         Icon::Eye
     }
 
-    fn place(&self) -> Place {
-        Place::BelowViews
+    fn place(&self) -> PanePlacement {
+        PanePlacement::BelowViews
     }
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
         let Some(perceiving) = &self.perceiving else {
             return;
         };
-        let choices = Sensor::ALL.map(|(by, name)| (by, t(name), t("Whose network looks at the scene")));
+        let choices =
+            NetworkSensors::ALL.map(|(by, name)| (by, t(name), t("Whose network looks at the scene")));
         icons::choice(ui, &mut self.by, &choices, t("By"));
         if let Some(problem) = &perceiving.problem {
             ui.colored_label(ui.visuals().error_fg_color, problem);
@@ -123,9 +124,15 @@ impl Pane for Perception {
             perceiving.update(cx.document.scene(), self.by);
         }
         let shown = match self.by {
-            Sensor::Cameras => None,
-            Sensor::Lidar => perceiving.swept.clone().map(|(of, r)| (of, Shown::Swept(r))),
-            Sensor::Both => perceiving.told.clone().map(|(of, r)| (of, Shown::Told(r))),
+            NetworkSensors::Cameras => None,
+            NetworkSensors::Lidar => perceiving
+                .swept
+                .clone()
+                .map(|(of, r)| (of, MarkedPrediction::Swept(r))),
+            NetworkSensors::Both => perceiving
+                .told
+                .clone()
+                .map(|(of, r)| (of, MarkedPrediction::Told(r))),
         };
         show_marks(ui, &mut self.marks, shown, [self.stands, self.told], cx);
         let (vary, by) = (&mut self.vary, self.by);
@@ -134,9 +141,9 @@ impl Pane for Perception {
         }
         let wide = ui.available_width() > WIDE;
         let report = match by {
-            Sensor::Cameras => report_ui,
-            Sensor::Lidar => sweep_ui,
-            Sensor::Both => told_ui,
+            NetworkSensors::Cameras => report_ui,
+            NetworkSensors::Lidar => sweep_ui,
+            NetworkSensors::Both => told_ui,
         };
         theme::panel_frame().show(ui, |ui| {
             if !wide {
@@ -169,7 +176,7 @@ const BESIDE_TEXT: f32 = 14.0;
 
 /// Switches for the predictions in the large views.
 struct Shows<'a> {
-    by: Sensor,
+    by: NetworkSensors,
     stands: &'a mut bool,
     told: &'a mut bool,
 }
@@ -177,9 +184,9 @@ struct Shows<'a> {
 impl Shows<'_> {
     fn texts(&self) -> &'static [&'static str] {
         match self.by {
-            Sensor::Cameras => &["Show what it sees in the cameras"],
-            Sensor::Lidar => &["What stands where, over the map"],
-            Sensor::Both => &["Its voxels in the 3D view", "What stands where, over the map"],
+            NetworkSensors::Cameras => &["Show what it sees in the cameras"],
+            NetworkSensors::Lidar => &["What stands where, over the map"],
+            NetworkSensors::Both => &["Its voxels in the 3D view", "What stands where, over the map"],
         }
     }
 
@@ -193,15 +200,15 @@ impl Shows<'_> {
 
     fn ui(self, ui: &mut Ui, commands: &mut Vec<Command>) {
         match self.by {
-            Sensor::Cameras => {
+            NetworkSensors::Cameras => {
                 if ui.button(t("Show what it sees in the cameras")).clicked() {
                     commands.push(Command::View(ViewCommand::Cameras(perceived::VIEW.id)));
                 }
             }
-            Sensor::Lidar => {
+            NetworkSensors::Lidar => {
                 ui.checkbox(self.stands, t("What stands where, over the map"));
             }
-            Sensor::Both => {
+            NetworkSensors::Both => {
                 ui.checkbox(self.told, t("Its voxels in the 3D view"));
                 ui.checkbox(self.stands, t("What stands where, over the map"));
             }
@@ -210,10 +217,10 @@ impl Shows<'_> {
 }
 
 /// The share that a network predicts correctly, and a description of the network. `None` before its first prediction.
-fn summary(perceiving: &Perceiving, by: Sensor) -> Option<(String, &'static str)> {
+fn summary(perceiving: &Perceiving, by: NetworkSensors) -> Option<(String, &'static str)> {
     let percent = |right: f64| format!("{:.1}", right * 100.0);
     Some(match by {
-        Sensor::Cameras => {
+        NetworkSensors::Cameras => {
             let (_, report) = perceiving.seen.as_ref()?;
             let text = tf!(
                 "Classes right: {percent} % of the pixels",
@@ -222,7 +229,7 @@ fn summary(perceiving: &Perceiving, by: Sensor) -> Option<(String, &'static str)
             let what = t("A small camera network that learned from the pictures looks at all cameras.");
             (text, what)
         }
-        Sensor::Lidar => {
+        NetworkSensors::Lidar => {
             let (_, report) = perceiving.swept.as_ref()?;
             let text = tf!(
                 "Right where the LiDAR sees: {percent} %",
@@ -233,7 +240,7 @@ fn summary(perceiving: &Perceiving, by: Sensor) -> Option<(String, &'static str)
             );
             (text, what)
         }
-        Sensor::Both => {
+        NetworkSensors::Both => {
             let (_, report) = perceiving.told.as_ref()?;
             let text = tf!(
                 "Voxels where the LiDAR sees: IoU {iou}, classes right {percent} %",
@@ -259,12 +266,12 @@ fn scrolled(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
 
 /// Prediction whose marks are shown in the large views.
 #[derive(Clone)]
-enum Shown {
+enum MarkedPrediction {
     Swept(Arc<SweepReport>),
     Told(Arc<VoxelReport>),
 }
 
-impl Shown {
+impl MarkedPrediction {
     fn is(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Swept(a), Self::Swept(b)) => Arc::ptr_eq(a, b),
@@ -275,37 +282,37 @@ impl Shown {
 }
 
 /// The marks on screen, with the report and the switches that they were made from.
-type Kept = Option<(Shown, [bool; 2], Arc<DetectionMarks>)>;
+type ShownMarks = Option<(MarkedPrediction, [bool; 2], Arc<DetectionMarks>)>;
 
 /// Sets the marks of a report for the views, or none; with the kinds of columns over the map (`stands`) and the
 /// predicted voxels in the 3D view (`told`).
 fn show_marks(
     ui: &Ui,
-    kept: &mut Kept,
-    report: Option<(SceneRev, Shown)>,
+    kept: &mut ShownMarks,
+    report: Option<(SceneRev, MarkedPrediction)>,
     with @ [stands, told]: [bool; 2],
     cx: &mut PaneContext<'_>,
 ) {
-    let known = |(of, with_, _): &(Shown, [bool; 2], _)| {
+    let known = |(of, with_, _): &(MarkedPrediction, [bool; 2], _)| {
         *with_ == with && report.as_ref().is_some_and(|(_, report)| report.is(of))
     };
     if !kept.as_ref().is_some_and(known) {
         *kept = report.map(|(of, report)| {
             let mut marks = match &report {
-                Shown::Swept(report) => of_sweep(of, report),
-                Shown::Told(report) => of_voxels(of, report, cx.document.scene()),
+                MarkedPrediction::Swept(report) => of_sweep(of, report),
+                MarkedPrediction::Told(report) => of_voxels(of, report, cx.document.scene()),
             };
             marks.stands = stands.then(|| {
                 let (standing, window) = match &report {
-                    Shown::Swept(report) => (report.stands.clone(), report.window),
-                    Shown::Told(report) => (standing_of(report), report.voxels.extent()),
+                    MarkedPrediction::Swept(report) => (report.stands.clone(), report.window),
+                    MarkedPrediction::Told(report) => (standing_of(report), report.voxels.extent()),
                 };
                 let image = from_above(&standing, window);
                 let options = egui::TextureOptions::NEAREST;
                 let texture = ui.ctx().load_texture("what stands", image, options);
                 (texture, standing.into_iter().collect())
             });
-            if let (Shown::Told(report), true) = (&report, told) {
+            if let (MarkedPrediction::Told(report), true) = (&report, told) {
                 marks.told = Some(with_told(cx.document.scene(), report));
             }
             (report, with, Arc::new(marks))

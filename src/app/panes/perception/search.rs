@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{RichText, Ui};
 
-use authoring::corner_case::{Change, Sensor, Tried, Vary, speed_matters};
+use authoring::corner_case::{NetworkSensors, SceneVariation, Tried, Vary, speed_matters};
 use editor::Document;
 use language::{t, tf};
 use nets::perceiver::SCORE;
@@ -16,13 +16,13 @@ use widgets::theme;
 use crate::command::{Command, TimeCommand, ViewCommand};
 use crate::panes::id::PaneId;
 use crate::panes::pane::PaneContext;
-use crate::perceiving::{Found, Perceiving};
+use crate::perceiving::{FinishedSearch, Perceiving};
 
 /// Draws the search for a change after which the chosen box is missed.
 pub(super) fn search_ui(
     ui: &mut Ui,
     perceiving: &mut Perceiving,
-    (vary, by): (&mut Vary, Sensor),
+    (vary, by): (&mut Vary, NetworkSensors),
     cx: &mut PaneContext<'_>,
     commands: &mut Vec<Command>,
 ) {
@@ -68,7 +68,7 @@ pub(super) fn search_ui(
 fn wish_ui(
     ui: &mut Ui,
     perceiving: &mut Perceiving,
-    (vary, by): (&mut Vary, Sensor),
+    (vary, by): (&mut Vary, NetworkSensors),
     id: BoxId,
     scene: &Arc<Scene>,
 ) {
@@ -87,11 +87,11 @@ fn wish_ui(
             .accessible_name(t("Vary"));
         let search = ui.button(t("Search"));
         let hint = match by {
-            Sensor::Cameras | Sensor::Both => tf!(
+            NetworkSensors::Cameras | NetworkSensors::Both => tf!(
                 "Until the network takes less than {percent} % of the box for a thing",
                 percent = format!("{:.0}", MISSED_BELOW * 100.0)
             ),
-            Sensor::Lidar => tf!(
+            NetworkSensors::Lidar => tf!(
                 "Until the network is less than {percent} % sure of the box",
                 percent = format!("{:.0}", SCORE * 100.0)
             ),
@@ -103,7 +103,7 @@ fn wish_ui(
 }
 
 /// Draws the result of a search.
-fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+fn found_ui(ui: &mut Ui, found: &mut FinishedSearch, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
     let Some(last) = found.search.tried.last() else {
         return;
     };
@@ -111,17 +111,17 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
     let (n, least) = (last.sight.visible, last.sight.by.least());
     if found.search.tried.len() == 1 && !last.sight.is_judged() {
         ui.label(match last.sight.by {
-            Sensor::Cameras => tf!(
+            NetworkSensors::Cameras => tf!(
                 "Too small to be judged: {n} pixels, at least {least} are needed",
                 n = n,
                 least = least
             ),
-            Sensor::Lidar => tf!(
+            NetworkSensors::Lidar => tf!(
                 "Too few returns to be judged: {n}, at least {least} are needed",
                 n = n,
                 least = least
             ),
-            Sensor::Both => tf!(
+            NetworkSensors::Both => tf!(
                 "Too few voxels to be judged: {n}, at least {least} are needed",
                 n = n,
                 least = least
@@ -196,7 +196,7 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
 fn keep_version(
     scene: &Arc<Scene>,
     (id, at_s): (BoxId, f64),
-    change: Change,
+    change: SceneVariation,
     edits: &[editor::Edit],
     versions: &mut crate::shell::versions::Versions,
 ) {
@@ -213,23 +213,25 @@ fn keep_version(
 fn sight(tried: &Tried) -> String {
     let (n, percent) = (tried.sight.visible, format!("{:.0}", tried.sight.share * 100.0));
     match tried.sight.by {
-        Sensor::Cameras => tf!("{percent} % of {n} pixels are seen.", percent = percent, n = n),
-        Sensor::Lidar => tf!("{n} returns, {percent} % sure.", percent = percent, n = n),
-        Sensor::Both => tf!("{percent} % of {n} voxels are seen.", percent = percent, n = n),
+        NetworkSensors::Cameras => tf!("{percent} % of {n} pixels are seen.", percent = percent, n = n),
+        NetworkSensors::Lidar => tf!("{n} returns, {percent} % sure.", percent = percent, n = n),
+        NetworkSensors::Both => tf!("{percent} % of {n} voxels are seen.", percent = percent, n = n),
     }
 }
 
 /// A change in words of the interface's language.
-fn words(change: Change) -> String {
+fn words(change: SceneVariation) -> String {
     let m = |m: f64| format!("{m:.1}");
     match change {
-        Change::None => t("as it is").to_owned(),
-        Change::Away(away_m) => tf!("{distance} m from the ego vehicle", distance = m(away_m)),
-        Change::Aside(left_m) if left_m < 0.0 => tf!("{distance} m to the right", distance = m(-left_m)),
-        Change::Aside(left_m) => tf!("{distance} m to the left", distance = m(left_m)),
-        Change::Visibility(far_m) => tf!("visibility {distance} m", distance = format!("{far_m:.0}")),
-        Change::Time(time) => t(time.name()).to_owned(),
-        Change::Weather(weather) => t(weather.name()).to_owned(),
-        Change::Speed(mps) => tf!("{speed} km/h", speed = format!("{:.0}", mps * 3.6)),
+        SceneVariation::None => t("as it is").to_owned(),
+        SceneVariation::Away(away_m) => tf!("{distance} m from the ego vehicle", distance = m(away_m)),
+        SceneVariation::Aside(left_m) if left_m < 0.0 => {
+            tf!("{distance} m to the right", distance = m(-left_m))
+        }
+        SceneVariation::Aside(left_m) => tf!("{distance} m to the left", distance = m(left_m)),
+        SceneVariation::Visibility(far_m) => tf!("visibility {distance} m", distance = format!("{far_m:.0}")),
+        SceneVariation::Time(time) => t(time.name()).to_owned(),
+        SceneVariation::Weather(weather) => t(weather.name()).to_owned(),
+        SceneVariation::Speed(mps) => tf!("{speed} km/h", speed = format!("{:.0}", mps * 3.6)),
     }
 }

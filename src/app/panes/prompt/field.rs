@@ -6,7 +6,7 @@ use egui::text_edit::TextEditState;
 use egui::{Key, Modifiers, Ui, WidgetInfo};
 
 use super::completion::Completion;
-use super::plan::{Plan, Told};
+use super::plan::{PromptOrigin, PromptPlan};
 use super::typed_text::Both;
 use crate::command::{Command, FileCommand, step_name};
 use crate::text::doubts;
@@ -56,7 +56,7 @@ pub struct PromptField {
     pub(crate) last_step: Option<String>,
     /// The change was undone and is to be made again with another seed.
     redraws: bool,
-    pub(super) plan: Plan,
+    pub(super) plan: PromptPlan,
 }
 
 fn field_id() -> egui::Id {
@@ -89,7 +89,7 @@ impl PromptField {
     }
 
     /// Cell in which the thread that makes a scene reports how its layout was made.
-    pub fn told(&self) -> Told {
+    pub fn told(&self) -> PromptOrigin {
         self.plan.told()
     }
 

@@ -6,7 +6,7 @@ use egui::{Align2, FontId, Pos2, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use language::{t, tf};
 use place::to_graph::Graphed;
 use scene::Class;
-use scene::graph::{Edge, LaneRole, NodeKind, RelationKind, SceneGraph};
+use scene::graph::{GraphEdge, LaneRole, NodeKind, RelationKind, SceneGraph};
 use widgets::icons::section;
 use widgets::theme;
 
@@ -45,7 +45,7 @@ fn relation_name(r: RelationKind) -> String {
 
 /// One line of the picture: the objects that stand in a relation to a node.
 #[derive(Debug, PartialEq)]
-struct Row {
+struct RelationRow {
     to: String,
     relation: String,
     /// Classes, with their number of objects.
@@ -53,7 +53,7 @@ struct Row {
 }
 
 /// Relations grouped by their target, in the order in which they come; last the objects without a relation.
-fn rows(graph: &SceneGraph) -> Vec<Row> {
+fn rows(graph: &SceneGraph) -> Vec<RelationRow> {
     let mut keys: Vec<(u32, RelationKind, Option<u32>)> = Vec::new();
     let mut found: Vec<Vec<(Class, usize)>> = Vec::new();
     let count = |objects: &mut Vec<(Class, usize)>, class| match objects.iter_mut().find(|o| o.0 == class) {
@@ -75,7 +75,7 @@ fn rows(graph: &SceneGraph) -> Vec<Row> {
             count(&mut found[at], class);
         }
     }
-    let mut rows: Vec<Row> = keys
+    let mut rows: Vec<RelationRow> = keys
         .into_iter()
         .zip(found)
         .filter(|(_, objects)| !objects.is_empty())
@@ -86,7 +86,7 @@ fn rows(graph: &SceneGraph) -> Vec<Row> {
                 None => to,
             };
             let relation = relation_name(relation);
-            Row {
+            RelationRow {
                 to,
                 relation,
                 objects,
@@ -100,7 +100,7 @@ fn rows(graph: &SceneGraph) -> Vec<Row> {
         }
     }
     if !free.is_empty() {
-        rows.push(Row {
+        rows.push(RelationRow {
             to: t("anywhere").into(),
             relation: String::new(),
             objects: free,
@@ -260,7 +260,7 @@ pub(super) fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
     {
         graph
             .edges
-            .push(Edge::new(from, RelationKind::InFrontOf, SceneGraph::EGO));
+            .push(GraphEdge::new(from, RelationKind::InFrontOf, SceneGraph::EGO));
     }
 }
 

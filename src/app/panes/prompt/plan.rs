@@ -11,7 +11,7 @@ use egui::{Sense, Ui, WidgetInfo, vec2};
 use super::graph;
 use super::recalled::{Recall, Recalled};
 use crate::command::Command;
-use crate::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
+use crate::prompting::{Ask, Diffused, How, Keep, Laid, PlacementMethod, Remembered};
 use editor::Edit;
 use job::guard::Panicked;
 use language::{t, tf};
@@ -27,7 +27,7 @@ const VARIANTS: u64 = 4;
 
 /// Origin of the last scene from words, reported by the thread that made it.
 #[derive(Clone, Debug, Default)]
-pub struct Told(Arc<Mutex<Option<WhatWasTold>>>);
+pub struct PromptOrigin(Arc<Mutex<Option<WhatWasTold>>>);
 
 /// Details filled in from memory, boxes placed by the network, and notes about shortfalls.
 type WhatWasTold = (
@@ -36,7 +36,7 @@ type WhatWasTold = (
     Vec<String>,
 );
 
-impl Told {
+impl PromptOrigin {
     /// Reports how a layout was made.
     pub fn tell(&self, laid: &Laid) {
         let mut notes = laid.notes.clone();
@@ -108,8 +108,8 @@ struct Variants {
 
 /// Settings for a new scene besides the words.
 #[derive(Default)]
-pub struct Plan {
-    placer: Placer,
+pub struct PromptPlan {
+    placer: PlacementMethod,
     memory: bool,
     stays: Stays,
     prompt: String,
@@ -119,12 +119,12 @@ pub struct Plan {
     rolls: u64,
     variants: Option<Variants>,
     recall: Recall,
-    told: Told,
+    told: PromptOrigin,
 }
 
-impl Plan {
+impl PromptPlan {
     /// Cell in which the thread that makes a scene reports how its layout was made.
-    pub fn told(&self) -> Told {
+    pub fn told(&self) -> PromptOrigin {
         self.told.clone()
     }
 
@@ -195,7 +195,7 @@ impl Plan {
 
     /// Draws the switches: placer, memory, and the part of the open scene that stays.
     pub fn switches(&mut self, ui: &mut Ui) {
-        let mut diffusion = self.placer == Placer::Diffusion;
+        let mut diffusion = self.placer == PlacementMethod::Diffusion;
         let said = t(
             "Boxes by the layout network and a projection; off: by rules, which keep to the words more exactly",
         );
@@ -205,9 +205,9 @@ impl Plan {
             .changed()
         {
             self.placer = if diffusion {
-                Placer::Diffusion
+                PlacementMethod::Diffusion
             } else {
-                Placer::Rules
+                PlacementMethod::Rules
             };
             self.variants = None;
         }

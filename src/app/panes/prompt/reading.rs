@@ -16,8 +16,8 @@ use widgets::icons::section;
 use widgets::theme;
 use words::account::Why;
 use words::answer::{answer, sentence, thing};
-use words::hear::Heard;
-use words::reading::{Reading, What};
+use words::hear::CheckedReading;
+use words::reading::{ActKind, Reading};
 
 impl PromptField {
     /// Draws a chip for each part of the reading, which can be changed, locked, re-rolled or removed. A change that was
@@ -39,7 +39,7 @@ impl PromptField {
                 ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
                 for (i, act) in edited.heard.reading.acts.iter().enumerate() {
                     match &act.what {
-                        What::Add { things } if things.len() > 1 => {
+                        ActKind::Add { things } if things.len() > 1 => {
                             for (k, t) in things.iter().enumerate() {
                                 gone =
                                     gone.or(one(ui, &format!("adds {}", thing(t))).then_some((i, Some(k))));
@@ -61,7 +61,7 @@ impl PromptField {
                 ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
                 for (i, act) in prompted.heard.reading.acts.iter().enumerate() {
                     match &act.what {
-                        What::Add { things } => {
+                        ActKind::Add { things } => {
                             for (k, t) in things.iter().enumerate() {
                                 let text = thing(t);
                                 let objects: Vec<usize> = (0..described.from.len())
@@ -78,15 +78,17 @@ impl PromptField {
                                 }
                             }
                         }
-                        What::Time { what } => {
-                            let names = TimeOfDay::ALL.iter().map(|t| (t.name(), What::Time { what: *t }));
+                        ActKind::Time { what } => {
+                            let names = TimeOfDay::ALL
+                                .iter()
+                                .map(|t| (t.name(), ActKind::Time { what: *t }));
                             style_menu(ui, t(what.name()), names, i, &mut other);
                             gone = gone.or(chip_end(ui, t(what.name())).then_some((i, None)));
                         }
-                        What::Weather { what } => {
+                        ActKind::Weather { what } => {
                             let names = Weather::ALL
                                 .iter()
-                                .map(|t| (t.name(), What::Weather { what: *t }));
+                                .map(|t| (t.name(), ActKind::Weather { what: *t }));
                             style_menu(ui, t(what.name()), names, i, &mut other);
                             gone = gone.or(chip_end(ui, t(what.name())).then_some((i, None)));
                         }
@@ -130,7 +132,7 @@ impl PromptField {
 
     /// Tells which words were doubtful or not read; after they were carried out the answer tells it. Returns true if
     /// the user takes the other reader's reading.
-    fn say_doubts(&self, ui: &mut Ui, heard: &Heard) -> bool {
+    fn say_doubts(&self, ui: &mut Ui, heard: &CheckedReading) -> bool {
         let said = self.said();
         for m in &heard.mended {
             let typed = m.span.of(&said);
@@ -236,9 +238,9 @@ impl PromptField {
 fn style_menu(
     ui: &mut Ui,
     text: &str,
-    names: impl Iterator<Item = (&'static str, What)>,
+    names: impl Iterator<Item = (&'static str, ActKind)>,
     act: usize,
-    other: &mut Option<(usize, What)>,
+    other: &mut Option<(usize, ActKind)>,
 ) {
     chip::make_room(ui, text);
     let response = chip::menu(ui, text, |ui| {

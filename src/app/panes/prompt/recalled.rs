@@ -71,13 +71,13 @@ fn shortened(text: &str) -> String {
 }
 
 /// Words with the remembered scene for them, or why none could be looked up.
-type Found = (String, Result<Option<Recalled>, Panicked>);
+type RecallResult = (String, Result<Option<Recalled>, Panicked>);
 
 /// Looks up the remembered scene for the words that are being typed, on a thread of its own.
 #[derive(Default)]
 pub struct Recall {
-    shown: Option<Found>,
-    coming: Option<Receiver<Found>>,
+    shown: Option<RecallResult>,
+    coming: Option<Receiver<RecallResult>>,
 }
 
 impl Recall {
@@ -167,7 +167,7 @@ mod tests {
         job::guard::panic_next("recall");
         assert_eq!(found(), Err("recall panicked: asked for by a test".into()));
         assert_eq!(found(), Ok(true));
-        let mut plan = super::super::plan::Plan::default();
+        let mut plan = super::super::plan::PromptPlan::default();
         job::guard::panic_next("variants");
         let first = plan.first_variant(&ask);
         assert_eq!(first, Err("variants panicked: asked for by a test".into()));

@@ -3,9 +3,9 @@
 
 use crate::text::{self, Edited, Prompted};
 use scene::{BoxId, Scene, SceneRev};
-use words::hear::{By, Heard};
+use words::hear::{By, CheckedReading};
 use words::notation;
-use words::reading::{Quantity, Reading, Thing, What};
+use words::reading::{ActKind, ObjectPhrase, Quantity, Reading};
 
 /// The two readings of a text.
 pub struct Both {
@@ -54,28 +54,32 @@ impl Both {
     pub fn is_described(&self) -> bool {
         let Ok(p) = &self.prompted else { return false };
         let acts = || p.heard.reading.acts.iter().map(|a| &a.what);
-        let road = acts().any(|w| matches!(w, What::Road { .. }));
-        let light =
-            acts().any(|w| matches!(w, What::Time { .. } | What::Weather { .. } | What::Density { .. }));
-        let things = acts().any(|w| matches!(w, What::Add { .. }));
+        let road = acts().any(|w| matches!(w, ActKind::Road { .. }));
+        let light = acts().any(|w| {
+            matches!(
+                w,
+                ActKind::Time { .. } | ActKind::Weather { .. } | ActKind::Density { .. }
+            )
+        });
+        let things = acts().any(|w| matches!(w, ActKind::Add { .. }));
         let changes = self.edited.as_ref().is_ok_and(|e| {
             let acts = e.heard.reading.acts.iter().map(|a| &a.what);
             acts.into_iter().any(|w| {
                 !matches!(
                     w,
-                    What::Add { .. }
-                        | What::Time { .. }
-                        | What::Weather { .. }
-                        | What::Has { .. }
-                        | What::No { .. }
-                        | What::Road { .. }
-                        | What::Density { .. }
-                        | What::Env { .. }
-                        | What::Lanes { .. }
-                        | What::OneWay
-                        | What::Narrow
-                        | What::Wide
-                        | What::OwnLane { .. }
+                    ActKind::Add { .. }
+                        | ActKind::Time { .. }
+                        | ActKind::Weather { .. }
+                        | ActKind::Has { .. }
+                        | ActKind::No { .. }
+                        | ActKind::Road { .. }
+                        | ActKind::Density { .. }
+                        | ActKind::Env { .. }
+                        | ActKind::Lanes { .. }
+                        | ActKind::OneWay
+                        | ActKind::Narrow
+                        | ActKind::Wide
+                        | ActKind::OwnLane { .. }
                 )
             })
         });
@@ -117,7 +121,7 @@ impl Both {
     }
 }
 
-fn by_hand(heard: &Heard, change: impl FnOnce(&mut Reading)) -> Heard {
+fn by_hand(heard: &CheckedReading, change: impl FnOnce(&mut Reading)) -> CheckedReading {
     let mut heard = heard.clone();
     change(&mut heard.reading);
     heard.by = By::Hand;
@@ -131,7 +135,7 @@ pub fn take_out(reading: &mut Reading, act: usize, thing: Option<usize>) {
     let Some(a) = reading.acts.get_mut(act) else {
         return;
     };
-    if let (Some(k), What::Add { things } | What::No { who: things }) = (thing, &mut a.what)
+    if let (Some(k), ActKind::Add { things } | ActKind::No { who: things }) = (thing, &mut a.what)
         && things.len() > 1
     {
         if k < things.len() {
@@ -148,7 +152,7 @@ pub fn set_number(reading: &mut Reading, act: usize, thing: usize, n: u32) {
         take_out(reading, act, Some(thing));
         return;
     }
-    if let Some(What::Add { things }) = reading.acts.get_mut(act).map(|a| &mut a.what)
+    if let Some(ActKind::Add { things }) = reading.acts.get_mut(act).map(|a| &mut a.what)
         && let Some(t) = things.get_mut(thing)
     {
         t.quantity = Quantity::N(n);
@@ -161,14 +165,14 @@ pub fn answer(reading: &mut Reading, act: usize, asked: &str, id: BoxId) {
     let Some(a) = reading.acts.get_mut(act) else {
         return;
     };
-    if let What::Remove { who }
-    | What::Keep { who }
-    | What::Leave { who }
-    | What::Set { who, .. }
-    | What::Go { who, .. }
-    | What::Move { who, .. }
-    | What::Turn { who, .. }
-    | What::Replace { who, .. } = &mut a.what
+    if let ActKind::Remove { who }
+    | ActKind::Keep { who }
+    | ActKind::Leave { who }
+    | ActKind::Set { who, .. }
+    | ActKind::Go { who, .. }
+    | ActKind::Move { who, .. }
+    | ActKind::Turn { who, .. }
+    | ActKind::Replace { who, .. } = &mut a.what
         && let Some(k) = who.iter().position(|t| notation::thing(t) == asked)
         && let Quantity::TheN(n) = who[k].quantity
         && n > 1
@@ -194,7 +198,7 @@ pub fn answer(reading: &mut Reading, act: usize, asked: &str, id: BoxId) {
 }
 
 /// Makes a thing stand for this box only.
-fn named(t: &mut Thing, id: BoxId) {
+fn named(t: &mut ObjectPhrase, id: BoxId) {
     t.id = Some(id.0);
     (t.quantity, t.pick, t.nth, t.other) = (Quantity::The, None, None, false);
     t.places.clear();
@@ -211,66 +215,66 @@ fn names_boxes(reading: &Reading) -> bool {
 }
 
 /// Calls `f` with every thing of an act, anchors included.
-fn each_thing(what: &mut What, f: &mut dyn FnMut(&mut Thing)) {
-    use words::reading::{Anchor, Destination, Place, Turn};
-    fn places(list: &mut [Place], f: &mut dyn FnMut(&mut Thing)) {
+fn each_thing(what: &mut ActKind, f: &mut dyn FnMut(&mut ObjectPhrase)) {
+    use words::reading::{AnchorPhrase, Destination, PlacePhrase, Turn};
+    fn places(list: &mut [PlacePhrase], f: &mut dyn FnMut(&mut ObjectPhrase)) {
         for p in list {
             for anchor in [p.to.as_mut(), p.and.as_mut()].into_iter().flatten() {
-                if let Anchor::Thing(t) = anchor {
+                if let AnchorPhrase::Thing(t) = anchor {
                     one(t, f);
                 }
             }
         }
     }
-    fn one(t: &mut Thing, f: &mut dyn FnMut(&mut Thing)) {
+    fn one(t: &mut ObjectPhrase, f: &mut dyn FnMut(&mut ObjectPhrase)) {
         f(t);
         places(&mut t.places, f);
         t.except.iter_mut().for_each(|e| one(e, f));
     }
     match what {
-        What::Add { things: a }
-        | What::No { who: a }
-        | What::Remove { who: a }
-        | What::Keep { who: a }
-        | What::Leave { who: a }
-        | What::Go { who: a, .. }
-        | What::Count { who: a, .. } => a.iter_mut().for_each(|t| one(t, f)),
-        What::Replace { who, things } => who.iter_mut().chain(things).for_each(|t| one(t, f)),
-        What::Move { who, to } => {
+        ActKind::Add { things: a }
+        | ActKind::No { who: a }
+        | ActKind::Remove { who: a }
+        | ActKind::Keep { who: a }
+        | ActKind::Leave { who: a }
+        | ActKind::Go { who: a, .. }
+        | ActKind::Count { who: a, .. } => a.iter_mut().for_each(|t| one(t, f)),
+        ActKind::Replace { who, things } => who.iter_mut().chain(things).for_each(|t| one(t, f)),
+        ActKind::Move { who, to } => {
             who.iter_mut().for_each(|t| one(t, f));
             if let Destination::To(list) = to {
                 places(list, f);
             }
         }
-        What::Turn { who, turn } => {
+        ActKind::Turn { who, turn } => {
             who.iter_mut().for_each(|t| one(t, f));
             if let Turn::To(list) = turn {
                 places(list, f);
             }
         }
-        What::Set { who, traits } => {
+        ActKind::Set { who, traits } => {
             who.iter_mut().for_each(|t| one(t, f));
             if let Some(t) = &mut traits.paint_of {
                 one(t, f);
             }
         }
-        What::Swap { one: a, other: b } => {
+        ActKind::Swap { one: a, other: b } => {
             one(a, f);
             one(b, f);
         }
-        What::Has { places: list, .. } => places(list, f),
-        What::Time { .. }
-        | What::Weather { .. }
-        | What::Road { .. }
-        | What::Env { .. }
-        | What::Density { .. }
-        | What::Lacks { .. }
-        | What::Lanes { .. }
-        | What::Length { .. }
-        | What::OneWay
-        | What::Narrow
-        | What::Wide
-        | What::OwnLane { .. } => {}
+        ActKind::Has { places: list, .. } => places(list, f),
+        ActKind::Time { .. }
+        | ActKind::Weather { .. }
+        | ActKind::Road { .. }
+        | ActKind::Env { .. }
+        | ActKind::Density { .. }
+        | ActKind::Lacks { .. }
+        | ActKind::Lanes { .. }
+        | ActKind::Length { .. }
+        | ActKind::OneWay
+        | ActKind::Narrow
+        | ActKind::Wide
+        | ActKind::OwnLane { .. } => {}
     }
 }
 

@@ -4,7 +4,7 @@ use egui::{Align2, Pos2, Rect, Shape, Stroke, TextStyle, Ui, pos2, vec2};
 
 use scene::{BoxId, Moving, Scene};
 
-use super::rows::Track;
+use super::rows::TimeAxis;
 use language::tf;
 use widgets::theme;
 
@@ -12,7 +12,7 @@ use widgets::theme;
 const STEP_S: f64 = 0.1;
 
 /// Draws the curves on the time axis of the rows.
-pub(super) fn show(ui: &mut Ui, scene: &Scene, id: Option<BoxId>, track: Track) {
+pub(super) fn show(ui: &mut Ui, scene: &Scene, id: Option<BoxId>, track: TimeAxis) {
     let clip = scene.clip();
     let id = id.filter(|id| clip.tracks.contains_key(id));
     let size = vec2(ui.available_width(), ui.available_height().max(30.0));

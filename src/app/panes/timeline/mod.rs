@@ -11,7 +11,7 @@ use egui::Ui;
 
 use super::id::PaneId;
 use super::motion_menu;
-use super::pane::{Pane, PaneContext, Place};
+use super::pane::{Pane, PaneContext, PanePlacement};
 use crate::command::Command;
 use editor::Edit;
 use language::{t, tf};
@@ -21,7 +21,7 @@ use widgets::theme;
 /// The pane of the timeline.
 #[derive(Default)]
 pub struct Timeline {
-    rows: rows::Rows,
+    rows: rows::TrackRows,
 }
 
 /// Length of a clip made by the button, s.
@@ -40,8 +40,8 @@ impl Pane for Timeline {
         Icon::Clock
     }
 
-    fn place(&self) -> Place {
-        Place::BelowViews
+    fn place(&self) -> PanePlacement {
+        PanePlacement::BelowViews
     }
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {

@@ -27,13 +27,13 @@ const APART_S: f64 = 0.02;
 
 /// Mapping of times to the screen.
 #[derive(Clone, Copy)]
-pub(super) struct Track {
+pub(super) struct TimeAxis {
     left: f32,
     right: f32,
     length_s: f64,
 }
 
-impl Track {
+impl TimeAxis {
     /// The screen x of a time.
     pub(super) fn x(&self, time_s: f64) -> f32 {
         let part = (time_s / self.length_s.max(1e-9)) as f32;
@@ -54,7 +54,7 @@ impl Track {
 
 /// A keyframe that is dragged.
 #[derive(Clone)]
-struct Drag {
+struct KeyframeDrag {
     id: Option<BoxId>,
     motion: Motion,
     there_s: [Option<f64>; 2],
@@ -63,11 +63,11 @@ struct Drag {
 
 /// The rows, and the keyframe that is dragged.
 #[derive(Default)]
-pub(super) struct Rows {
-    drag: Option<Drag>,
+pub(super) struct TrackRows {
+    drag: Option<KeyframeDrag>,
 }
 
-impl Rows {
+impl TrackRows {
     /// Draws the rows with a total height, points.
     pub(super) fn show(
         &mut self,
@@ -76,9 +76,9 @@ impl Rows {
         (state, findings): (&mut UiState, &[Finding]),
         height: f32,
         commands: &mut Vec<Command>,
-    ) -> Track {
+    ) -> TimeAxis {
         let area = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), height));
-        let track = Track {
+        let track = TimeAxis {
             left: area.left() + NAME_POINTS,
             right: area.right() - 12.0,
             length_s: scene.clip().length_s,
@@ -119,7 +119,7 @@ impl Rows {
         &mut self,
         ui: &mut Ui,
         id: Option<BoxId>,
-        track: Track,
+        track: TimeAxis,
         scene: &Scene,
         state: &mut UiState,
         commands: &mut Vec<Command>,
@@ -196,7 +196,7 @@ impl Rows {
         response: &egui::Response,
         id: Option<BoxId>,
         motion: Option<(&Motion, [Option<f64>; 2])>,
-        track: Track,
+        track: TimeAxis,
         commands: &mut Vec<Command>,
     ) {
         if response.drag_started()
@@ -206,7 +206,7 @@ impl Rows {
             let near = keys
                 .iter()
                 .position(|t| (track.x(*t) - at.x).abs() <= REACH_POINTS);
-            self.drag = near.map(|index| Drag {
+            self.drag = near.map(|index| KeyframeDrag {
                 id,
                 motion: motion.clone(),
                 there_s,
@@ -274,7 +274,7 @@ fn diamond(painter: &egui::Painter, at: Pos2, color: Color32) {
 fn faults(
     ui: &Ui,
     area: Rect,
-    track: Track,
+    track: TimeAxis,
     scene: &Scene,
     findings: &[Finding],
     commands: &mut Vec<Command>,
@@ -307,7 +307,7 @@ fn faults(
 }
 
 /// Draws times with ticks; a click or a drag shows that moment.
-fn ruler(ui: &Ui, rect: Rect, track: Track, scene: &Scene, state: &UiState, commands: &mut Vec<Command>) {
+fn ruler(ui: &Ui, rect: Rect, track: TimeAxis, scene: &Scene, state: &UiState, commands: &mut Vec<Command>) {
     let (left, right) = track.ends();
     let strip = Rect::from_x_y_ranges(left - 6.0..=right + 6.0, rect.y_range());
     let response = ui.interact(strip, ui.scope_id().with("ruler"), Sense::click_and_drag());

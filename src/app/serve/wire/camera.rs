@@ -1,6 +1,6 @@
 //! Cameras: lens models, shutters, and the cameras of a scene.
 
-use super::common::Pose;
+use super::common::WirePose;
 
 /// How the picture is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, prost::Enumeration)]
@@ -202,7 +202,7 @@ pub struct AvailableCamera {
     pub intrinsics: Option<CameraSpec>,
     /// Pose of the camera in the rig: takes points of the camera to the rig.
     #[prost(message, optional, tag = "2")]
-    pub rig_to_camera: Option<Pose>,
+    pub rig_to_camera: Option<WirePose>,
     /// Its name in the rig.
     #[prost(string, tag = "3")]
     pub logical_id: String,

@@ -37,7 +37,7 @@ pub struct Vec3 {
 
 /// Pose of an inner frame in an outer one: takes points of the inner frame to the outer one.
 #[derive(Clone, Copy, PartialEq, prost::Message)]
-pub struct Pose {
+pub struct WirePose {
     /// Origin of the inner frame, m.
     #[prost(message, optional, tag = "1")]
     pub vec: Option<Vec3>,
@@ -51,10 +51,10 @@ pub struct Pose {
 pub struct PosePair {
     /// At the start.
     #[prost(message, optional, tag = "1")]
-    pub start_pose: Option<Pose>,
+    pub start_pose: Option<WirePose>,
     /// At the end.
     #[prost(message, optional, tag = "2")]
-    pub end_pose: Option<Pose>,
+    pub end_pose: Option<WirePose>,
 }
 
 /// A pose at a time.
@@ -62,7 +62,7 @@ pub struct PosePair {
 pub struct PoseAtTime {
     /// The pose.
     #[prost(message, optional, tag = "1")]
-    pub pose: Option<Pose>,
+    pub pose: Option<WirePose>,
     /// The time, us.
     #[prost(fixed64, tag = "2")]
     pub timestamp_us: u64,

@@ -10,7 +10,8 @@ pub use camera::{
     Ftheta, FthetaPolynomial, LinearCde, Pinhole, ShutterType, Windshield, WindshieldParam,
 };
 pub use common::{
-    ApiVersion, AvailableScenesReturn, Empty, Pose, PoseAtTime, PosePair, Quat, Trajectory, Vec3, VersionId,
+    ApiVersion, AvailableScenesReturn, Empty, PoseAtTime, PosePair, Quat, Trajectory, Vec3, VersionId,
+    WirePose,
 };
 pub use render::{
     AggregatedRenderRequest, AggregatedRenderReturn, AvailableEgoMasksReturn, AvailableTrajectoriesRequest,

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use scene::Arrangement;
 
-use super::Group::{Selection, Tools};
+use super::ActionGroup::{Selection, Tools};
 use super::{ActionDef, action};
 use crate::command::Command;
 use crate::map_edges::extend;

@@ -37,7 +37,7 @@ impl When {
 
 /// Sections of the sheet of keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
+pub enum ActionGroup {
     /// Tools.
     Tools,
     /// The chosen box.
@@ -52,15 +52,15 @@ pub enum Group {
     File,
 }
 
-impl Group {
+impl ActionGroup {
     /// Every group with its title.
-    pub const ALL: [(Group, &'static str); 6] = [
-        (Group::Tools, "Tools"),
-        (Group::Selection, "Selection"),
-        (Group::Views, "Views"),
-        (Group::Time, "Time"),
-        (Group::Generation, "Generation"),
-        (Group::File, "File and edit"),
+    pub const ALL: [(ActionGroup, &'static str); 6] = [
+        (ActionGroup::Tools, "Tools"),
+        (ActionGroup::Selection, "Selection"),
+        (ActionGroup::Views, "Views"),
+        (ActionGroup::Time, "Time"),
+        (ActionGroup::Generation, "Generation"),
+        (ActionGroup::File, "File and edit"),
     ];
 }
 
@@ -70,7 +70,7 @@ pub struct ActionDef {
     /// Its id in key files.
     pub id: &'static str,
     /// Section of the sheet.
-    pub group: Group,
+    pub group: ActionGroup,
     /// Its title for the user.
     pub title: &'static str,
     /// The condition under which its chords count.
@@ -92,7 +92,7 @@ enum Does {
 }
 
 const fn action(
-    group: Group,
+    group: ActionGroup,
     id: &'static str,
     title: &'static str,
     keys: &'static str,
@@ -161,8 +161,8 @@ fn of_tool(shortcut: &'static Shortcut) -> ActionDef {
     ActionDef {
         id: shortcut.id,
         group: match shortcut.when {
-            tools::When::Chosen => Group::Selection,
-            _ => Group::Tools,
+            tools::When::Chosen => ActionGroup::Selection,
+            _ => ActionGroup::Tools,
         },
         title: shortcut.title,
         when: match shortcut.when {

@@ -1,6 +1,6 @@
 //! Actions of views, generation, versions and files.
 
-use super::Group::{File, Generation, Time, Views};
+use super::ActionGroup::{File, Generation, Time, Views};
 use super::{ActionDef, action};
 use crate::command::{Command, FileCommand, GenerationCommand, TimeCommand, Verdict, ViewCommand, Window};
 use crate::panes::id::PaneId;

@@ -30,7 +30,7 @@ pub(super) struct Across {
 }
 
 /// Cross-section at one place, as distances to the left of the middle, m.
-struct Section {
+struct RoadCrossSection {
     paved: [f64; 2],         // right and left kerb
     park: [f64; 2],          // width of parking behind them
     walk: [f64; 2],          // width of walkway behind that
@@ -44,11 +44,11 @@ pub(super) fn read(layout: &BevLayout, middle_m: &[DVec2]) -> Option<Across> {
     let count = (length_m / STATION_M).floor().clamp(1.0, 400.0) as usize;
     let at = |k: usize| curve::at(middle_m, length_m * (k as f64 + 0.5) / count as f64);
     let near = near_lines(layout, middle_m);
-    let sections: Vec<Section> = (0..count).filter_map(|k| section(layout, &near, at(k))).collect();
+    let sections: Vec<RoadCrossSection> = (0..count).filter_map(|k| section(layout, &near, at(k))).collect();
     if sections.is_empty() {
         return None;
     }
-    let of = |value: &dyn Fn(&Section) -> f64| median(sections.iter().map(value).collect());
+    let of = |value: &dyn Fn(&RoadCrossSection) -> f64| median(sections.iter().map(value).collect());
     let kerbs = [0, 1].map(|side| of(&|s| s.paved[side]));
     let outside = [0, 1].map(|side| [of(&|s| s.park[side]), of(&|s| s.walk[side])]);
     let (along, against) = (lanes_of(&sections, true), lanes_of(&sections, false));
@@ -129,7 +129,7 @@ fn near_lines(layout: &BevLayout, middle_m: &[DVec2]) -> Vec<Piece> {
         .collect()
 }
 
-fn section(layout: &BevLayout, near: &[Piece], (at, way): (DVec2, DVec2)) -> Option<Section> {
+fn section(layout: &BevLayout, near: &[Piece], (at, way): (DVec2, DVec2)) -> Option<RoadCrossSection> {
     let extent = layout.extent();
     let left = way.perp();
     let has = |off: f64, layer: BevLayer| {
@@ -183,7 +183,7 @@ fn section(layout: &BevLayout, near: &[Piece], (at, way): (DVec2, DVec2)) -> Opt
         }
     }
     lanes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Some(Section {
+    Some(RoadCrossSection {
         paved: kerbs,
         park: [right[1], left_side[1]],
         walk: [right[2], left_side[2]],
@@ -193,8 +193,8 @@ fn section(layout: &BevLayout, near: &[Piece], (at, way): (DVec2, DVec2)) -> Opt
 }
 
 /// Middles of the lanes of one direction, from right to left, as most places show them.
-fn lanes_of(sections: &[Section], along: bool) -> Vec<f64> {
-    let of = |s: &Section| {
+fn lanes_of(sections: &[RoadCrossSection], along: bool) -> Vec<f64> {
+    let of = |s: &RoadCrossSection| {
         s.lanes
             .iter()
             .filter(|l| l.1 == along)

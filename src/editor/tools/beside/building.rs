@@ -7,10 +7,10 @@ use language::tf;
 use scene::Form;
 use scene::background::{Building, Facade, Roof, STOREY_M, crossing_edges};
 
-use super::{Coming, Draft, Drawing, Outcome, Phase, Pointer, Site, ThingState};
+use super::{Coming, Draft, DraftResponse, DraftTool, GroundPointer, Phase, SceneryContext, ThingState};
 use crate::tools::beside::drawing::length;
-use crate::tools::setting::{self, Control, Setting, Value};
-use crate::tools::{Group, Hand, Shortcut, ToolDef, ToolId, When};
+use crate::tools::setting::{self, Control, ToolOption, Value};
+use crate::tools::{Hand, Shortcut, ToolDef, ToolGroup, ToolId, When};
 
 /// Its name.
 pub const ID: ToolId = ToolId("building_tool");
@@ -21,7 +21,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Building",
     key: "Shift+B",
     icon: "building",
-    group: Group::Beside,
+    group: ToolGroup::Beside,
     is_brush: false,
     paints: false,
     shortcuts: &[Shortcut {
@@ -31,7 +31,7 @@ pub static DEF: ToolDef = ToolDef {
         when: When::Always,
         set: |hand| hand.tool = ID,
     }],
-    make: || Box::new(Drawing::<BuildingDraft>::default()),
+    make: || Box::new(DraftTool::<BuildingDraft>::default()),
 };
 
 /// Names of roofs.
@@ -66,36 +66,41 @@ pub struct BuildingDraft {
 
 impl BuildingDraft {
     /// Sets a corner, or closes the outline at its first one.
-    fn corner(&mut self, p: &Pointer, options: &ThingState) -> Outcome {
+    fn corner(&mut self, p: &GroundPointer, options: &ThingState) -> DraftResponse {
         let near = |q: Option<&DVec2>| q.is_some_and(|q| q.distance(p.at_m) <= p.reach_m);
         if self.corners_m.len() >= 3 && near(self.corners_m.first()) {
             return self.finish(options);
         }
         // The second click of a double click.
         if near(self.corners_m.last()) {
-            return Outcome::Nothing;
+            return DraftResponse::Nothing;
         }
         if crosses(&self.corners_m, p.at_m) {
-            return Outcome::Refused("That wall would cross another one".to_owned());
+            return DraftResponse::Refused("That wall would cross another one".to_owned());
         }
         self.corners_m.push(p.at_m);
-        Outcome::Nothing
+        DraftResponse::Nothing
     }
 }
 
 impl Draft for BuildingDraft {
-    fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome {
+    fn pointer(
+        &mut self,
+        p: &GroundPointer,
+        site: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> DraftResponse {
         match p.phase {
             Phase::Press => {
                 self.pressed_m = Some(p.at_m);
-                Outcome::Nothing
+                DraftResponse::Nothing
             }
             Phase::Drag => match self.pressed_m.filter(|_| self.corners_m.is_empty()) {
                 Some(from_m) => match rectangle(from_m, p, site, options) {
-                    Ok(building) => Outcome::Preview(vec![Form::Building(building)]),
-                    Err(_) => Outcome::Preview(Vec::new()),
+                    Ok(building) => DraftResponse::Preview(vec![Form::Building(building)]),
+                    Err(_) => DraftResponse::Preview(Vec::new()),
                 },
-                None => Outcome::Nothing,
+                None => DraftResponse::Nothing,
             },
             Phase::Release { clicked } => match self.pressed_m.take() {
                 // A hand that shakes while it clicks drags a little.
@@ -103,29 +108,29 @@ impl Draft for BuildingDraft {
                     if !clicked && self.corners_m.is_empty() && from_m.distance(p.at_m) > LEAST_M =>
                 {
                     match rectangle(from_m, p, site, options) {
-                        Ok(building) => Outcome::Add(vec![Form::Building(building)]),
-                        Err(problem) => Outcome::Refused(problem),
+                        Ok(building) => DraftResponse::Add(vec![Form::Building(building)]),
+                        Err(problem) => DraftResponse::Refused(problem),
                     }
                 }
                 Some(_) => self.corner(p, options),
-                None => Outcome::Nothing,
+                None => DraftResponse::Nothing,
             },
         }
     }
 
-    fn finish(&mut self, options: &ThingState) -> Outcome {
+    fn finish(&mut self, options: &ThingState) -> DraftResponse {
         if self.corners_m.len() < 3 {
-            return Outcome::Refused("A building needs three corners or more".to_owned());
+            return DraftResponse::Refused("A building needs three corners or more".to_owned());
         }
         if crossing_edges(&self.corners_m).is_some() {
-            return Outcome::Refused(
+            return DraftResponse::Refused(
                 "The outline crosses itself: Backspace takes the last corner back".to_owned(),
             );
         }
         let form = Form::Building(with_options(self.corners_m.clone(), options));
         match form.problem() {
-            Some(problem) => Outcome::Refused(problem),
-            None => Outcome::Add(vec![form]),
+            Some(problem) => DraftResponse::Refused(problem),
+            None => DraftResponse::Add(vec![form]),
         }
     }
 
@@ -148,7 +153,13 @@ impl Draft for BuildingDraft {
         Some("Alt ignores the road")
     }
 
-    fn coming(&self, _: bool, p: Option<Pointer>, _: &Site<'_>, options: &ThingState) -> Coming {
+    fn coming(
+        &self,
+        _: bool,
+        p: Option<GroundPointer>,
+        _: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> Coming {
         let at_m = p.map(|p| p.at_m);
         let corners: Vec<DVec2> = self.corners_m.iter().copied().chain(at_m).collect();
         let mut out = Coming::default();
@@ -167,18 +178,18 @@ impl Draft for BuildingDraft {
         out
     }
 
-    fn options(hand: &Hand) -> Vec<Setting> {
+    fn options(hand: &Hand) -> Vec<ToolOption> {
         let things = &hand.things;
         vec![
-            Setting::title("Building"),
-            Setting::text(
+            ToolOption::title("Building"),
+            ToolOption::text(
                 "Drag a rectangle along the road, or click corners: Enter or a double click closes.",
             ),
-            Setting::number("storeys", "Storeys", f64::from(things.storeys), [1.0, 25.0], 0),
-            Setting::gap(),
-            Setting::segments("roof", things.roof, &ROOFS, 3),
-            Setting::gap(),
-            Setting::new(
+            ToolOption::number("storeys", "Storeys", f64::from(things.storeys), [1.0, 25.0], 0),
+            ToolOption::gap(),
+            ToolOption::segments("roof", things.roof, &ROOFS, 3),
+            ToolOption::gap(),
+            ToolOption::new(
                 "facade",
                 Control::List {
                     title: "Facade",
@@ -218,7 +229,12 @@ fn with_options(outline_m: Vec<DVec2>, options: &ThingState) -> Building {
 }
 
 /// The rectangle between two corners whose sides run along and across the nearest road.
-fn rectangle(from_m: DVec2, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Result<Building, String> {
+fn rectangle(
+    from_m: DVec2,
+    p: &GroundPointer,
+    site: &SceneryContext<'_>,
+    options: &ThingState,
+) -> Result<Building, String> {
     let along = match p.free {
         true => DVec2::X,
         false => kerb::road_direction(site.layout, (from_m + p.at_m) / 2.0),
@@ -260,8 +276,8 @@ mod tests {
         DVec2::new(x, y)
     }
 
-    fn at(phase: Phase, x: f64, y: f64) -> Pointer {
-        Pointer {
+    fn at(phase: Phase, x: f64, y: f64) -> GroundPointer {
+        GroundPointer {
             phase,
             at_m: v(x, y),
             reach_m: 0.4,
@@ -293,21 +309,21 @@ mod tests {
             }
         }
 
-        fn does(&mut self, p: Pointer) -> Outcome {
-            let site = Site {
+        fn does(&mut self, p: GroundPointer) -> DraftResponse {
+            let site = SceneryContext {
                 layout: &self.layout,
                 trees_m: &[],
                 houses_m: &[],
                 brush_m: 3.2,
             };
             let outcome = self.draft.pointer(&p, &site, &self.options);
-            if matches!(outcome, Outcome::Add(_)) {
+            if matches!(outcome, DraftResponse::Add(_)) {
                 self.draft = BuildingDraft::default();
             }
             outcome
         }
 
-        fn click(&mut self, x: f64, y: f64) -> Outcome {
+        fn click(&mut self, x: f64, y: f64) -> DraftResponse {
             self.does(at(Phase::Press, x, y));
             self.does(at(Phase::Release { clicked: true }, x, y))
         }
@@ -316,10 +332,10 @@ mod tests {
     #[test]
     fn a_drag_makes_a_rectangle_along_the_road() {
         let mut hand = Builder::new();
-        assert_eq!(hand.does(at(Phase::Press, 10.0, 0.0)), Outcome::Nothing);
+        assert_eq!(hand.does(at(Phase::Press, 10.0, 0.0)), DraftResponse::Nothing);
         let preview = hand.does(at(Phase::Drag, 20.0, 0.0));
-        assert!(matches!(preview, Outcome::Preview(forms) if forms.len() == 1));
-        let Outcome::Add(forms) = hand.does(at(Phase::Release { clicked: false }, 20.0, 0.0)) else {
+        assert!(matches!(preview, DraftResponse::Preview(forms) if forms.len() == 1));
+        let DraftResponse::Add(forms) = hand.does(at(Phase::Release { clicked: false }, 20.0, 0.0)) else {
             panic!("a building");
         };
         let Form::Building(building) = &forms[0] else {
@@ -339,13 +355,13 @@ mod tests {
         // A sliver is refused, and with Alt the sides are those of the ego frame.
         hand.does(at(Phase::Press, 0.0, 0.0));
         let thin = hand.does(at(Phase::Release { clicked: false }, 7.0, 7.1));
-        assert!(matches!(thin, Outcome::Refused(text) if text.contains("expected at least 1 m")));
+        assert!(matches!(thin, DraftResponse::Refused(text) if text.contains("expected at least 1 m")));
         hand.does(at(Phase::Press, 0.0, 0.0));
-        let free = Pointer {
+        let free = GroundPointer {
             free: true,
             ..at(Phase::Release { clicked: false }, 8.0, 5.0)
         };
-        let Outcome::Add(forms) = hand.does(free) else {
+        let DraftResponse::Add(forms) = hand.does(free) else {
             panic!("a building");
         };
         assert!(forms[0].points_m().contains(&v(8.0, 0.0)));
@@ -355,19 +371,19 @@ mod tests {
     fn clicks_make_an_outline_that_does_not_cross() {
         let mut hand = Builder::new();
         for [x, y] in [[0.0, 0.0], [10.0, 0.0], [10.0, 8.0]] {
-            assert_eq!(hand.click(x, y), Outcome::Nothing);
+            assert_eq!(hand.click(x, y), DraftResponse::Nothing);
         }
         let crossing = hand.click(5.0, -3.0);
         assert_eq!(
             crossing,
-            Outcome::Refused("That wall would cross another one".into())
+            DraftResponse::Refused("That wall would cross another one".into())
         );
         assert_eq!(hand.draft.points_m().len(), 3, "it was not taken");
-        assert_eq!(hand.click(10.1, 8.1), Outcome::Nothing, "a double click");
+        assert_eq!(hand.click(10.1, 8.1), DraftResponse::Nothing, "a double click");
         assert_eq!(hand.draft.points_m().len(), 3);
-        assert_eq!(hand.click(4.0, 8.0), Outcome::Nothing);
+        assert_eq!(hand.click(4.0, 8.0), DraftResponse::Nothing);
         // A click on the first corner closes it.
-        let Outcome::Add(forms) = hand.click(0.2, 0.1) else {
+        let DraftResponse::Add(forms) = hand.click(0.2, 0.1) else {
             panic!("a building");
         };
         assert_eq!(forms[0].points_m().len(), 4);
@@ -381,13 +397,13 @@ mod tests {
             [3.0, 0.5],
             [6.0, 5.0],
         ] {
-            assert_eq!(hand.click(x, y), Outcome::Nothing);
+            assert_eq!(hand.click(x, y), DraftResponse::Nothing);
         }
         assert!(
-            matches!(hand.draft.finish(&hand.options), Outcome::Refused(text) if text.contains("crosses itself"))
+            matches!(hand.draft.finish(&hand.options), DraftResponse::Refused(text) if text.contains("crosses itself"))
         );
         assert_eq!(hand.draft.points_m().len(), 6);
         hand.draft.drop_point();
-        assert!(matches!(hand.draft.finish(&hand.options), Outcome::Add(_)));
+        assert!(matches!(hand.draft.finish(&hand.options), DraftResponse::Add(_)));
     }
 }

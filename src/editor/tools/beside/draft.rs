@@ -21,7 +21,7 @@ pub enum Phase {
 
 /// The pointer on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pointer {
+pub struct GroundPointer {
     /// Phase of the press.
     pub phase: Phase,
     /// Position, ego frame, m.
@@ -34,7 +34,7 @@ pub struct Pointer {
 
 /// Surroundings that the scenery tools read.
 #[derive(Clone, Copy, Debug)]
-pub struct Site<'a> {
+pub struct SceneryContext<'a> {
     /// Roads and walkways.
     pub layout: &'a BevLayout,
     /// Places of the trees that are there.
@@ -48,7 +48,7 @@ pub struct Site<'a> {
 /// How far the kerb catches a point, m.
 pub const KERB_M: f64 = 1.0;
 
-impl Site<'_> {
+impl SceneryContext<'_> {
     /// The point beside the kerb if one is near, `clear_m` away from roadway or walkway; else the point itself.
     pub fn beside_kerb(&self, at_m: DVec2, clear_m: f64) -> DVec2 {
         let kerb = kerb::nearest_kerb(self.layout, at_m, KERB_M + clear_m);
@@ -58,7 +58,7 @@ impl Site<'_> {
 
 /// Result of a pointer event.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
+pub enum DraftResponse {
     /// No change that shows in the scene.
     Nothing,
     /// Forms that would be added; shown while the button is held.

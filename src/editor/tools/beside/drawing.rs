@@ -6,25 +6,30 @@ use glam::DVec2;
 
 use crate::Edit;
 use crate::pick;
-use crate::tools::setting::{Setting, Value};
+use crate::tools::setting::{ToolOption, Value};
 use crate::tools::{
-    Act, At, CLICK_SLACK, Context, Cursor, Event, Hand, Hint, Key, Mark, Response, Role, Sight, Tool, View,
-    ViewKind, farthest_m, hint_of,
+    Act, At, CLICK_SLACK, Context, Cursor, Event, Hand, Hint, Key, ReadonlyContext, Response, Role,
+    ScreenProjection, Tool, ToolMark, ViewKind, farthest_m, hint_of,
 };
 use language::tf;
 use scene::{Form, Frame, Scene};
 
-use super::{Outcome, Phase, Pointer, Site, ThingState};
+use super::{DraftResponse, GroundPointer, Phase, SceneryContext, ThingState};
 
 /// State machine of one scenery tool while it draws.
 pub(super) trait Draft: Clone + Debug + Default + Send + 'static {
     /// Takes the pointer.
-    fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome;
+    fn pointer(
+        &mut self,
+        p: &GroundPointer,
+        site: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> DraftResponse;
 
     /// Finishes a form that is drawn point by point.
-    fn finish(&mut self, options: &ThingState) -> Outcome {
+    fn finish(&mut self, options: &ThingState) -> DraftResponse {
         let _ = options;
-        Outcome::Nothing
+        DraftResponse::Nothing
     }
 
     /// Points set so far of a form that waits for more of them.
@@ -44,10 +49,16 @@ pub(super) trait Draft: Clone + Debug + Default + Send + 'static {
     }
 
     /// The preview where the pointer is; `drawing`: a form has been begun.
-    fn coming(&self, drawing: bool, p: Option<Pointer>, site: &Site<'_>, options: &ThingState) -> Coming;
+    fn coming(
+        &self,
+        drawing: bool,
+        p: Option<GroundPointer>,
+        site: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> Coming;
 
     /// The options of the tool.
-    fn options(hand: &Hand) -> Vec<Setting>;
+    fn options(hand: &Hand) -> Vec<ToolOption>;
 
     /// The user set one.
     fn set(hand: &mut Hand, id: &str, value: Value);
@@ -89,8 +100,8 @@ struct Press {
 }
 
 impl Press {
-    fn pointer(&self, phase: Phase) -> Pointer {
-        Pointer {
+    fn pointer(&self, phase: Phase) -> GroundPointer {
+        GroundPointer {
             phase,
             at_m: self.at_m,
             reach_m: self.reach_m,
@@ -101,7 +112,7 @@ impl Press {
 
 /// A tool for things.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Drawing<D> {
+pub(super) struct DraftTool<D> {
     draft: Option<D>,
     press: Option<Press>,
 }
@@ -120,7 +131,7 @@ fn standing(scene: &Scene) -> (Vec<DVec2>, Vec<Vec<DVec2>>) {
 }
 
 /// How far on the ground the pointer may move and still click, m.
-fn reach_m(view: &dyn View, at: DVec2, at_m: DVec2) -> f64 {
+fn reach_m(view: &dyn ScreenProjection, at: DVec2, at_m: DVec2) -> f64 {
     if view.kind() == ViewKind::Bev {
         return CLICK_SLACK / view.scale();
     }
@@ -137,7 +148,7 @@ fn near_m(cx: &Context<'_>, at: DVec2) -> Option<DVec2> {
     cx.ground_m(at).filter(|p| from_above || p.length() < limit_m)
 }
 
-impl<D: Draft> Drawing<D> {
+impl<D: Draft> DraftTool<D> {
     fn press(&mut self, cx: &Context<'_>, pointer: &crate::tools::Pointer) -> Response {
         let Some(at_m) = near_m(cx, pointer.at) else {
             return Response::none();
@@ -179,9 +190,9 @@ impl<D: Draft> Drawing<D> {
         self.tell(cx, p)
     }
 
-    fn tell(&mut self, cx: &Context<'_>, p: Pointer) -> Response {
+    fn tell(&mut self, cx: &Context<'_>, p: GroundPointer) -> Response {
         let (trees_m, houses_m) = standing(cx.settled);
-        let site = Site {
+        let site = SceneryContext {
             layout: &cx.frame().layout,
             trees_m: &trees_m,
             houses_m: &houses_m,
@@ -190,7 +201,7 @@ impl<D: Draft> Drawing<D> {
         let outcome = match &mut self.draft {
             Some(draft) => draft.pointer(&p, &site, &cx.hand.things),
             // A click that ends outside the ground is not for this tool.
-            None => Outcome::Nothing,
+            None => DraftResponse::Nothing,
         };
         self.answer(outcome)
     }
@@ -198,7 +209,7 @@ impl<D: Draft> Drawing<D> {
     fn finish(&mut self, cx: &Context<'_>) -> Response {
         let outcome = match &mut self.draft {
             Some(draft) => draft.finish(&cx.hand.things),
-            None => Outcome::Nothing,
+            None => DraftResponse::Nothing,
         };
         let mut response = self.answer(outcome);
         response.taken = true;
@@ -206,20 +217,20 @@ impl<D: Draft> Drawing<D> {
     }
 
     /// Shows or adds the drawn forms.
-    fn answer(&mut self, outcome: Outcome) -> Response {
+    fn answer(&mut self, outcome: DraftResponse) -> Response {
         match outcome {
-            Outcome::Nothing => Response::none(),
-            Outcome::Preview(forms) => Response::act(Act::Try(vec![Edit::AddThings { forms }])),
-            Outcome::Add(forms) => {
+            DraftResponse::Nothing => Response::none(),
+            DraftResponse::Preview(forms) => Response::act(Act::Try(vec![Edit::AddThings { forms }])),
+            DraftResponse::Add(forms) => {
                 self.draft = None;
                 Response::act(Act::AddThings(forms))
             }
-            Outcome::Refused(text) => Response::act(Act::Cancel).and(Act::Note(text)),
+            DraftResponse::Refused(text) => Response::act(Act::Cancel).and(Act::Note(text)),
         }
     }
 }
 
-impl<D: Draft> Tool for Drawing<D> {
+impl<D: Draft> Tool for DraftTool<D> {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
         match event {
             Event::Press(pointer) => self.press(cx, pointer),
@@ -264,17 +275,17 @@ impl<D: Draft> Tool for Drawing<D> {
         hint_of(&parts)
     }
 
-    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+    fn cursor(&self, sight: &ReadonlyContext<'_>) -> Cursor {
         match sight.hand.things.is_open() {
             true => Cursor::Crosshair,
             false => Cursor::Forbidden,
         }
     }
 
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         let from_above = sight.from_above();
         let layout = &sight.scene.frame().layout;
-        let site = Site {
+        let site = SceneryContext {
             layout,
             trees_m: &[],
             houses_m: &[],
@@ -283,7 +294,7 @@ impl<D: Draft> Tool for Drawing<D> {
         let free = from_above && sight.pointer.is_some_and(|p| p.held.alt);
         let limit_m = farthest_m(sight.settled.frame().extent());
         let at_m = sight.ground_m().filter(|p| from_above || p.length() < limit_m);
-        let pointer = at_m.map(|at_m| Pointer {
+        let pointer = at_m.map(|at_m| GroundPointer {
             phase: Phase::Press,
             at_m,
             reach_m: 0.0,
@@ -293,18 +304,25 @@ impl<D: Draft> Tool for Drawing<D> {
         let draft = self.draft.as_ref().unwrap_or(&none);
         let coming = draft.coming(self.draft.is_some(), pointer, &site, &sight.hand.things);
         let floor = |p: &DVec2| At::Ego(p.extend(layout.relief.height_m(*p) + 0.1));
-        let mut out: Vec<Mark> = coming.forms.into_iter().map(Mark::Coming).collect();
-        out.push(Mark::Line(coming.way_m.iter().map(floor).collect(), Role::Hand));
+        let mut out: Vec<ToolMark> = coming.forms.into_iter().map(ToolMark::Coming).collect();
+        out.push(ToolMark::Line(
+            coming.way_m.iter().map(floor).collect(),
+            Role::Hand,
+        ));
         if from_above {
-            out.extend(self.points_m().iter().map(|p| Mark::Dot(floor(p), Role::Choose)));
+            out.extend(
+                self.points_m()
+                    .iter()
+                    .map(|p| ToolMark::Dot(floor(p), Role::Choose)),
+            );
         }
         if let (Some(pointer), Some(text)) = (sight.pointer, coming.text) {
-            out.push(Mark::Tag(At::Screen(pointer.at), text));
+            out.push(ToolMark::Tag(At::Screen(pointer.at), text));
         }
         out
     }
 
-    fn options(&self, hand: &Hand) -> Vec<Setting> {
+    fn options(&self, hand: &Hand) -> Vec<ToolOption> {
         D::options(hand)
     }
 

@@ -6,10 +6,10 @@ use language::{t, tf};
 use scene::Form;
 use scene::background::{LineKind, Tree};
 
-use super::{Coming, Draft, Drawing, Outcome, Phase, Pointer, Site, ThingState};
+use super::{Coming, Draft, DraftResponse, DraftTool, GroundPointer, Phase, SceneryContext, ThingState};
 use crate::tools::beside::drawing::length;
-use crate::tools::setting::{self, Control, Setting, Value};
-use crate::tools::{Group, Hand, Shortcut, ToolDef, ToolId, When};
+use crate::tools::setting::{self, Control, ToolOption, Value};
+use crate::tools::{Hand, Shortcut, ToolDef, ToolGroup, ToolId, When};
 
 /// Its name.
 pub const ID: ToolId = ToolId("line_tool");
@@ -20,7 +20,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Hedge, wall, fence",
     key: "Shift+L",
     icon: "fence",
-    group: Group::Beside,
+    group: ToolGroup::Beside,
     is_brush: false,
     paints: false,
     shortcuts: &[Shortcut {
@@ -30,7 +30,7 @@ pub static DEF: ToolDef = ToolDef {
         when: When::Always,
         set: |hand| hand.tool = ID,
     }],
-    make: || Box::new(Drawing::<LineDraft>::default()),
+    make: || Box::new(DraftTool::<LineDraft>::default()),
 };
 
 /// A line that is being drawn.
@@ -42,7 +42,7 @@ pub struct LineDraft {
 }
 
 impl LineDraft {
-    fn set_point(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) {
+    fn set_point(&mut self, p: &GroundPointer, site: &SceneryContext<'_>, options: &ThingState) {
         let at_m = snapped(p, site, options);
         // The second click of a double click sets none.
         if self.points_m.last().is_none_or(|q| q.distance(at_m) > p.reach_m) {
@@ -53,7 +53,12 @@ impl LineDraft {
 
 impl Draft for LineDraft {
     /// Each click sets a point, a drag sets two.
-    fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome {
+    fn pointer(
+        &mut self,
+        p: &GroundPointer,
+        site: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> DraftResponse {
         match p.phase {
             Phase::Press => {
                 self.pressed = true;
@@ -65,20 +70,20 @@ impl Draft for LineDraft {
         if matches!(p.phase, Phase::Release { .. }) {
             self.pressed = false;
         }
-        Outcome::Nothing
+        DraftResponse::Nothing
     }
 
-    fn finish(&mut self, options: &ThingState) -> Outcome {
+    fn finish(&mut self, options: &ThingState) -> DraftResponse {
         if self.points_m.len() < 2 {
-            return Outcome::Refused(tf!(
+            return DraftResponse::Refused(tf!(
                 "A {kind} needs two points or more",
                 kind = t(options.line.name())
             ));
         }
         let form = Form::Line(options.line_of(self.points_m.clone()));
         match form.problem() {
-            Some(problem) => Outcome::Refused(problem),
-            None => Outcome::Add(vec![form]),
+            Some(problem) => DraftResponse::Refused(problem),
+            None => DraftResponse::Add(vec![form]),
         }
     }
 
@@ -98,7 +103,13 @@ impl Draft for LineDraft {
         Some("Alt ignores the kerb")
     }
 
-    fn coming(&self, _: bool, p: Option<Pointer>, site: &Site<'_>, options: &ThingState) -> Coming {
+    fn coming(
+        &self,
+        _: bool,
+        p: Option<GroundPointer>,
+        site: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> Coming {
         let end = p.map(|p| snapped(&p, site, options));
         let points: Vec<DVec2> = self.points_m.iter().copied().chain(end).collect();
         let text = length(&points);
@@ -113,14 +124,14 @@ impl Draft for LineDraft {
         }
     }
 
-    fn options(hand: &Hand) -> Vec<Setting> {
+    fn options(hand: &Hand) -> Vec<ToolOption> {
         let things = &hand.things;
         vec![
-            Setting::title("Line"),
-            Setting::text(
+            ToolOption::title("Line"),
+            ToolOption::text(
                 "Click points; Enter or a double click ends. Points near a kerb come to lie beside it, with Alt they do not.",
             ),
-            Setting::new(
+            ToolOption::new(
                 "kind",
                 Control::Rows {
                     chosen: LineKind::ALL.iter().position(|k| *k == things.line).unwrap_or(0),
@@ -128,7 +139,7 @@ impl Draft for LineDraft {
                     verb: "Draw",
                 },
             ),
-            Setting::number("height", "Height, m", things.line_m, [0.3, 8.0], 1),
+            ToolOption::number("height", "Height, m", things.line_m, [0.3, 8.0], 1),
         ]
     }
 
@@ -156,7 +167,7 @@ fn dot(at_m: DVec2) -> Form {
 }
 
 /// Snapped place of a point: clear of the kerb by half the width of the line.
-fn snapped(p: &Pointer, site: &Site<'_>, options: &ThingState) -> DVec2 {
+fn snapped(p: &GroundPointer, site: &SceneryContext<'_>, options: &ThingState) -> DVec2 {
     match p.free {
         true => p.at_m,
         false => site.beside_kerb(p.at_m, options.line.typical_m().1 / 2.0),
@@ -174,7 +185,7 @@ mod tests {
         for x in 0..Extent::WINDOW.nx() {
             (0..110).for_each(|y| layout.set(BevLayer::DrivableArea, x, y, true)); // up to y = 4
         }
-        let site = Site {
+        let site = SceneryContext {
             layout: &layout,
             trees_m: &[],
             houses_m: &[],
@@ -184,7 +195,7 @@ mod tests {
         options.take_line(LineKind::Wall);
         let mut draft = LineDraft::default();
         let mut click = |x, y, free| {
-            let p = |phase| Pointer {
+            let p = |phase| GroundPointer {
                 phase,
                 at_m: DVec2::new(x, y),
                 reach_m: 0.3,
@@ -202,7 +213,7 @@ mod tests {
         ] {
             click(x, y, free);
         }
-        let Outcome::Add(forms) = draft.finish(&options) else {
+        let DraftResponse::Add(forms) = draft.finish(&options) else {
             panic!("a wall");
         };
         let expected = [(0.0, 4.15), (8.0, 4.15), (16.0, 4.6), (20.0, 9.0)];
@@ -213,6 +224,9 @@ mod tests {
         }
         assert!(matches!(&forms[0], Form::Line(l) if l.kind == LineKind::Wall && l.height_m == 1.6));
         let short = LineDraft::default().finish(&options);
-        assert_eq!(short, Outcome::Refused("A wall needs two points or more".into()));
+        assert_eq!(
+            short,
+            DraftResponse::Refused("A wall needs two points or more".into())
+        );
     }
 }

@@ -15,5 +15,5 @@ pub mod words;
 pub use options::{ThingKind, ThingState};
 
 pub(super) use draft::KERB_M;
-use draft::{Outcome, Phase, Pointer, Site};
-use drawing::{Coming, Draft, Drawing};
+use draft::{DraftResponse, GroundPointer, Phase, SceneryContext};
+use drawing::{Coming, Draft, DraftTool};

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::DVec2;
 
-use scene::background::{Facade, Line, LineKind, PostKind, Roof, TreeKind};
+use scene::background::{Facade, LineKind, PostKind, Roof, SceneryLine, TreeKind};
 use scene::{Background, Form, ThingId};
 
 /// A tool together with the kind that it puts down.
@@ -95,10 +95,10 @@ impl ThingState {
     }
 
     /// A line as the options say; its width is the usual one.
-    pub fn line_of(&self, points_m: Vec<DVec2>) -> Line {
-        Line {
+    pub fn line_of(&self, points_m: Vec<DVec2>) -> SceneryLine {
+        SceneryLine {
             height_m: self.line_m,
-            ..Line::typical(self.line, points_m)
+            ..SceneryLine::typical(self.line, points_m)
         }
     }
 

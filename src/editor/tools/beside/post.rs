@@ -6,9 +6,9 @@ use crate::kerb;
 use scene::Form;
 use scene::background::{Post, PostKind};
 
-use super::{Coming, Draft, Drawing, Outcome, Phase, Pointer, Site, ThingState};
-use crate::tools::setting::{Control, Setting, Value};
-use crate::tools::{Group, Hand, Shortcut, ToolDef, ToolId, When};
+use super::{Coming, Draft, DraftResponse, DraftTool, GroundPointer, Phase, SceneryContext, ThingState};
+use crate::tools::setting::{Control, ToolOption, Value};
+use crate::tools::{Hand, Shortcut, ToolDef, ToolGroup, ToolId, When};
 
 /// Its name.
 pub const ID: ToolId = ToolId("post_tool");
@@ -19,7 +19,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Pole, sign, light",
     key: "Shift+P; also stops, benches, bins",
     icon: "lamp",
-    group: Group::Beside,
+    group: ToolGroup::Beside,
     is_brush: false,
     paints: false,
     shortcuts: &[Shortcut {
@@ -29,7 +29,7 @@ pub static DEF: ToolDef = ToolDef {
         when: When::Always,
         set: |hand| hand.tool = ID,
     }],
-    make: || Box::new(Drawing::<PostDraft>::default()),
+    make: || Box::new(DraftTool::<PostDraft>::default()),
 };
 
 /// Shorter drags than this turn nothing, m.
@@ -42,20 +42,25 @@ pub struct PostDraft {
 }
 
 impl Draft for PostDraft {
-    fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome {
+    fn pointer(
+        &mut self,
+        p: &GroundPointer,
+        site: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> DraftResponse {
         if p.phase == Phase::Press {
             self.post = Some(placed(p, site, options));
         }
         let Some(mut post) = self.post.clone() else {
-            return Outcome::Nothing;
+            return DraftResponse::Nothing;
         };
         let way = p.at_m - post.position_m;
         if !matches!(p.phase, Phase::Press | Phase::Release { clicked: true }) && way.length() > TURN_M {
             post.yaw_rad = way.to_angle();
         }
         match p.phase {
-            Phase::Release { .. } => Outcome::Add(vec![Form::Post(post)]),
-            _ => Outcome::Preview(vec![Form::Post(post)]),
+            Phase::Release { .. } => DraftResponse::Add(vec![Form::Post(post)]),
+            _ => DraftResponse::Preview(vec![Form::Post(post)]),
         }
     }
 
@@ -67,7 +72,13 @@ impl Draft for PostDraft {
         Some("Alt ignores the kerb")
     }
 
-    fn coming(&self, drawing: bool, p: Option<Pointer>, site: &Site<'_>, options: &ThingState) -> Coming {
+    fn coming(
+        &self,
+        drawing: bool,
+        p: Option<GroundPointer>,
+        site: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> Coming {
         let post = p.filter(|_| !drawing).map(|p| placed(&p, site, options));
         Coming {
             forms: post.map(Form::Post).into_iter().collect(),
@@ -75,12 +86,12 @@ impl Draft for PostDraft {
         }
     }
 
-    fn options(hand: &Hand) -> Vec<Setting> {
+    fn options(hand: &Hand) -> Vec<ToolOption> {
         let chosen = PostKind::ALL.iter().position(|k| *k == hand.things.post);
         vec![
-            Setting::title("Post"),
-            Setting::text("Click puts one down facing the road, a drag turns it."),
-            Setting::new(
+            ToolOption::title("Post"),
+            ToolOption::text("Click puts one down facing the road, a drag turns it."),
+            ToolOption::new(
                 "kind",
                 Control::Rows {
                     chosen: chosen.unwrap_or(0),
@@ -99,7 +110,7 @@ impl Draft for PostDraft {
 }
 
 /// A post at the pointer, clear of the kerb if one is near, facing the road.
-fn placed(p: &Pointer, site: &Site<'_>, options: &ThingState) -> Post {
+fn placed(p: &GroundPointer, site: &SceneryContext<'_>, options: &ThingState) -> Post {
     let kind = options.post;
     let position_m = match p.free {
         true => p.at_m,
@@ -114,7 +125,7 @@ fn placed(p: &Pointer, site: &Site<'_>, options: &ThingState) -> Post {
 }
 
 /// The heading from a place to the road, rad.
-fn facing(site: &Site<'_>, at_m: DVec2) -> f64 {
+fn facing(site: &SceneryContext<'_>, at_m: DVec2) -> f64 {
     kerb::toward_road(site.layout, at_m)
 }
 
@@ -138,14 +149,14 @@ mod tests {
         for x in 0..Extent::WINDOW.nx() {
             (0..110).for_each(|y| layout.set(BevLayer::DrivableArea, x, y, true)); // up to y = 4
         }
-        let site = Site {
+        let site = SceneryContext {
             layout: &layout,
             trees_m: &[],
             houses_m: &[],
             brush_m: 3.2,
         };
         let options = ThingState::default();
-        let at = |phase, y: f64| Pointer {
+        let at = |phase, y: f64| GroundPointer {
             phase,
             at_m: DVec2::new(3.0, y),
             reach_m: 0.4,
@@ -153,7 +164,8 @@ mod tests {
         };
         let mut draft = PostDraft::default();
         draft.pointer(&at(Phase::Press, 3.7), &site, &options);
-        let Outcome::Add(forms) = draft.pointer(&at(Phase::Release { clicked: true }, 3.7), &site, &options)
+        let DraftResponse::Add(forms) =
+            draft.pointer(&at(Phase::Release { clicked: true }, 3.7), &site, &options)
         else {
             panic!("a post");
         };
@@ -168,7 +180,7 @@ mod tests {
         // A drag turns it: here away from the road.
         draft.pointer(&at(Phase::Press, 9.0), &site, &options);
         let turned = draft.pointer(&at(Phase::Release { clicked: false }, 14.0), &site, &options);
-        let Outcome::Add(forms) = turned else {
+        let DraftResponse::Add(forms) = turned else {
             panic!("a post");
         };
         assert!(matches!(&forms[0], Form::Post(p) if (p.yaw_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-6));

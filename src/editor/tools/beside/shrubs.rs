@@ -6,9 +6,9 @@ use crate::outline;
 use scene::Form;
 use scene::background::Shrubs;
 
-use super::{Coming, Draft, Drawing, Outcome, Phase, Pointer, Site, ThingState};
-use crate::tools::setting::{self, Setting, Value};
-use crate::tools::{Group, Hand, Shortcut, ToolDef, ToolId, When};
+use super::{Coming, Draft, DraftResponse, DraftTool, GroundPointer, Phase, SceneryContext, ThingState};
+use crate::tools::setting::{self, ToolOption, Value};
+use crate::tools::{Hand, Shortcut, ToolDef, ToolGroup, ToolId, When};
 
 /// Its name.
 pub const ID: ToolId = ToolId("shrub_tool");
@@ -19,7 +19,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Shrubs",
     key: "Shift+S",
     icon: "shrubs",
-    group: Group::Beside,
+    group: ToolGroup::Beside,
     is_brush: true,
     paints: false,
     shortcuts: &[Shortcut {
@@ -29,7 +29,7 @@ pub static DEF: ToolDef = ToolDef {
         when: When::Always,
         set: |hand| hand.tool = ID,
     }],
-    make: || Box::new(Drawing::<ShrubStroke>::default()),
+    make: || Box::new(DraftTool::<ShrubStroke>::default()),
 };
 
 /// Plants per square metre.
@@ -44,21 +44,28 @@ pub struct ShrubStroke {
 }
 
 impl Draft for ShrubStroke {
-    fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome {
+    fn pointer(
+        &mut self,
+        p: &GroundPointer,
+        site: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> DraftResponse {
         if p.phase == Phase::Press {
             self.points_m.clear();
         }
         if self.points_m.last().is_none_or(|q| q.distance(p.at_m) >= STEP_M) {
             self.points_m.push(p.at_m);
         } else if p.phase == Phase::Drag {
-            return Outcome::Nothing;
+            return DraftResponse::Nothing;
         }
         let outline_m = outline::of_stroke(site.layout.extent(), &self.points_m, site.brush_m);
         let shrubs = outline_m.map(|o| area(o, options));
         match (p.phase, shrubs.filter(|form| form.problem().is_none())) {
-            (Phase::Release { .. }, Some(form)) => Outcome::Add(vec![form]),
-            (Phase::Release { .. }, None) => Outcome::Refused("The stroke lies outside the map".to_owned()),
-            (_, form) => Outcome::Preview(form.into_iter().collect()),
+            (Phase::Release { .. }, Some(form)) => DraftResponse::Add(vec![form]),
+            (Phase::Release { .. }, None) => {
+                DraftResponse::Refused("The stroke lies outside the map".to_owned())
+            }
+            (_, form) => DraftResponse::Preview(form.into_iter().collect()),
         }
     }
 
@@ -66,7 +73,13 @@ impl Draft for ShrubStroke {
         vec!["Drag paints an area of shrubs", "[ ] size"]
     }
 
-    fn coming(&self, drawing: bool, p: Option<Pointer>, site: &Site<'_>, options: &ThingState) -> Coming {
+    fn coming(
+        &self,
+        drawing: bool,
+        p: Option<GroundPointer>,
+        site: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> Coming {
         let at_m = p.filter(|_| !drawing).map(|p| p.at_m);
         let outline_m = at_m.and_then(|p| outline::of_stroke(site.layout.extent(), &[p], site.brush_m));
         Coming {
@@ -75,13 +88,13 @@ impl Draft for ShrubStroke {
         }
     }
 
-    fn options(hand: &Hand) -> Vec<Setting> {
+    fn options(hand: &Hand) -> Vec<ToolOption> {
         let brush_m = [*Hand::BRUSH_M.start(), *Hand::BRUSH_M.end()];
         vec![
-            Setting::title("Shrubs"),
-            Setting::text("A stroke becomes an area of shrubs."),
-            Setting::number("height", "Height, m", hand.things.shrubs_m, [0.3, 4.0], 1),
-            Setting::number("size", "Brush, m", hand.brush_m, brush_m, 1),
+            ToolOption::title("Shrubs"),
+            ToolOption::text("A stroke becomes an area of shrubs."),
+            ToolOption::number("height", "Height, m", hand.things.shrubs_m, [0.3, 4.0], 1),
+            ToolOption::number("size", "Brush, m", hand.brush_m, brush_m, 1),
         ]
     }
 
@@ -110,13 +123,13 @@ mod tests {
     #[test]
     fn a_stroke_becomes_an_area() {
         let (mut draft, options) = (ShrubStroke::default(), ThingState::default());
-        let at = |phase, x, y| Pointer {
+        let at = |phase, x, y| GroundPointer {
             phase,
             at_m: DVec2::new(x, y),
             reach_m: 0.4,
             free: false,
         };
-        let site = Site {
+        let site = SceneryContext {
             layout: &Default::default(),
             trees_m: &[],
             houses_m: &[],
@@ -126,7 +139,7 @@ mod tests {
         for i in 1..=20 {
             draft.pointer(&at(Phase::Drag, f64::from(i) * 0.5, 8.0), &site, &options);
         }
-        let Outcome::Add(forms) =
+        let DraftResponse::Add(forms) =
             draft.pointer(&at(Phase::Release { clicked: false }, 10.0, 8.0), &site, &options)
         else {
             panic!("an area");
@@ -136,6 +149,6 @@ mod tests {
         assert!(is_inside(&outline, DVec2::new(5.0, 9.2)) && !is_inside(&outline, DVec2::new(5.0, 10.4)));
         draft.pointer(&at(Phase::Press, 200.0, 8.0), &site, &options);
         let outside = draft.pointer(&at(Phase::Release { clicked: true }, 200.0, 8.0), &site, &options);
-        assert!(matches!(outside, Outcome::Refused(_)));
+        assert!(matches!(outside, DraftResponse::Refused(_)));
     }
 }

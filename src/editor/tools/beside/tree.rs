@@ -8,9 +8,9 @@ use scene::Form;
 use scene::background::{Tree, TreeKind};
 use scene::draw::{Draw, hash};
 
-use super::{Coming, Draft, Drawing, Outcome, Phase, Pointer, Site, ThingState};
-use crate::tools::setting::{self, Setting, Value};
-use crate::tools::{Group, Hand, Shortcut, ToolDef, ToolId, When};
+use super::{Coming, Draft, DraftResponse, DraftTool, GroundPointer, Phase, SceneryContext, ThingState};
+use crate::tools::setting::{self, ToolOption, Value};
+use crate::tools::{Hand, Shortcut, ToolDef, ToolGroup, ToolId, When};
 
 /// Its name.
 pub const ID: ToolId = ToolId("tree_tool");
@@ -21,7 +21,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Trees",
     key: "Shift+T",
     icon: "tree",
-    group: Group::Beside,
+    group: ToolGroup::Beside,
     is_brush: false,
     paints: false,
     shortcuts: &[Shortcut {
@@ -31,7 +31,7 @@ pub static DEF: ToolDef = ToolDef {
         when: When::Always,
         set: |hand| hand.tool = ID,
     }],
-    make: || Box::new(Drawing::<TreeStroke>::default()),
+    make: || Box::new(DraftTool::<TreeStroke>::default()),
 };
 
 /// Names of trees.
@@ -56,7 +56,12 @@ pub struct TreeStroke {
 }
 
 impl Draft for TreeStroke {
-    fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome {
+    fn pointer(
+        &mut self,
+        p: &GroundPointer,
+        site: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> DraftResponse {
         match p.phase {
             Phase::Press => {
                 *self = Self::default();
@@ -78,12 +83,12 @@ impl Draft for TreeStroke {
                 }
                 match self.placed.len() > before {
                     true => self.preview(),
-                    false => Outcome::Nothing,
+                    false => DraftResponse::Nothing,
                 }
             }
             Phase::Release { .. } => match self.placed.is_empty() {
-                true => Outcome::Nothing,
-                false => Outcome::Add(
+                true => DraftResponse::Nothing,
+                false => DraftResponse::Add(
                     std::mem::take(&mut self.placed)
                         .into_iter()
                         .map(Form::Tree)
@@ -97,7 +102,13 @@ impl Draft for TreeStroke {
         vec!["Click stamps a tree", "drag scatters"]
     }
 
-    fn coming(&self, drawing: bool, p: Option<Pointer>, _: &Site<'_>, options: &ThingState) -> Coming {
+    fn coming(
+        &self,
+        drawing: bool,
+        p: Option<GroundPointer>,
+        _: &SceneryContext<'_>,
+        options: &ThingState,
+    ) -> Coming {
         let tree = p.filter(|_| !drawing).map(|p| Tree {
             position_m: p.at_m,
             height_m: options.tree_m,
@@ -110,14 +121,14 @@ impl Draft for TreeStroke {
         }
     }
 
-    fn options(hand: &Hand) -> Vec<Setting> {
+    fn options(hand: &Hand) -> Vec<ToolOption> {
         let things = &hand.things;
         vec![
-            Setting::title("Tree"),
-            Setting::text("Click stamps one, a drag scatters them beside the road."),
-            Setting::segments("kind", things.tree, &TREES, 2),
-            Setting::number("height", "Height, m", things.tree_m, [1.0, 25.0], 1),
-            Setting::number("spacing", "Spacing, m", things.spacing_m, [1.5, 20.0], 1),
+            ToolOption::title("Tree"),
+            ToolOption::text("Click stamps one, a drag scatters them beside the road."),
+            ToolOption::segments("kind", things.tree, &TREES, 2),
+            ToolOption::number("height", "Height, m", things.tree_m, [1.0, 25.0], 1),
+            ToolOption::number("spacing", "Spacing, m", things.spacing_m, [1.5, 20.0], 1),
         ]
     }
 
@@ -133,12 +144,12 @@ impl Draft for TreeStroke {
 }
 
 impl TreeStroke {
-    fn preview(&self) -> Outcome {
-        Outcome::Preview(self.placed.iter().cloned().map(Form::Tree).collect())
+    fn preview(&self) -> DraftResponse {
+        DraftResponse::Preview(self.placed.iter().cloned().map(Form::Tree).collect())
     }
 
     /// Puts one beside the way, where there is room, no roadway and no building.
-    fn scatter(&mut self, at_m: DVec2, across: DVec2, site: &Site<'_>, options: &ThingState) {
+    fn scatter(&mut self, at_m: DVec2, across: DVec2, site: &SceneryContext<'_>, options: &ThingState) {
         self.drawn += 1;
         let mut draw = Draw::new(hash(self.drawn), "scattered tree");
         let jitter_m = options.spacing_m * 0.35;
@@ -176,14 +187,14 @@ mod tests {
 
     fn stroke_by(to_m: DVec2, layout: &BevLayout, trees_m: &[DVec2], houses_m: &[Vec<DVec2>]) -> Vec<Form> {
         let options = ThingState::default();
-        let site = Site {
+        let site = SceneryContext {
             layout,
             trees_m,
             houses_m,
             brush_m: 3.2,
         };
         let mut draft = TreeStroke::default();
-        let at = |phase, at_m| Pointer {
+        let at = |phase, at_m| GroundPointer {
             phase,
             at_m,
             reach_m: 0.4,
@@ -203,7 +214,7 @@ mod tests {
             &site,
             &options,
         ) {
-            Outcome::Add(forms) => forms,
+            DraftResponse::Add(forms) => forms,
             other => panic!("{other:?}"),
         }
     }

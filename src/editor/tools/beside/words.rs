@@ -29,11 +29,11 @@ pub fn plural(name: &str) -> String {
 mod tests {
     use super::*;
     use glam::DVec2;
-    use scene::background::{Line, LineKind, Post, PostKind};
+    use scene::background::{LineKind, Post, PostKind, SceneryLine};
 
     #[test]
     fn things_are_called_what_they_are() {
-        let hedge = Form::Line(Line::typical(LineKind::Hedge, vec![DVec2::ZERO, DVec2::X]));
+        let hedge = Form::Line(SceneryLine::typical(LineKind::Hedge, vec![DVec2::ZERO, DVec2::X]));
         let bench = Form::Post(Post {
             kind: PostKind::Bench,
             position_m: DVec2::ZERO,

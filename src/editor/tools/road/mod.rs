@@ -15,12 +15,12 @@ use crate::roads::network_of;
 use scene::roads::{NodeId, RoadChange, curve};
 use scene::{BevLayout, Frame, Road, RoadId, RoadNetwork, Scene};
 
-use super::setting::{Setting, Value};
+use super::setting::{ToolOption, Value};
 use super::{
-    Act, Context, Cursor, Event, Group, HANDLE_REACH, Hand, Hint, Key, Mark, Pointer, Response, Shortcut,
-    Sight, Tool, ToolDef, ToolId, ViewKind, Wants, When, hint_of,
+    Act, Context, Cursor, Event, HANDLE_REACH, Hand, Hint, Key, Pointer, ReadonlyContext, Response, Shortcut,
+    Tool, ToolDef, ToolGroup, ToolId, ToolMark, ViewKind, Wants, When, hint_of,
 };
-use part::Seen;
+use part::RoadGeometry;
 pub use part::{RoadHand, RoadPart};
 
 /// Its name.
@@ -32,7 +32,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Road",
     key: "H: reshape roads, lanes, junctions",
     icon: "road",
-    group: Group::Scene,
+    group: ToolGroup::Scene,
     is_brush: false,
     paints: false,
     shortcuts: &[Shortcut {
@@ -42,7 +42,7 @@ pub static DEF: ToolDef = ToolDef {
         when: When::Always,
         set: |hand| hand.tool = ID,
     }],
-    make: || Box::new(Roads::default()),
+    make: || Box::new(RoadTool::default()),
 };
 
 /// Distance from another node within which a released node joins it, m.
@@ -60,7 +60,7 @@ enum Grip {
 
 /// A press, and whether the pointer has left its place.
 #[derive(Clone, Debug)]
-struct Drag {
+struct RoadDrag {
     grip: Grip,
     from_m: DVec2,
     moved: bool,
@@ -85,14 +85,14 @@ impl Known {
 
 /// The road tool.
 #[derive(Debug, Default)]
-pub struct Roads {
+pub struct RoadTool {
     /// The network last seen: recognising one takes a moment.
-    seen: RefCell<Option<(Known, Seen)>>,
-    drag: Option<Drag>,
+    seen: RefCell<Option<(Known, RoadGeometry)>>,
+    drag: Option<RoadDrag>,
 }
 
-impl Roads {
-    fn network(&self, scene: &Scene) -> Seen {
+impl RoadTool {
+    fn network(&self, scene: &Scene) -> RoadGeometry {
         let mut seen = self.seen.borrow_mut();
         if let Some((known, net)) = &*seen
             && known.is_of(scene)
@@ -103,13 +103,13 @@ impl Roads {
             roads: scene.roads.clone(),
             layout: scene.canvas().layout.clone(),
         };
-        let net = Seen::of(network_of(scene));
+        let net = RoadGeometry::of(network_of(scene));
         *seen = Some((known, net.clone()));
         net
     }
 
     /// The network of the last scene that was looked at.
-    fn last(&self) -> Seen {
+    fn last(&self) -> RoadGeometry {
         let seen = self.seen.borrow();
         seen.as_ref().map(|s| s.1.clone()).unwrap_or_default()
     }
@@ -144,7 +144,7 @@ impl Roads {
                 index.and_then(|index| Some(Grip::Line(net.road(id)?.clone(), index)))
             }
         };
-        self.drag = grip.map(|grip| Drag {
+        self.drag = grip.map(|grip| RoadDrag {
             grip,
             from_m: at_m,
             moved: false,
@@ -275,7 +275,7 @@ fn preview(change: RoadChange) -> Act {
     Act::Try(vec![Edit::ChangeRoads { change }])
 }
 
-impl Tool for Roads {
+impl Tool for RoadTool {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
         match event {
             Event::Press(pointer) => self.press(cx, pointer),
@@ -315,7 +315,7 @@ impl Tool for Roads {
         }
     }
 
-    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+    fn cursor(&self, sight: &ReadonlyContext<'_>) -> Cursor {
         if !sight.from_above() {
             return Cursor::Forbidden;
         }
@@ -334,18 +334,18 @@ impl Tool for Roads {
         }
     }
 
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         if !sight.from_above() {
             return Vec::new();
         }
         let shown = match self.drag.is_some() && !sight.scene.roads.is_empty() {
-            true => Seen::of(sight.scene.roads.clone()),
+            true => RoadGeometry::of(sight.scene.roads.clone()),
             false => self.network(sight.settled),
         };
         marks::over_map(&shown, sight)
     }
 
-    fn options(&self, hand: &Hand) -> Vec<Setting> {
+    fn options(&self, hand: &Hand) -> Vec<ToolOption> {
         options::of(&self.last(), &hand.road)
     }
 

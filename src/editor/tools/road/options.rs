@@ -6,10 +6,10 @@ use language::{filled, t, tf};
 use scene::roads::{LaneKind, NodeKind, RoadChange, RoadCrossing, RoadLane, RoadStop, curve};
 use scene::{Road, RoadId, RoadNetwork, RoadNode};
 
-use super::part::{RoadHand, RoadPart, Seen};
+use super::part::{RoadGeometry, RoadHand, RoadPart};
 use super::{apply, recognised};
 use crate::tools::Act;
-use crate::tools::setting::{Choice, Control, Setting, Value};
+use crate::tools::setting::{Choice, Control, ToolOption, Value};
 
 /// Widths of lanes to choose from, m.
 const WIDTHS_M: [f64; 12] = [1.2, 1.6, 2.0, 2.3, 2.5, 2.75, 3.0, 3.25, 3.5, 3.75, 4.0, 5.0];
@@ -29,9 +29,9 @@ const NODES: [Choice; 2] = [
     ("Roundabout", "a ring around an island"),
 ];
 
-pub(super) fn of(seen: &Seen, hand: &RoadHand) -> Vec<Setting> {
+pub(super) fn of(seen: &RoadGeometry, hand: &RoadHand) -> Vec<ToolOption> {
     let net = &*seen.net;
-    let mut out = vec![Setting::title("Road")];
+    let mut out = vec![ToolOption::title("Road")];
     let road = hand.chosen.and_then(RoadPart::road).and_then(|id| net.road(id));
     let node = match hand.chosen {
         Some(RoadPart::Node(id)) => net.node(id),
@@ -50,21 +50,21 @@ pub(super) fn of(seen: &Seen, hand: &RoadHand) -> Vec<Setting> {
                     n = n
                 ),
             };
-            out.push(Setting::text(text));
-            let draw = Setting::button("draw", "Draw a street", "point by point", true);
-            let found = Setting::button(
+            out.push(ToolOption::text(text));
+            let draw = ToolOption::button("draw", "Draw a street", "point by point", true);
+            let found = ToolOption::button(
                 "recognise",
                 "Recognise",
                 "takes what was painted since for roads",
                 true,
             );
-            out.push(Setting::new("", Control::Line(vec![draw, found])));
+            out.push(ToolOption::new("", Control::Line(vec![draw, found])));
         }
     }
     out
 }
 
-fn list(id: &'static str, title: &'static str, value: f64, all: &[f64], unit: &str) -> Setting {
+fn list(id: &'static str, title: &'static str, value: f64, all: &[f64], unit: &str) -> ToolOption {
     let name = |v: &f64| match *v {
         v if v == 0.0 && unit == " km/h" => "none".to_owned(),
         v => format!("{v}{unit}"),
@@ -84,7 +84,7 @@ fn list(id: &'static str, title: &'static str, value: f64, all: &[f64], unit: &s
         chosen,
         choices,
     };
-    Setting::new(id, control)
+    ToolOption::new(id, control)
 }
 
 /// Its lanes and its speed limit, for a person.
@@ -99,9 +99,9 @@ pub(super) fn summary(road: &Road) -> String {
     lanes + &limit.unwrap_or_default()
 }
 
-fn of_road(seen: &Seen, road: &Road, hand: &RoadHand, out: &mut Vec<Setting>) {
+fn of_road(seen: &RoadGeometry, road: &Road, hand: &RoadHand, out: &mut Vec<ToolOption>) {
     let length_m = seen.lines.get(&road.id).map_or(0.0, |l| curve::length_m(l));
-    out.push(Setting::text(tf!(
+    out.push(ToolOption::text(tf!(
         "Road {id}: {summary}, {length} m",
         id = road.id.0,
         summary = summary(road),
@@ -123,7 +123,7 @@ fn of_road(seen: &Seen, road: &Road, hand: &RoadHand, out: &mut Vec<Setting>) {
         })
         .collect();
     let chosen = chosen_lane(road, hand).and_then(|lane| lanes(road).position(|l| l == lane));
-    out.push(Setting::new(
+    out.push(ToolOption::new(
         "lane",
         Control::List {
             title: "Lane",
@@ -138,7 +138,7 @@ fn of_road(seen: &Seen, road: &Road, hand: &RoadHand, out: &mut Vec<Setting>) {
             .iter()
             .map(|(_, name)| ((*name).to_owned(), ""))
             .collect();
-        out.push(Setting::new(
+        out.push(ToolOption::new(
             "kind",
             Control::List {
                 title: "Type",
@@ -148,11 +148,11 @@ fn of_road(seen: &Seen, road: &Road, hand: &RoadHand, out: &mut Vec<Setting>) {
             },
         ));
         out.push(list("width", "Width", lane.width_m, &WIDTHS_M, " m"));
-        out.push(Setting::new(
+        out.push(ToolOption::new(
             "",
             Control::Row(vec![
-                Setting::button("add", "Add beside", "another lane like it, outside of it", true),
-                Setting::button("drop", "Remove lane", "", road.left.len() + road.right.len() > 1),
+                ToolOption::button("add", "Add beside", "another lane like it, outside of it", true),
+                ToolOption::button("drop", "Remove lane", "", road.left.len() + road.right.len() > 1),
             ]),
         ));
     }
@@ -163,41 +163,41 @@ fn of_road(seen: &Seen, road: &Road, hand: &RoadHand, out: &mut Vec<Setting>) {
         &LIMITS_KPH,
         " km/h",
     ));
-    out.push(Setting::gap());
-    out.push(Setting::new(
+    out.push(ToolOption::gap());
+    out.push(ToolOption::new(
         "",
         Control::Row(vec![
-            Setting::button(
+            ToolOption::button(
                 "crossing",
                 "Crossing",
                 "where the road was clicked; again takes it away",
                 true,
             ),
-            Setting::button(
+            ToolOption::button(
                 "stop",
                 "Stop line",
                 "where the road was clicked; again takes it away",
                 true,
             ),
-            Setting::button("split", "Split", "where the road was clicked", true),
-            Setting::button("straighten", "Straighten", "", !road.via_m.is_empty()),
-            Setting::button("turn", "Turn around", "the other direction of travel", true),
-            Setting::button("redraw", "Draw anew", "what was painted on it goes", true),
-            Setting::button("delete", "Delete", "", true),
+            ToolOption::button("split", "Split", "where the road was clicked", true),
+            ToolOption::button("straighten", "Straighten", "", !road.via_m.is_empty()),
+            ToolOption::button("turn", "Turn around", "the other direction of travel", true),
+            ToolOption::button("redraw", "Draw anew", "what was painted on it goes", true),
+            ToolOption::button("delete", "Delete", "", true),
         ]),
     ));
 }
 
-fn of_node(net: &RoadNetwork, node: &RoadNode, out: &mut Vec<Setting>) {
+fn of_node(net: &RoadNetwork, node: &RoadNode, out: &mut Vec<ToolOption>) {
     let arms = net.arms(node.id).len();
     let what = match arms {
         0 | 1 => "End of a road".to_owned(),
         2 => "Joint of two roads".to_owned(),
         n => tf!("Junction of {n} roads", n = n),
     };
-    out.push(Setting::text(what));
+    out.push(ToolOption::text(what));
     let round = matches!(node.kind, NodeKind::Roundabout { .. });
-    out.push(Setting::new(
+    out.push(ToolOption::new(
         "node_kind",
         Control::Segments {
             chosen: usize::from(round),
@@ -213,7 +213,7 @@ fn of_node(net: &RoadNetwork, node: &RoadNode, out: &mut Vec<Setting>) {
         }
     }
     if arms == 2 {
-        out.push(Setting::button(
+        out.push(ToolOption::button(
             "join",
             "Make it one road",
             "takes the joint away",
@@ -234,7 +234,7 @@ fn chosen_lane(road: &Road, hand: &RoadHand) -> Option<(bool, usize)> {
 }
 
 /// The user set an option.
-pub(super) fn set(seen: &Seen, hand: &mut RoadHand, id: &str, value: Value) -> Vec<Act> {
+pub(super) fn set(seen: &RoadGeometry, hand: &mut RoadHand, id: &str, value: Value) -> Vec<Act> {
     let net = &*seen.net;
     match id {
         "draw" => return vec![Act::Ask("shape_street")],
@@ -278,7 +278,7 @@ fn set_node(node: RoadNode, id: &str, value: Value) -> Option<Act> {
     Some(apply("Change junction", RoadChange::PutNode { node }))
 }
 
-fn set_road(seen: &Seen, mut road: Road, hand: &mut RoadHand, id: &str, value: Value) -> Option<Act> {
+fn set_road(seen: &RoadGeometry, mut road: Road, hand: &mut RoadHand, id: &str, value: Value) -> Option<Act> {
     let put = |label, road| Some(apply(label, RoadChange::Put { road }));
     let lane = chosen_lane(&road, hand);
     match id {
@@ -334,7 +334,7 @@ fn set_road(seen: &Seen, mut road: Road, hand: &mut RoadHand, id: &str, value: V
     }
 }
 
-fn place(seen: &Seen, id: RoadId, at_m: DVec2) -> Option<(f64, f64)> {
+fn place(seen: &RoadGeometry, id: RoadId, at_m: DVec2) -> Option<(f64, f64)> {
     curve::project(seen.lines.get(&id)?, at_m)
 }
 

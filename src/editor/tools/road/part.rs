@@ -42,12 +42,12 @@ pub struct RoadHand {
 
 /// A network and the lines of its roads.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct RoadGeometry {
     pub net: Arc<RoadNetwork>,
     pub lines: Arc<BTreeMap<RoadId, Vec<DVec2>>>,
 }
 
-impl Seen {
+impl RoadGeometry {
     pub fn of(net: Arc<RoadNetwork>) -> Self {
         let lines = Arc::new(net.lines());
         Self { net, lines }
@@ -55,7 +55,12 @@ impl Seen {
 }
 
 /// The part at a point: points of the chosen road come before nodes, nodes before roads.
-pub(super) fn at(seen: &Seen, p_m: DVec2, reach_m: f64, chosen: Option<RoadPart>) -> Option<RoadPart> {
+pub(super) fn at(
+    seen: &RoadGeometry,
+    p_m: DVec2,
+    reach_m: f64,
+    chosen: Option<RoadPart>,
+) -> Option<RoadPart> {
     let net = &*seen.net;
     let near = |q: DVec2| q.distance(p_m) <= reach_m;
     if let Some(road) = chosen.and_then(RoadPart::road).and_then(|id| net.road(id))
@@ -70,7 +75,7 @@ pub(super) fn at(seen: &Seen, p_m: DVec2, reach_m: f64, chosen: Option<RoadPart>
 }
 
 /// Index among the points of a road's line at which a place on it lies; `None` beside the line.
-pub(super) fn on_line(seen: &Seen, id: RoadId, p_m: DVec2, reach_m: f64) -> Option<usize> {
+pub(super) fn on_line(seen: &RoadGeometry, id: RoadId, p_m: DVec2, reach_m: f64) -> Option<usize> {
     let (road, line) = (seen.net.road(id)?, seen.lines.get(&id)?);
     let (along_m, left_m) = curve::project(line, p_m)?;
     let before = |p: &&DVec2| curve::project(line, **p).is_some_and(|(along, _)| along < along_m);
@@ -78,7 +83,7 @@ pub(super) fn on_line(seen: &Seen, id: RoadId, p_m: DVec2, reach_m: f64) -> Opti
 }
 
 /// The lane of a road at a point.
-pub(super) fn lane_at(seen: &Seen, road: &Road, p_m: DVec2) -> Option<(bool, usize)> {
+pub(super) fn lane_at(seen: &RoadGeometry, road: &Road, p_m: DVec2) -> Option<(bool, usize)> {
     let (_, left_m) = curve::project(seen.lines.get(&road.id)?, p_m)?;
     let right = left_m < 0.0;
     let mut edge = 0.0;

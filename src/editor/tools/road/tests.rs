@@ -3,13 +3,13 @@ use glam::DVec2;
 use super::*;
 use crate::roads::Street;
 use crate::tools::testing::{NONE, Table};
-use crate::tools::{Modifiers, Setting, setting::Control};
+use crate::tools::{Modifiers, ToolOption, setting::Control};
 use crate::{Apply, apply_all};
 use scene::roads::{LaneKind, NodeKind};
 use scene::{BevLayer, Scene};
 
 /// A table with a street along x and one that crosses it, and the tool.
-fn table() -> (Table, Roads) {
+fn table() -> (Table, RoadTool) {
     let mut table = Table::new();
     for ends in [[[-45.0, 0.0], [45.0, 0.0]], [[0.0, -45.0], [0.0, 45.0]]] {
         let change = Street::default()
@@ -19,7 +19,7 @@ fn table() -> (Table, Roads) {
             .apply(&mut table.scene)
             .expect("sound");
     }
-    (table, Roads::default())
+    (table, RoadTool::default())
 }
 
 /// Carries out what the tool answers; what is only previewed is kept aside.
@@ -39,7 +39,7 @@ fn carry_out(table: &mut Table, shown: &mut Option<Scene>, response: Response) {
     }
 }
 
-fn drag(table: &mut Table, tool: &mut Roads, from: [f64; 2], to: [f64; 2]) {
+fn drag(table: &mut Table, tool: &mut RoadTool, from: [f64; 2], to: [f64; 2]) {
     let mut shown = None;
     for k in 0..=4 {
         let t = f64::from(k) / 4.0;
@@ -118,7 +118,7 @@ fn a_free_end_that_is_let_go_of_on_a_road_meets_it() {
 #[test]
 fn options_change_lanes_limits_marks_and_junctions() {
     let (mut table, mut tool) = table();
-    let set = |table: &mut Table, tool: &mut Roads, id: &str, value| {
+    let set = |table: &mut Table, tool: &mut RoadTool, id: &str, value| {
         let frame = table.scene.frame().clone();
         for act in tool.set(&mut table.hand, &frame, id, value) {
             carry_out(table, &mut None, Response::act(act));
@@ -156,7 +156,7 @@ fn options_change_lanes_limits_marks_and_junctions() {
         .apply(&mut table.scene)
         .expect("sound");
     tool.network(&table.scene);
-    let limit = |s: &Setting| match &s.control {
+    let limit = |s: &ToolOption| match &s.control {
         Control::List { chosen, choices, .. } if s.id == "limit" => Some(choices[*chosen].0.clone()),
         _ => None,
     };

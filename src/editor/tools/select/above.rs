@@ -4,21 +4,21 @@ use glam::{DVec2, DVec3};
 
 use crate::pick::{self, Handle};
 use crate::tools::{
-    Act, At, CLICK_SLACK, Choose, ChooseBy, Context, Cursor, HANDLE_REACH, Hand, Key, Mark, Modifiers,
-    Pointer, Response, Role, Sight,
+    Act, At, CLICK_SLACK, Choose, ChooseBy, Context, Cursor, HANDLE_REACH, Hand, Key, Modifiers, Pointer,
+    ReadonlyContext, Response, Role, ToolMark,
 };
 use crate::transform::{Axis, Pull, Transform, TransformKind};
 use crate::{Edit, choose};
 use scene::{Extent, Frame, SceneBox};
 
 use super::boxes::{self, Steered, step_name, transform};
-use super::gizmo::{Gizmo, Part};
+use super::gizmo::{Gizmo, GizmoPart};
 use super::motion::{self, MotionDrag};
 use super::things::{self, Pull as ThingPull, ThingDrag, thing_under};
 
 /// Drag in progress in the view from above. All points are of the ego frame, m.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Drag {
+pub(super) enum TopViewDrag {
     /// Moves, turns or scales boxes.
     Boxes {
         transform: Transform,
@@ -59,8 +59,8 @@ fn axis_reach_m(extent: Extent) -> f64 {
     across.truncate().length().max(LEAST_M)
 }
 
-fn held(transform: Transform, at_m: DVec2) -> Drag {
-    Drag::Boxes {
+fn held(transform: Transform, at_m: DVec2) -> TopViewDrag {
+    TopViewDrag::Boxes {
         transform,
         from_m: at_m,
         to_m: at_m,
@@ -75,7 +75,7 @@ fn is_over_knob(frame: &Frame, hand: &Hand, at_m: DVec2, reach_m: f64) -> bool {
 }
 
 /// The drag that a press starts.
-pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
+pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<TopViewDrag> {
     let at_m = cx.ground_m(pointer.at)?;
     let frame = cx.settled.frame();
     let reach_m = HANDLE_REACH / cx.view.scale();
@@ -83,7 +83,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     // The arrows light up under the pointer whatever chooses, so they can be pulled too.
     let gizmo = Gizmo::new(cx.settled, cx.hand, cx.view);
     let over_knob = is_over_knob(frame, cx.hand, at_m, reach_m);
-    if let Some(Part::Axis(axis)) = gizmo.filter(|_| !over_knob).and_then(|g| g.at(pointer.at)) {
+    if let Some(GizmoPart::Axis(axis)) = gizmo.filter(|_| !over_knob).and_then(|g| g.at(pointer.at)) {
         let mut transform = transform(frame, cx.hand, &chosen, cx.hand.gizmo);
         transform.axis = Some(axis);
         return Some(held(transform, at_m));
@@ -100,7 +100,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
             }
             // A corner resizes one box.
             (Some(b), Some(Handle::Corner(corner))) if chosen.len() == 1 && !shift => {
-                return Some(Drag::Corner {
+                return Some(TopViewDrag::Corner {
                     start: *b,
                     corner,
                     from_m: at_m,
@@ -114,7 +114,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
         if over_box.is_none_or(|id| !cx.hand.is_chosen(id))
             && let Some(drag) = MotionDrag::held(cx.settled, cx.hand, at_m, reach_m)
         {
-            return Some(Drag::Motion {
+            return Some(TopViewDrag::Motion {
                 drag,
                 from_m: at_m,
                 moved: false,
@@ -124,7 +124,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
             if shift && !(chosen.len() == 1 && cx.hand.is_chosen(id)) {
                 cx.hand.choose(&[id], Choose::Toggle);
                 // A release elsewhere than the press moves nothing: the press meant the selection.
-                return Some(Drag::Marquee {
+                return Some(TopViewDrag::Marquee {
                     from_m: at_m,
                     to_m: at_m,
                     how: Choose::Add,
@@ -136,7 +136,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
         }
         // A thing is chosen by a click and moved once it is: a drag over a forest still marks.
         if let Some(drag) = things::held(cx.settled, cx.hand, at_m, reach_m, shift) {
-            return Some(Drag::Things {
+            return Some(TopViewDrag::Things {
                 drag,
                 from_m: at_m,
                 moved: false,
@@ -145,12 +145,12 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     }
     let how = how(pointer.held);
     match cx.hand.choose_by {
-        ChooseBy::Rectangle => Some(Drag::Marquee {
+        ChooseBy::Rectangle => Some(TopViewDrag::Marquee {
             from_m: at_m,
             to_m: at_m,
             how,
         }),
-        ChooseBy::Lasso => Some(Drag::Lasso {
+        ChooseBy::Lasso => Some(TopViewDrag::Lasso {
             points_m: vec![at_m],
             how,
         }),
@@ -160,21 +160,21 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
 }
 
 /// Continues a drag to the place of the pointer.
-pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Response {
+pub(super) fn drag(drag: &mut TopViewDrag, cx: &Context<'_>, pointer: &Pointer) -> Response {
     let Some(at_m) = cx.ground_m(pointer.at) else {
         return Response::none();
     };
     let (frame, scale) = (cx.frame(), cx.view.scale());
     let left = |from_m: DVec2| from_m.distance(at_m) * scale > CLICK_SLACK;
     match drag {
-        Drag::Boxes {
+        TopViewDrag::Boxes {
             from_m, to_m, moved, ..
         } => {
             *to_m = at_m;
             *moved |= left(*from_m);
             show(drag, frame, cx.hand, pointer.held)
         }
-        Drag::Corner {
+        TopViewDrag::Corner {
             start,
             corner,
             from_m,
@@ -192,7 +192,7 @@ pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Resp
                 size_m: Some(size_m),
             }]))
         }
-        Drag::Things { drag, from_m, moved } => {
+        TopViewDrag::Things { drag, from_m, moved } => {
             *moved |= left(*from_m);
             let edits = match *moved {
                 true => drag.edits(frame, cx.hand, at_m - *from_m, 0.0, pointer.held),
@@ -200,18 +200,18 @@ pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Resp
             };
             preview(edits)
         }
-        Drag::Motion { drag, from_m, moved } => {
+        TopViewDrag::Motion { drag, from_m, moved } => {
             *moved |= left(*from_m);
             match *moved {
                 true => drag.preview(cx.settled, cx.hand, at_m, pointer.held),
                 false => Response::none(),
             }
         }
-        Drag::Marquee { to_m, .. } => {
+        TopViewDrag::Marquee { to_m, .. } => {
             *to_m = at_m;
             Response::none()
         }
-        Drag::Lasso { points_m, .. } => {
+        TopViewDrag::Lasso { points_m, .. } => {
             if points_m.last().is_none_or(|p| p.distance(at_m) > 2.0 / scale) {
                 points_m.push(at_m);
             }
@@ -229,8 +229,8 @@ pub(super) fn preview(edits: Vec<Edit>) -> Response {
 }
 
 /// Shows boxes as far as they are pulled.
-fn show(drag: &Drag, frame: &Frame, hand: &Hand, held: Modifiers) -> Response {
-    let Drag::Boxes {
+fn show(drag: &TopViewDrag, frame: &Frame, hand: &Hand, held: Modifiers) -> Response {
+    let TopViewDrag::Boxes {
         transform,
         from_m,
         to_m,
@@ -273,8 +273,14 @@ fn pull(transform: &Transform, from_m: DVec2, to_m: DVec2, keep_axis: bool) -> P
 }
 
 /// A key while something is dragged.
-pub(super) fn key(drag: &mut Drag, cx: &Context<'_>, key: Key, repeat: bool, held: Modifiers) -> Response {
-    let Drag::Boxes { transform, moved, .. } = drag else {
+pub(super) fn key(
+    drag: &mut TopViewDrag,
+    cx: &Context<'_>,
+    key: Key,
+    repeat: bool,
+    held: Modifiers,
+) -> Response {
+    let TopViewDrag::Boxes { transform, moved, .. } = drag else {
         return Response::none();
     };
     let steered = boxes::steer(transform, key, repeat, held);
@@ -294,7 +300,7 @@ pub(super) fn key(drag: &mut Drag, cx: &Context<'_>, key: Key, repeat: bool, hel
 }
 
 /// Ends a drag when the button comes up.
-pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
+pub(super) fn release(drag: TopViewDrag, cx: &mut Context<'_>) -> Response {
     let (scene, scale) = (cx.settled, cx.view.scale());
     let frame = scene.frame();
     let reach_m = HANDLE_REACH / scale;
@@ -303,12 +309,12 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
         things::choose(hand, hit, how);
     };
     match drag {
-        Drag::Boxes {
+        TopViewDrag::Boxes {
             transform,
             moved: true,
             ..
         } => return Response::act(Act::Commit(step_name(&transform).into())),
-        Drag::Boxes { transform, .. } => {
+        TopViewDrag::Boxes { transform, .. } => {
             // A click on one of several chooses it alone.
             let several = cx.hand.chosen().len() > 1 || !cx.hand.things.chosen.is_empty();
             if transform.kind == TransformKind::Move
@@ -319,22 +325,22 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
                 cx.hand.choose(&[b.id], Choose::Only);
             }
         }
-        Drag::Corner { moved: true, .. } => return Response::act(Act::Commit("Resize box".into())),
-        Drag::Corner { .. } => {}
-        Drag::Things {
+        TopViewDrag::Corner { moved: true, .. } => return Response::act(Act::Commit("Resize box".into())),
+        TopViewDrag::Corner { .. } => {}
+        TopViewDrag::Things {
             drag, moved: true, ..
         } => return Response::act(Act::Commit(drag.label().into())),
-        Drag::Things { drag, from_m, .. } => {
+        TopViewDrag::Things { drag, from_m, .. } => {
             // A click on one of several chooses it alone.
             if drag.pull() == ThingPull::Place {
                 click(cx.hand, from_m, Choose::Only);
             }
         }
-        Drag::Motion {
+        TopViewDrag::Motion {
             drag, moved: true, ..
         } => return Response::act(Act::Commit(drag.label().into())),
-        Drag::Motion { .. } => {}
-        Drag::Marquee { from_m, to_m, how } => {
+        TopViewDrag::Motion { .. } => {}
+        TopViewDrag::Marquee { from_m, to_m, how } => {
             if from_m.distance(to_m) * scale > CLICK_SLACK {
                 cx.hand.choose(&choose::in_rect(frame, from_m, to_m), how);
                 let (min, max) = (from_m.min(to_m), from_m.max(to_m));
@@ -344,7 +350,7 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
                 click(cx.hand, from_m, how);
             }
         }
-        Drag::Lasso { points_m, how } => {
+        TopViewDrag::Lasso { points_m, how } => {
             if points_m.len() >= 3 {
                 outline(cx, &points_m, how);
             } else if let Some(id) = points_m.first().and_then(|p| pick::box_at(frame, *p)) {
@@ -375,7 +381,7 @@ pub(super) fn how(held: Modifiers) -> Choose {
 }
 
 /// The cursor at the place of the pointer.
-pub(super) fn cursor(sight: &Sight<'_>) -> Cursor {
+pub(super) fn cursor(sight: &ReadonlyContext<'_>) -> Cursor {
     let Some(at_m) = sight.ground_m() else {
         return Cursor::Default;
     };
@@ -397,9 +403,9 @@ pub(super) fn cursor(sight: &Sight<'_>) -> Cursor {
 }
 
 /// The marks over the map.
-pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
+pub(super) fn overlay(drag: Option<&TopViewDrag>, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
     let mut out = Vec::new();
-    if let None | Some(Drag::Corner { .. }) = drag
+    if let None | Some(TopViewDrag::Corner { .. }) = drag
         && let Some(gizmo) = Gizmo::new(sight.scene, sight.hand, sight.view)
     {
         let reach_m = HANDLE_REACH / sight.view.scale();
@@ -410,14 +416,14 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
         out.extend(gizmo.marks(pointer.and_then(|p| gizmo.at(p.at))));
     }
     match drag {
-        Some(Drag::Marquee { from_m, to_m, .. }) => {
-            out.push(Mark::Rect((*from_m).into(), (*to_m).into(), Role::Choose));
+        Some(TopViewDrag::Marquee { from_m, to_m, .. }) => {
+            out.push(ToolMark::Rect((*from_m).into(), (*to_m).into(), Role::Choose));
         }
-        Some(Drag::Lasso { points_m, .. }) => {
+        Some(TopViewDrag::Lasso { points_m, .. }) => {
             let closed = points_m.iter().chain(points_m.first()).map(|p| (*p).into());
-            out.push(Mark::Dashed(closed.collect(), Role::Choose));
+            out.push(ToolMark::Dashed(closed.collect(), Role::Choose));
         }
-        Some(Drag::Boxes {
+        Some(TopViewDrag::Boxes {
             transform,
             from_m,
             to_m,
@@ -427,7 +433,7 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
                 let reach_m = axis_reach_m(sight.settled.frame().extent());
                 let (middle_m, along_m) = (transform.middle_m(), transform.axis_in_ego(axis) * reach_m);
                 let ends = [middle_m - along_m, middle_m + along_m].map(At::Ego);
-                out.push(Mark::Line(ends.to_vec(), Role::Axis(axis as usize)));
+                out.push(ToolMark::Line(ends.to_vec(), Role::Axis(axis as usize)));
             }
             let held = sight.pointer.map(|p| p.held).unwrap_or_default();
             let pull = pull(
@@ -437,31 +443,31 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
                 held.shift && transform.kind == TransformKind::Move,
             );
             let text = transform.text(&pull, &sight.hand.snap(held.ctrl));
-            out.push(Mark::Tag((*to_m).into(), text));
+            out.push(ToolMark::Tag((*to_m).into(), text));
         }
-        Some(Drag::Things {
+        Some(TopViewDrag::Things {
             drag,
             from_m,
             moved: true,
         }) if drag.pull() == ThingPull::Place => {
             if let Some(at_m) = sight.ground_m() {
                 let text = format!("{:.1} m", (at_m - *from_m).length());
-                out.push(Mark::Tag(at_m.into(), text));
+                out.push(ToolMark::Tag(at_m.into(), text));
             }
         }
-        Some(Drag::Motion {
+        Some(TopViewDrag::Motion {
             drag, moved: true, ..
         }) => {
             if let Some(at_m) = sight.ground_m() {
-                out.push(Mark::Tag(at_m.into(), drag.text()));
+                out.push(ToolMark::Tag(at_m.into(), drag.text()));
             }
         }
         _ => {}
     }
     let knots_m = motion::knots_m(sight);
-    out.extend(knots_m.into_iter().map(|p| Mark::Handle(p.into())));
+    out.extend(knots_m.into_iter().map(|p| ToolMark::Handle(p.into())));
     let corners_m = things::handles_m(sight.scene, sight.hand);
-    out.extend(corners_m.into_iter().map(|p| Mark::Handle(p.into())));
+    out.extend(corners_m.into_iter().map(|p| ToolMark::Handle(p.into())));
     out
 }
 

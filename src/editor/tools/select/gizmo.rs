@@ -8,7 +8,7 @@ use scene::Scene;
 
 use super::ID;
 use super::boxes::transform;
-use crate::tools::{At, Hand, Mark, Role, View, ViewKind};
+use crate::tools::{At, Hand, Role, ScreenProjection, ToolMark, ViewKind};
 
 /// Length of an arrow, radius of the ring, points.
 const LENGTH: f64 = 62.0;
@@ -20,7 +20,7 @@ const RING_STEPS: usize = 48;
 
 /// A part of the gizmo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum GizmoPart {
     /// An arrow, or the knob of a size.
     Axis(Axis),
     /// The ring.
@@ -32,12 +32,12 @@ pub struct Gizmo<'a> {
     transform: Transform,
     middle_m: DVec3,
     length_m: f64,
-    view: &'a dyn View,
+    view: &'a dyn ScreenProjection,
 }
 
 impl<'a> Gizmo<'a> {
     /// `None` if no box is chosen that may be changed, the middle is not in view, or the knob of the box turns it there.
-    pub fn new(scene: &Scene, hand: &Hand, view: &'a dyn View) -> Option<Self> {
+    pub fn new(scene: &Scene, hand: &Hand, view: &'a dyn ScreenProjection) -> Option<Self> {
         let from_above = view.kind() == ViewKind::Bev;
         if hand.tool != ID || from_above && hand.gizmo == TransformKind::Turn {
             return None;
@@ -86,33 +86,33 @@ impl<'a> Gizmo<'a> {
     }
 
     /// The part under the pointer.
-    pub fn at(&self, pointer: DVec2) -> Option<Part> {
+    pub fn at(&self, pointer: DVec2) -> Option<GizmoPart> {
         if self.transform.kind == TransformKind::Turn {
             let near = self
                 .ring()
                 .windows(2)
                 .any(|p| distance(pointer, p[0], p[1]) < REACH);
-            return near.then_some(Part::Ring);
+            return near.then_some(GizmoPart::Ring);
         }
         let near = |axis: &&Axis| {
             self.arrow(**axis)
                 .is_some_and(|[a, b]| distance(pointer, a, b) < REACH)
         };
-        self.axes().iter().find(near).map(|a| Part::Axis(*a))
+        self.axes().iter().find(near).map(|a| GizmoPart::Axis(*a))
     }
 
     /// The marks of the gizmo; `hot` is under the pointer or held.
-    pub fn marks(&self, hot: Option<Part>) -> Vec<Mark> {
+    pub fn marks(&self, hot: Option<GizmoPart>) -> Vec<ToolMark> {
         let screen = |p: DVec2| At::Screen(p);
         if self.transform.kind == TransformKind::Turn {
             let ring = self.ring().into_iter().map(screen).collect();
-            return vec![Mark::Ring(ring, hot == Some(Part::Ring))];
+            return vec![ToolMark::Ring(ring, hot == Some(GizmoPart::Ring))];
         }
         let arrow = |axis: &Axis| {
-            Some(Mark::Arrow {
+            Some(ToolMark::Arrow {
                 ends: self.arrow(*axis)?.map(screen),
                 role: Role::Axis(*axis as usize),
-                hot: hot == Some(Part::Axis(*axis)),
+                hot: hot == Some(GizmoPart::Axis(*axis)),
                 square: self.transform.kind == TransformKind::Scale,
             })
         };

@@ -11,11 +11,11 @@ use crate::arrange::Pivot;
 use crate::transform::{Orientation, TransformKind};
 use scene::{Frame, Members};
 
-use super::corners::{Corners, Set};
-use super::setting::{self, Control, Setting, Value};
+use super::corners::{PolygonDraft, Set};
+use super::setting::{self, Control, ToolOption, Value};
 use super::{
-    Act, ChooseBy, Context, Cursor, Event, Group, Hand, Hint, Mark, Response, Shortcut, Sight, Tool, ToolDef,
-    ToolId, ViewKind, Wants, When, hint_of,
+    Act, ChooseBy, Context, Cursor, Event, Hand, Hint, ReadonlyContext, Response, Shortcut, Tool, ToolDef,
+    ToolGroup, ToolId, ToolMark, ViewKind, Wants, When, hint_of,
 };
 
 pub use things::thing_under;
@@ -53,7 +53,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Select",
     key: "V",
     icon: "cursor",
-    group: Group::Scene,
+    group: ToolGroup::Scene,
     is_brush: false,
     paints: false,
     shortcuts: &[
@@ -93,17 +93,17 @@ pub static DEF: ToolDef = ToolDef {
 
 /// Drag in progress, by the view in which the button went down.
 #[derive(Clone, Debug, PartialEq)]
-enum Drag {
-    Above(above::Drag),
-    Space(space::Drag),
+enum SelectionDrag {
+    Above(above::TopViewDrag),
+    Space(space::SpaceDrag),
 }
 
 /// The select tool.
 #[derive(Clone, Debug, Default)]
 pub struct Select {
-    drag: Option<Drag>,
+    drag: Option<SelectionDrag>,
     /// Corners of an outline.
-    corners: Corners,
+    corners: PolygonDraft,
     /// Selection when the button went down, or when the first corner was set.
     before: Members,
 }
@@ -149,8 +149,8 @@ impl Tool for Select {
                 }
                 self.before = boxes::members(cx.hand);
                 self.drag = match cx.from_above() {
-                    true => above::press(cx, pointer).map(Drag::Above),
-                    false => space::press(cx, pointer).map(Drag::Space),
+                    true => above::press(cx, pointer).map(SelectionDrag::Above),
+                    false => space::press(cx, pointer).map(SelectionDrag::Space),
                 };
                 if self.drag.is_some() {
                     return Response::hold();
@@ -161,14 +161,14 @@ impl Tool for Select {
                 Response::none()
             }
             Event::Drag(pointer) => match &mut self.drag {
-                Some(Drag::Above(drag)) => above::drag(drag, cx, pointer),
-                Some(Drag::Space(drag)) => space::drag(drag, cx, pointer),
+                Some(SelectionDrag::Above(drag)) => above::drag(drag, cx, pointer),
+                Some(SelectionDrag::Space(drag)) => space::drag(drag, cx, pointer),
                 None => Response::none(),
             },
             Event::Release(pointer) => {
                 let response = match self.drag.take() {
-                    Some(Drag::Above(drag)) => above::release(drag, cx),
-                    Some(Drag::Space(drag)) => space::release(drag, cx, pointer.at),
+                    Some(SelectionDrag::Above(drag)) => above::release(drag, cx),
+                    Some(SelectionDrag::Space(drag)) => space::release(drag, cx, pointer.at),
                     None => Response::none(),
                 };
                 self.with_groups(cx);
@@ -176,8 +176,8 @@ impl Tool for Select {
             }
             Event::Key(key, repeat, held) => {
                 let response = match &mut self.drag {
-                    Some(Drag::Above(drag)) => above::key(drag, cx, *key, *repeat, *held),
-                    Some(Drag::Space(drag)) => space::key(drag, cx, *key, *repeat, *held),
+                    Some(SelectionDrag::Above(drag)) => above::key(drag, cx, *key, *repeat, *held),
+                    Some(SelectionDrag::Space(drag)) => space::key(drag, cx, *key, *repeat, *held),
                     None => Response::none(),
                 };
                 if response.done {
@@ -223,17 +223,17 @@ impl Tool for Select {
         hint_of(&parts)
     }
 
-    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+    fn cursor(&self, sight: &ReadonlyContext<'_>) -> Cursor {
         match sight.from_above() {
             true => above::cursor(sight),
             false => Cursor::Default,
         }
     }
 
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         let (above, space) = match &self.drag {
-            Some(Drag::Above(drag)) => (Some(drag), None),
-            Some(Drag::Space(drag)) => (None, Some(drag)),
+            Some(SelectionDrag::Above(drag)) => (Some(drag), None),
+            Some(SelectionDrag::Space(drag)) => (None, Some(drag)),
             None => (None, None),
         };
         let mut out = match sight.from_above() {
@@ -244,31 +244,31 @@ impl Tool for Select {
         out
     }
 
-    fn options(&self, hand: &Hand) -> Vec<Setting> {
+    fn options(&self, hand: &Hand) -> Vec<ToolOption> {
         let any = hand.selected.is_some();
         let snaps = vec![
-            Setting::toggle(
+            ToolOption::toggle(
                 "snap_grid",
                 hand.snap_grid,
                 "Grid",
                 "Moves snap to this step; hold Ctrl for the same",
             ),
-            Setting::segments("grid", hand.grid_m, &GRIDS, 3),
+            ToolOption::segments("grid", hand.grid_m, &GRIDS, 3),
         ];
         let more_snaps = vec![
-            Setting::toggle(
+            ToolOption::toggle(
                 "snap_lane",
                 hand.snap_lane,
                 "Lanes",
                 "Moves snap to lane centre and heading",
             ),
-            Setting::toggle(
+            ToolOption::toggle(
                 "snap_ground",
                 hand.snap_ground,
                 "Ground",
                 "Moves set boxes on the ground",
             ),
-            Setting::toggle(
+            ToolOption::toggle(
                 "snap_kerb",
                 hand.things.snap_kerb,
                 "Kerb",
@@ -276,31 +276,31 @@ impl Tool for Select {
             ),
         ];
         let to_lane = match !hand.things.chosen.is_empty() && !any {
-            true => Setting::button("to_lane", "To kerb", "D: beside the nearest kerb", true),
-            false => Setting::button("to_lane", "To lane", "D: lane centre, heading and ground", any),
+            true => ToolOption::button("to_lane", "To kerb", "D: beside the nearest kerb", true),
+            false => ToolOption::button("to_lane", "To lane", "D: lane centre, heading and ground", any),
         };
         let buttons = vec![
             to_lane,
-            Setting::button("to_ground", "To ground", "Shift+D", any),
-            Setting::button("row", "Row…", "Ctrl+Shift+D: copies at a spacing", any),
-            Setting::button("mirror", "Mirror", "Ctrl+M: about the ego x axis", any),
-            Setting::button("mirror_copies", "Mirrored copy", "", any),
+            ToolOption::button("to_ground", "To ground", "Shift+D", any),
+            ToolOption::button("row", "Row…", "Ctrl+Shift+D: copies at a spacing", any),
+            ToolOption::button("mirror", "Mirror", "Ctrl+M: about the ego x axis", any),
+            ToolOption::button("mirror_copies", "Mirrored copy", "", any),
         ];
         vec![
-            Setting::title("Select"),
-            Setting::segments("lasso", hand.choose_by, &WAYS, 3),
-            Setting::gap(),
-            Setting::segments("gizmo", hand.gizmo, &KINDS, 3),
-            Setting::gap(),
-            Setting::segments("orientation", hand.orientation, &ORIENTATIONS, 2),
-            Setting::gap(),
-            Setting::segments("pivot", hand.pivot, &PIVOTS, 2),
-            Setting::gap(),
-            Setting::new("", Control::Line(snaps)),
-            Setting::new("", Control::Line(more_snaps)),
-            Setting::gap(),
-            Setting::new("", Control::Row(buttons)),
-            Setting::toggle(
+            ToolOption::title("Select"),
+            ToolOption::segments("lasso", hand.choose_by, &WAYS, 3),
+            ToolOption::gap(),
+            ToolOption::segments("gizmo", hand.gizmo, &KINDS, 3),
+            ToolOption::gap(),
+            ToolOption::segments("orientation", hand.orientation, &ORIENTATIONS, 2),
+            ToolOption::gap(),
+            ToolOption::segments("pivot", hand.pivot, &PIVOTS, 2),
+            ToolOption::gap(),
+            ToolOption::new("", Control::Line(snaps)),
+            ToolOption::new("", Control::Line(more_snaps)),
+            ToolOption::gap(),
+            ToolOption::new("", Control::Row(buttons)),
+            ToolOption::toggle(
                 "keep_direction",
                 hand.mirror_keeps_direction,
                 "Mirrored ones keep to traffic",
@@ -336,9 +336,10 @@ impl Tool for Select {
 
     fn wants(&self) -> Wants {
         match &self.drag {
-            Some(Drag::Above(above::Drag::Boxes { .. }) | Drag::Space(space::Drag::Boxes { .. })) => {
-                Wants::Drag
-            }
+            Some(
+                SelectionDrag::Above(above::TopViewDrag::Boxes { .. })
+                | SelectionDrag::Space(space::SpaceDrag::Boxes { .. }),
+            ) => Wants::Drag,
             _ if !self.corners.is_empty() => Wants::Points,
             _ => Wants::Nothing,
         }

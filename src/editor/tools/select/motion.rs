@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::Edit;
 use crate::lanes::nearest_lane;
-use crate::tools::{Act, HANDLE_REACH, Hand, Modifiers, Response, Sight};
+use crate::tools::{Act, HANDLE_REACH, Hand, Modifiers, ReadonlyContext, Response};
 use language::tf;
 use scene::clip::Path;
 use scene::{BoxId, Clip, Frame, Motion, Scene};
@@ -116,7 +116,7 @@ impl MotionDrag {
 }
 
 /// Places of the knots to draw, m.
-pub(super) fn knots_m(sight: &Sight<'_>) -> Vec<DVec2> {
+pub(super) fn knots_m(sight: &ReadonlyContext<'_>) -> Vec<DVec2> {
     let Some((_, motion)) = editable(sight.scene.clip(), sight.hand) else {
         return Vec::new();
     };
@@ -124,7 +124,7 @@ pub(super) fn knots_m(sight: &Sight<'_>) -> Vec<DVec2> {
 }
 
 /// True if a knot is under the pointer.
-pub(super) fn is_over_knot(sight: &Sight<'_>, at_m: DVec2) -> bool {
+pub(super) fn is_over_knot(sight: &ReadonlyContext<'_>, at_m: DVec2) -> bool {
     let reach_m = HANDLE_REACH / sight.view.scale();
     !sight.hand.outlines() && MotionDrag::held(sight.settled, sight.hand, at_m, reach_m).is_some()
 }

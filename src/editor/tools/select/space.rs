@@ -3,19 +3,19 @@
 use glam::{DVec2, DVec3};
 
 use crate::choose;
-use crate::pick::{self, Hit};
+use crate::pick::{self, PickHit};
 use crate::pick_things;
 use crate::tools::rays::along_axis;
 use crate::tools::{
-    Act, At, CLICK_SLACK, Choose, ChooseBy, Context, Hand, Key, Mark, Modifiers, Pointer, Response, Role,
-    Sight, View, farthest_m, point_of,
+    Act, At, CLICK_SLACK, Choose, ChooseBy, Context, Hand, Key, Modifiers, Pointer, ReadonlyContext,
+    Response, Role, ScreenProjection, ToolMark, farthest_m, point_of,
 };
 use crate::transform::{Axis, Orientation, Pull, Transform, TransformKind};
 use scene::{BoxId, Frame, Scene, ThingId};
 
 use super::above::{how, preview};
 use super::boxes::{self, Steered, step_name, transform};
-use super::gizmo::{Gizmo, Part};
+use super::gizmo::{Gizmo, GizmoPart};
 use super::things::{self, Pull as ThingPull, ThingDrag};
 
 /// How near the pointer takes hold of the knob, points.
@@ -27,7 +27,7 @@ const MOST_UP_M: f64 = 100.0;
 
 /// Drag in progress in the 3D view. Places are points of the screen.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Drag {
+pub(super) enum SpaceDrag {
     /// Moves, turns or scales boxes.
     Boxes {
         transform: Transform,
@@ -57,16 +57,16 @@ pub(super) enum Drag {
 }
 
 /// The thing that was hit, if things can be chosen.
-fn thing_of(scene: &Scene, hand: &Hand, hit: &Hit) -> Option<ThingId> {
-    let Hit::Voxel(voxel) = hit else { return None };
+fn thing_of(scene: &Scene, hand: &Hand, hit: &PickHit) -> Option<ThingId> {
+    let PickHit::Voxel(voxel) = hit else { return None };
     let open = hand.things.is_open();
     open.then(|| pick_things::thing_of_voxel(scene.frame(), &scene.background, voxel.cell))?
 }
 
 /// The drag that a press on a thing starts.
-fn press_things(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
+fn press_things(cx: &Context<'_>, pointer: &Pointer) -> Option<SpaceDrag> {
     let drag = |pull, grabbed_m, hit| {
-        Some(Drag::Things {
+        Some(SpaceDrag::Things {
             drag: ThingDrag::new(cx.settled, cx.hand, pull)?,
             grabbed_m,
             from: pointer.at,
@@ -93,7 +93,7 @@ fn press_things(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
 }
 
 /// The drag that a press starts.
-pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
+pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<SpaceDrag> {
     if let Some(drag) = press_things(cx, pointer) {
         return Some(drag);
     }
@@ -103,11 +103,11 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     }
     let ray = cx.view.ray(at)?;
     match pick::pick(cx.frame(), &ray) {
-        Some(hit @ Hit::Box { id, .. }) if !pointer.held.shift && !cx.hand.outlines() => {
+        Some(hit @ PickHit::Box { id, .. }) if !pointer.held.shift && !cx.hand.outlines() => {
             if cx.settled.arranged.group_of_box(id).is_some() {
                 boxes::take(cx.settled, cx.hand, id);
             }
-            Some(Drag::Boxes {
+            Some(SpaceDrag::Boxes {
                 transform: transform(
                     cx.frame(),
                     cx.hand,
@@ -123,7 +123,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
         }
         // (its corners are set by clicks)
         _ if cx.hand.choose_by == ChooseBy::Polygon => None,
-        _ => Some(Drag::Area {
+        _ => Some(SpaceDrag::Area {
             points: vec![at],
             lasso: cx.hand.outlines(),
             how: how(pointer.held),
@@ -132,7 +132,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
 }
 
 /// The drag that a press on the gizmo starts.
-fn press_gizmo(cx: &Context<'_>, at: DVec2) -> Option<Drag> {
+fn press_gizmo(cx: &Context<'_>, at: DVec2) -> Option<SpaceDrag> {
     let frame = cx.frame();
     let gizmo = Gizmo::new(cx.settled, cx.hand, cx.view);
     if let Some(part) = gizmo.and_then(|g| g.at(at)) {
@@ -141,10 +141,10 @@ fn press_gizmo(cx: &Context<'_>, at: DVec2) -> Option<Drag> {
             transform.orientation = Orientation::Local;
         }
         transform.axis = match part {
-            Part::Axis(axis) => Some(axis),
-            Part::Ring => None,
+            GizmoPart::Axis(axis) => Some(axis),
+            GizmoPart::Ring => None,
         };
-        return Some(Drag::Boxes {
+        return Some(SpaceDrag::Boxes {
             grabbed_m: transform.middle_m(),
             transform,
             from: at,
@@ -157,15 +157,15 @@ fn press_gizmo(cx: &Context<'_>, at: DVec2) -> Option<Drag> {
 }
 
 /// Continues a drag to the place of the pointer.
-pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Response {
+pub(super) fn drag(drag: &mut SpaceDrag, cx: &Context<'_>, pointer: &Pointer) -> Response {
     let at = pointer.at;
     match drag {
-        Drag::Boxes { from, to, moved, .. } => {
+        SpaceDrag::Boxes { from, to, moved, .. } => {
             *to = at;
             *moved |= from.distance(at) > CLICK_SLACK;
             show(drag, cx.view, cx.frame(), cx.hand, pointer.held)
         }
-        Drag::Things {
+        SpaceDrag::Things {
             drag,
             grabbed_m,
             from,
@@ -185,7 +185,7 @@ pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Resp
             };
             preview(drag.edits(cx.frame(), cx.hand, way_m.truncate(), way_m.z, held))
         }
-        Drag::Area { points, lasso, .. } => {
+        SpaceDrag::Area { points, lasso, .. } => {
             if !*lasso {
                 points.truncate(1);
             }
@@ -199,7 +199,7 @@ pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Resp
 
 /// Way of the pointer on the level of the dragged object, or up, m; `None` beyond `limit_m` from the ego vehicle.
 fn way_m(
-    view: &dyn View,
+    view: &dyn ScreenProjection,
     limit_m: f64,
     pull: ThingPull,
     grabbed_m: DVec3,
@@ -217,7 +217,7 @@ fn way_m(
 /// How far the pointer pulls a drag of boxes; places beyond `limit_m` from the ego vehicle do not count.
 fn pull(
     transform: &Transform,
-    view: &dyn View,
+    view: &dyn ScreenProjection,
     limit_m: f64,
     grabbed_m: DVec3,
     [from, to]: [DVec2; 2],
@@ -252,8 +252,14 @@ fn pull(
     Some(pull)
 }
 
-fn show(drag: &Drag, view: &dyn View, frame: &Frame, hand: &Hand, held: Modifiers) -> Response {
-    if let Drag::Boxes {
+fn show(
+    drag: &SpaceDrag,
+    view: &dyn ScreenProjection,
+    frame: &Frame,
+    hand: &Hand,
+    held: Modifiers,
+) -> Response {
+    if let SpaceDrag::Boxes {
         transform,
         grabbed_m,
         from,
@@ -275,8 +281,14 @@ fn show(drag: &Drag, view: &dyn View, frame: &Frame, hand: &Hand, held: Modifier
 }
 
 /// A key while something is dragged.
-pub(super) fn key(drag: &mut Drag, cx: &Context<'_>, key: Key, repeat: bool, held: Modifiers) -> Response {
-    let Drag::Boxes { transform, moved, .. } = drag else {
+pub(super) fn key(
+    drag: &mut SpaceDrag,
+    cx: &Context<'_>,
+    key: Key,
+    repeat: bool,
+    held: Modifiers,
+) -> Response {
+    let SpaceDrag::Boxes { transform, moved, .. } = drag else {
         return Response::none();
     };
     let steered = boxes::steer(transform, key, repeat, held);
@@ -296,9 +308,9 @@ pub(super) fn key(drag: &mut Drag, cx: &Context<'_>, key: Key, repeat: bool, hel
 }
 
 /// Ends a drag when the button comes up.
-pub(super) fn release(drag: Drag, cx: &mut Context<'_>, at: DVec2) -> Response {
+pub(super) fn release(drag: SpaceDrag, cx: &mut Context<'_>, at: DVec2) -> Response {
     match drag {
-        Drag::Boxes {
+        SpaceDrag::Boxes {
             transform,
             moved,
             hit,
@@ -313,10 +325,10 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>, at: DVec2) -> Response {
                 false => Response::none(),
             }
         }
-        Drag::Things {
+        SpaceDrag::Things {
             drag, moved: true, ..
         } => Response::act(Act::Commit(drag.label().into())),
-        Drag::Things { hit, .. } => {
+        SpaceDrag::Things { hit, .. } => {
             // A click on one of several chooses it alone; one on the knob changes nothing.
             let there = hit.filter(|id| cx.settled.background.get(*id).is_some());
             if there.is_some() && cx.hand.things.is_open() {
@@ -324,7 +336,7 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>, at: DVec2) -> Response {
             }
             Response::none()
         }
-        Drag::Area { points, lasso, how } => {
+        SpaceDrag::Area { points, lasso, how } => {
             match points.iter().all(|p| p.distance(at) <= CLICK_SLACK) {
                 true => click(cx, at, how),
                 false => area(cx, &points, at, lasso, how),
@@ -338,8 +350,8 @@ fn click(cx: &mut Context<'_>, at: DVec2, how: Choose) {
     let scene = cx.settled;
     let hit = cx.view.ray(at).and_then(|ray| pick::pick(scene.frame(), &ray));
     match (hit, how) {
-        (Some(Hit::Box { id, .. }), Choose::Add) => cx.hand.choose(&[id], Choose::Toggle),
-        (Some(Hit::Box { id, .. }), how) => cx.hand.choose(&[id], how),
+        (Some(PickHit::Box { id, .. }), Choose::Add) => cx.hand.choose(&[id], Choose::Toggle),
+        (Some(PickHit::Box { id, .. }), how) => cx.hand.choose(&[id], how),
         (hit, how) => {
             let thing = hit.and_then(|hit| thing_of(scene, cx.hand, &hit));
             things::choose(cx.hand, thing, how);
@@ -371,15 +383,15 @@ pub(super) fn chosen_in(cx: &mut Context<'_>, outline: &[DVec2], how: Choose) {
 }
 
 /// The part of the gizmo that is dragged.
-fn held_part(axis: Option<Axis>, kind: TransformKind) -> Option<Part> {
+fn held_part(axis: Option<Axis>, kind: TransformKind) -> Option<GizmoPart> {
     match (kind, axis) {
-        (TransformKind::Turn, _) => Some(Part::Ring),
-        (_, axis) => axis.map(Part::Axis),
+        (TransformKind::Turn, _) => Some(GizmoPart::Ring),
+        (_, axis) => axis.map(GizmoPart::Axis),
     }
 }
 
 /// The marks over the view.
-pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
+pub(super) fn overlay(drag: Option<&SpaceDrag>, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
     let mut out = Vec::new();
     let gizmo = Gizmo::new(sight.scene, sight.hand, sight.view);
     let pointer = sight.pointer.map(|p| p.at);
@@ -390,7 +402,7 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
                 out.extend(gizmo.marks(pointer.and_then(|p| gizmo.at(p))));
             }
         }
-        Some(Drag::Boxes {
+        Some(SpaceDrag::Boxes {
             transform,
             grabbed_m,
             from,
@@ -405,19 +417,19 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
             if let (true, Some(pull)) = (*moved, pull) {
                 let grid = sight.pointer.is_some_and(|p| p.held.ctrl);
                 let text = transform.text(&pull, &sight.hand.snap(grid));
-                out.push(Mark::Tag(At::Screen(*to), text));
+                out.push(ToolMark::Tag(At::Screen(*to), text));
             }
         }
-        Some(Drag::Area { points, lasso, .. }) => match (lasso, points.first(), points.last()) {
+        Some(SpaceDrag::Area { points, lasso, .. }) => match (lasso, points.first(), points.last()) {
             (false, Some(a), Some(b)) => {
-                out.push(Mark::Rect(At::Screen(*a), At::Screen(*b), Role::Choose));
+                out.push(ToolMark::Rect(At::Screen(*a), At::Screen(*b), Role::Choose));
             }
             _ => {
                 let closed = points.iter().chain(points.first()).map(|p| At::Screen(*p));
-                out.push(Mark::Dashed(closed.collect(), Role::Choose));
+                out.push(ToolMark::Dashed(closed.collect(), Role::Choose));
             }
         },
-        Some(Drag::Things {
+        Some(SpaceDrag::Things {
             drag,
             grabbed_m,
             from,
@@ -431,15 +443,15 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
                     ThingPull::Height => format!("{:+.1} m", way_m.z),
                     _ => format!("{:.1} m", way_m.length()),
                 };
-                out.push(Mark::Tag(At::Screen(to), text));
+                out.push(ToolMark::Tag(At::Screen(to), text));
             }
         }
-        Some(Drag::Things { .. }) => {}
+        Some(SpaceDrag::Things { .. }) => {}
     }
     if let Some(knob_m) = things::knob_m(sight.scene, sight.hand) {
         let knob = sight.view.project(knob_m);
         let hot = pointer.zip(knob).is_some_and(|(p, k)| p.distance(k) < KNOB_REACH);
-        out.push(Mark::Knob(knob_m, hot));
+        out.push(ToolMark::Knob(knob_m, hot));
     }
     out
 }

@@ -7,11 +7,11 @@ use glam::{DVec2, DVec3};
 use crate::Edit;
 use crate::choose;
 use crate::pick;
-use crate::voxel_ops::{self, Cell};
+use crate::voxel_ops::{self, VoxelIndex};
 use scene::{Class, Extent, Frame};
 
 use crate::tools::rays::on_plane;
-use crate::tools::{Act, At, Context, Hand, Mark, Modifiers, Pointer, Role, View, VoxelMode};
+use crate::tools::{Act, At, Context, Hand, Modifiers, Pointer, Role, ScreenProjection, ToolMark, VoxelMode};
 
 /// A voxel is hidden if something is that much nearer than its middle, m.
 const NEARER_M: f64 = 2.0 * Extent::VOXEL_M;
@@ -20,16 +20,20 @@ const APART: f64 = 3.0;
 
 /// Region in which voxels are chosen.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Area {
+pub(super) enum SelectionVolume {
     /// Columns from one corner to the other, so many layers up from the voxel that was pressed.
-    Block { first: Cell, last: Cell, layers: usize },
+    Block {
+        first: VoxelIndex,
+        last: VoxelIndex,
+        layers: usize,
+    },
     /// About the middle of the voxel that was pressed.
-    Sphere { middle: Cell, radius_m: f64 },
+    Sphere { middle: VoxelIndex, radius_m: f64 },
     /// Within an outline on the screen.
     Lasso { points: Vec<DVec2> },
 }
 
-impl Area {
+impl SelectionVolume {
     /// The region that a press begins; `None` where the press hits no voxel that it needs.
     pub(super) fn begin(cx: &Context<'_>, mode: VoxelMode, at: DVec2) -> Option<Self> {
         if mode == VoxelMode::ChooseLasso {
@@ -53,7 +57,7 @@ impl Area {
     /// Follows the pointer; true if something changed.
     pub(super) fn drag(&mut self, cx: &Context<'_>, pointer: &Pointer) -> bool {
         let extent = cx.frame().extent();
-        let on_level = |cell: Cell| {
+        let on_level = |cell: VoxelIndex| {
             let [x, y, z] = cell;
             on_plane(extent, &cx.view.ray(pointer.at)?, extent.center(x, y, z), 2)
         };
@@ -91,11 +95,11 @@ impl Area {
     }
 
     /// The solid voxels in it. An outline leaves out those behind others, unless it goes `through`.
-    pub(super) fn cells(&self, frame: &Frame, view: &dyn View, through: bool) -> Vec<Cell> {
+    pub(super) fn cells(&self, frame: &Frame, view: &dyn ScreenProjection, through: bool) -> Vec<VoxelIndex> {
         let (grid, extent) = (&frame.occupancy, frame.extent());
         let [nx, ny, nz] = extent.shape();
         let mut out = Vec::new();
-        let mut within = |x: [usize; 2], y: [usize; 2], z: [usize; 2], is_in: &dyn Fn(Cell) -> bool| {
+        let mut within = |x: [usize; 2], y: [usize; 2], z: [usize; 2], is_in: &dyn Fn(VoxelIndex) -> bool| {
             for (x, y) in (x[0]..=x[1]).flat_map(|x| (y[0]..=y[1]).map(move |y| (x, y))) {
                 let column = grid.column(x, y);
                 let solid = (z[0]..=z[1]).filter(|z| column[*z] != Class::FREE);
@@ -114,11 +118,11 @@ impl Area {
                 let reach = (radius_m / Extent::VOXEL_M).ceil() as usize;
                 let range =
                     |a: usize, n: usize| [middle[a].saturating_sub(reach), (middle[a] + reach).min(n - 1)];
-                let is_in = |[x, y, z]: Cell| extent.center(x, y, z).distance(middle_m) <= *radius_m;
+                let is_in = |[x, y, z]: VoxelIndex| extent.center(x, y, z).distance(middle_m) <= *radius_m;
                 within(range(0, nx), range(1, ny), range(2, nz), &is_in);
             }
             Self::Lasso { points } if points.len() >= 3 => {
-                let is_in = |[x, y, z]: Cell| {
+                let is_in = |[x, y, z]: VoxelIndex| {
                     let middle_m = extent.center(x, y, z);
                     let on_screen = view.project(middle_m).filter(|p| choose::is_inside(points, *p));
                     on_screen.is_some_and(|p| through || is_seen(frame, view, middle_m, p))
@@ -140,26 +144,32 @@ impl Area {
     }
 
     /// The marks while the region grows.
-    pub(super) fn marks(&self, frame: &Frame, hand: &Hand, view: &dyn View, color: [u8; 3]) -> Vec<Mark> {
+    pub(super) fn marks(
+        &self,
+        frame: &Frame,
+        hand: &Hand,
+        view: &dyn ScreenProjection,
+        color: [u8; 3],
+    ) -> Vec<ToolMark> {
         match self {
             Self::Lasso { points } => {
                 let closed = points.iter().chain(points.first()).map(|p| At::Screen(*p));
                 vec![
-                    Mark::Voxels(hand.voxels.clone(), color),
-                    Mark::Dashed(closed.collect(), Role::Choose),
+                    ToolMark::Voxels(hand.voxels.clone(), color),
+                    ToolMark::Dashed(closed.collect(), Role::Choose),
                 ]
             }
             _ => {
                 let mut cells = self.cells(frame, view, true);
                 cells.extend(&hand.voxels);
-                vec![Mark::Voxels(cells, color)]
+                vec![ToolMark::Voxels(cells, color)]
             }
         }
     }
 }
 
 /// True if nothing hides the middle of a voxel from a view.
-fn is_seen(frame: &Frame, view: &dyn View, middle_m: DVec3, at: DVec2) -> bool {
+fn is_seen(frame: &Frame, view: &dyn ScreenProjection, middle_m: DVec3, at: DVec2) -> bool {
     let Some(ray) = view.ray(at) else { return false };
     let hit = pick::ray_voxels(&ray, &frame.occupancy, |_, _| true);
     let away_m = (middle_m - ray.origin_in_ego).dot(ray.direction_in_ego);
@@ -188,12 +198,12 @@ pub(super) fn joins(held: Modifiers) -> Joins {
 
 impl Hand {
     /// Chooses voxels: in place of those chosen, besides them, or out of them.
-    pub fn choose_voxels(&mut self, cells: Vec<Cell>, how: Joins) {
+    pub fn choose_voxels(&mut self, cells: Vec<VoxelIndex>, how: Joins) {
         match how {
             Joins::Replace => self.voxels = cells,
             Joins::Add => self.voxels.extend(cells),
             Joins::Remove => {
-                let gone: BTreeSet<Cell> = cells.into_iter().collect();
+                let gone: BTreeSet<VoxelIndex> = cells.into_iter().collect();
                 self.voxels.retain(|cell| !gone.contains(cell));
             }
         }
@@ -218,14 +228,14 @@ impl Hand {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pick::Ray;
+    use crate::pick::PickRay;
     use crate::tools::ViewKind;
     use scene::{BevLayout, VoxelGrid};
 
     /// Looks straight down: a point of the screen is a hundredth of a metre.
     struct Above;
 
-    impl View for Above {
+    impl ScreenProjection for Above {
         fn kind(&self) -> ViewKind {
             ViewKind::Space
         }
@@ -234,8 +244,8 @@ mod tests {
             Some(p_m.truncate() * 100.0)
         }
 
-        fn ray(&self, at: DVec2) -> Option<Ray> {
-            Ray::new((at / 100.0).extend(100.0), DVec3::NEG_Z)
+        fn ray(&self, at: DVec2) -> Option<PickRay> {
+            PickRay::new((at / 100.0).extend(100.0), DVec3::NEG_Z)
         }
 
         fn right(&self) -> DVec3 {
@@ -261,7 +271,7 @@ mod tests {
     #[test]
     fn boxes_and_spheres_take_what_is_solid_in_them() {
         let frame = frame();
-        let block = |layers| Area::Block {
+        let block = |layers| SelectionVolume::Block {
             first: [100, 100, 0],
             last: [101, 100, 0],
             layers,
@@ -271,7 +281,7 @@ mod tests {
             block(1).cells(&frame, &Above, false),
             [[100, 100, 0], [101, 100, 0]]
         );
-        let sphere = |radius_m| Area::Sphere {
+        let sphere = |radius_m| SelectionVolume::Sphere {
             middle: [100, 100, 5],
             radius_m,
         };
@@ -291,10 +301,10 @@ mod tests {
             corner(15.0, 15.0),
             corner(-15.0, 15.0),
         ];
-        let area = Area::Lasso { points: around };
+        let area = SelectionVolume::Lasso { points: around };
         assert_eq!(area.cells(&frame, &Above, false), [[101, 100, 5]]);
         assert_eq!(area.cells(&frame, &Above, true), [[101, 100, 0], [101, 100, 5]]);
-        let line = Area::Lasso {
+        let line = SelectionVolume::Lasso {
             points: vec![corner(0.0, 0.0), corner(1.0, 0.0)],
         };
         assert!(line.cells(&frame, &Above, true).is_empty());

@@ -1,7 +1,7 @@
 //! The row of the voxel tool in the table of tools.
 
-use super::{ID, Voxels};
-use crate::tools::{Group, Hand, Shortcut, ToolDef, ToolId, VoxelMode, VoxelVerb, When};
+use super::{ID, VoxelTool};
+use crate::tools::{Hand, Shortcut, ToolDef, ToolGroup, ToolId, VoxelMode, VoxelVerb, When};
 
 const fn shortcut(
     id: &'static str,
@@ -33,7 +33,7 @@ pub static DEF: ToolDef = ToolDef {
     title: "Voxels",
     key: "B in 3D",
     icon: "voxel",
-    group: Group::Scene,
+    group: ToolGroup::Scene,
     is_brush: true,
     paints: true,
     shortcuts: &[
@@ -111,5 +111,5 @@ pub static DEF: ToolDef = ToolDef {
             },
         ),
     ],
-    make: || Box::new(Voxels::default()),
+    make: || Box::new(VoxelTool::default()),
 };

@@ -13,20 +13,20 @@ use glam::DVec2;
 
 use crate::Edit;
 use crate::pick::{self, VoxelHit};
-use crate::voxel_ops::{self, Cell};
+use crate::voxel_ops::{self, VoxelIndex};
 use language::tf;
 use scene::{Class, Extent, Frame};
 
-use super::corners::{Corners, Set};
+use super::corners::{PolygonDraft, Set};
 use super::rays::on_plane;
 use super::saved::Stamp;
-use super::setting::{self, Setting, Value};
+use super::setting::{self, ToolOption, Value};
 use super::{
-    Act, At, Context, Cursor, Event, Hand, Hint, Mark, Modifiers, Pointer, Response, Sight, Tool, ToolId,
-    ViewKind, VoxelMode, VoxelTip, VoxelVerb, Wants, hint_of,
+    Act, At, Context, Cursor, Event, Hand, Hint, Modifiers, Pointer, ReadonlyContext, Response, Tool, ToolId,
+    ToolMark, ViewKind, VoxelMode, VoxelTip, VoxelVerb, Wants, hint_of,
 };
 pub use choosing::Joins;
-use choosing::{Area, joins};
+use choosing::{SelectionVolume, joins};
 pub use def::DEF;
 use pulling::pulled;
 use stamping::{stamp_at, stamped};
@@ -44,34 +44,34 @@ const SAMPLE_EVERY: f64 = 3.0;
 
 /// Drag in progress.
 #[derive(Clone, Debug, PartialEq)]
-enum Drag {
+enum VoxelDrag {
     /// Follows the pointer.
     Dab {
-        cells: BTreeSet<Cell>,
+        cells: BTreeSet<VoxelIndex>,
         verb: VoxelVerb,
         last: DVec2,
     },
     /// A block from the face that was pressed to the corner under the pointer, so many layers high.
     Block {
         first: VoxelHit,
-        last: Cell,
+        last: VoxelIndex,
         height: i32,
         verb: VoxelVerb,
     },
     /// A straight row.
-    Row { first: Cell, verb: VoxelVerb },
+    Row { first: VoxelIndex, verb: VoxelVerb },
     /// A face pulled out or pushed in.
-    Pull { first: VoxelHit, face: Vec<Cell> },
+    Pull { first: VoxelHit, face: Vec<VoxelIndex> },
     /// Voxels are chosen in it: in place of those chosen, besides them, or taken out of them.
-    Choose(Area),
+    Choose(SelectionVolume),
 }
 
 /// The voxel tool.
 #[derive(Clone, Debug, Default)]
-pub struct Voxels {
-    drag: Option<Drag>,
+pub struct VoxelTool {
+    drag: Option<VoxelDrag>,
     /// Corners of an outline.
-    corners: Corners,
+    corners: PolygonDraft,
 }
 
 fn class_of(hand: &Hand, verb: VoxelVerb) -> Class {
@@ -103,7 +103,7 @@ fn normal_axis(hit: &VoxelHit) -> usize {
 }
 
 /// Shows voxels painted, on both sides if symmetry is on, as far as the verb changes them.
-fn show(cells: Vec<Cell>, frame: &Frame, hand: &Hand, verb: VoxelVerb) -> Response {
+fn show(cells: Vec<VoxelIndex>, frame: &Frame, hand: &Hand, verb: VoxelVerb) -> Response {
     let both = hand.both_sides(frame.extent(), cells);
     let cells = voxel_ops::only(&frame.occupancy, both, verb == VoxelVerb::Attach);
     match cells.is_empty() {
@@ -115,7 +115,7 @@ fn show(cells: Vec<Cell>, frame: &Frame, hand: &Hand, verb: VoxelVerb) -> Respon
     }
 }
 
-impl Voxels {
+impl VoxelTool {
     fn press(&mut self, cx: &mut Context<'_>, pointer: &Pointer) -> Response {
         let shift = pointer.held.shift;
         let mode = cx.hand.voxel_mode;
@@ -124,7 +124,7 @@ impl Voxels {
             false => cx.hand.verb,
         };
         if mode == VoxelMode::Brush {
-            self.drag = Some(Drag::Dab {
+            self.drag = Some(VoxelDrag::Dab {
                 cells: BTreeSet::new(),
                 verb,
                 last: pointer.at,
@@ -140,7 +140,7 @@ impl Voxels {
             return Response::none();
         }
         if mode.chooses() && mode != VoxelMode::Wand {
-            self.drag = Area::begin(cx, mode, pointer.at).map(Drag::Choose);
+            self.drag = SelectionVolume::begin(cx, mode, pointer.at).map(VoxelDrag::Choose);
             return match self.drag {
                 Some(_) => Response::hold(),
                 None => Response::none(),
@@ -158,7 +158,7 @@ impl Voxels {
             | VoxelMode::ChooseLasso
             | VoxelMode::ChoosePolygon
             | VoxelMode::Stamp => None,
-            VoxelMode::Block | VoxelMode::Brush => first.map(|cell| Drag::Block {
+            VoxelMode::Block | VoxelMode::Brush => first.map(|cell| VoxelDrag::Block {
                 first: VoxelHit {
                     cell,
                     normal: hit.map_or([0, 0, 1], |h| h.normal),
@@ -169,8 +169,8 @@ impl Voxels {
                 height: cx.hand.voxel_height as i32,
                 verb,
             }),
-            VoxelMode::Row => first.map(|first| Drag::Row { first, verb }),
-            VoxelMode::Extrude => hit.map(|first| Drag::Pull {
+            VoxelMode::Row => first.map(|first| VoxelDrag::Row { first, verb }),
+            VoxelMode::Extrude => hit.map(|first| VoxelDrag::Pull {
                 face: voxel_ops::face(&frame.occupancy, first.cell, first.normal),
                 first,
             }),
@@ -196,11 +196,11 @@ impl Voxels {
         let extent = frame.extent();
         match &mut self.drag {
             None => Response::none(),
-            Some(Drag::Choose(area)) => {
+            Some(VoxelDrag::Choose(area)) => {
                 area.drag(cx, pointer);
                 Response::none()
             }
-            Some(Drag::Dab { cells, verb, last }) => {
+            Some(VoxelDrag::Dab { cells, verb, last }) => {
                 let before = cells.len();
                 let samples = (last.distance(at) / SAMPLE_EVERY).ceil().max(1.0) as usize;
                 for i in 1..=samples {
@@ -215,7 +215,7 @@ impl Voxels {
                     false => Response::none(),
                 }
             }
-            Some(Drag::Block { first, last, .. }) => {
+            Some(VoxelDrag::Block { first, last, .. }) => {
                 let axis = normal_axis(first);
                 let [x, y, z] = first.cell;
                 let middle_m = extent.center(x, y, z);
@@ -230,7 +230,7 @@ impl Voxels {
                 }
                 self.show_block(frame, hand)
             }
-            Some(Drag::Row { first, verb }) => {
+            Some(VoxelDrag::Row { first, verb }) => {
                 let Some(ray) = cx.view.ray(at) else {
                     return Response::none();
                 };
@@ -242,7 +242,7 @@ impl Voxels {
                     None => Response::none(),
                 }
             }
-            Some(Drag::Pull { first, face }) => {
+            Some(VoxelDrag::Pull { first, face }) => {
                 let ray = cx.view.ray(at);
                 match ray.and_then(|ray| pulled(&ray, frame, hand, first, face)) {
                     Some(edit) => Response::act(Act::Preview(vec![edit])),
@@ -253,7 +253,7 @@ impl Voxels {
     }
 
     fn show_block(&self, frame: &Frame, hand: &Hand) -> Response {
-        let Some(Drag::Block {
+        let Some(VoxelDrag::Block {
             first,
             last,
             height,
@@ -277,13 +277,13 @@ impl Voxels {
     }
 
     fn scroll(&mut self, cx: &Context<'_>, notches: i32) -> Response {
-        if let Some(Drag::Choose(area)) = &mut self.drag {
+        if let Some(VoxelDrag::Choose(area)) = &mut self.drag {
             return match area.scroll(notches) {
                 true => Response::taken(),
                 false => Response::none(),
             };
         }
-        let Some(Drag::Block { height, .. }) = &mut self.drag else {
+        let Some(VoxelDrag::Block { height, .. }) = &mut self.drag else {
             return Response::none();
         };
         *height = (*height + notches).clamp(1, Extent::NZ as i32);
@@ -295,18 +295,20 @@ impl Voxels {
     fn release(&mut self, cx: &mut Context<'_>, held: Modifiers) -> Response {
         let label = match self.drag.take() {
             None => return Response::none(),
-            Some(Drag::Choose(area)) => {
+            Some(VoxelDrag::Choose(area)) => {
                 area.take(cx, joins(held));
                 return Response::none();
             }
-            Some(Drag::Dab { verb, .. } | Drag::Block { verb, .. } | Drag::Row { verb, .. }) => step_of(verb),
-            Some(Drag::Pull { .. }) => "Pull voxels",
+            Some(
+                VoxelDrag::Dab { verb, .. } | VoxelDrag::Block { verb, .. } | VoxelDrag::Row { verb, .. },
+            ) => step_of(verb),
+            Some(VoxelDrag::Pull { .. }) => "Pull voxels",
         };
         Response::act(Act::Commit(label.into()))
     }
 }
 
-fn flood(cells: Vec<Cell>, class: Class) -> Response {
+fn flood(cells: Vec<VoxelIndex>, class: Class) -> Response {
     if cells.is_empty() {
         return Response::none();
     }
@@ -320,11 +322,11 @@ fn flood(cells: Vec<Cell>, class: Class) -> Response {
 /// Chooses the voxels in an outline that was closed.
 fn closed(cx: &mut Context<'_>, set: Set) {
     if let Set::Closed(points, held) = set {
-        Area::Lasso { points }.take(cx, joins(held));
+        SelectionVolume::Lasso { points }.take(cx, joins(held));
     }
 }
 
-impl Tool for Voxels {
+impl Tool for VoxelTool {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
         match self.corners.event(event) {
             Set::Not => {}
@@ -388,23 +390,23 @@ impl Tool for Voxels {
         })
     }
 
-    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+    fn cursor(&self, sight: &ReadonlyContext<'_>) -> Cursor {
         match sight.from_above() {
             true => Cursor::Forbidden,
             false => Cursor::Crosshair,
         }
     }
 
-    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+    fn overlay(&self, sight: &ReadonlyContext<'_>) -> Vec<ToolMark> {
         let hand = sight.hand;
         if sight.from_above() {
             return Vec::new();
         }
-        if let Some(Drag::Choose(area)) = &self.drag {
+        if let Some(VoxelDrag::Choose(area)) = &self.drag {
             return area.marks(sight.settled.frame(), hand, sight.view, CHOSEN);
         }
         if hand.voxel_mode.chooses() {
-            let mut out = vec![Mark::Voxels(hand.voxels.clone(), CHOSEN)];
+            let mut out = vec![ToolMark::Voxels(hand.voxels.clone(), CHOSEN)];
             out.extend(self.corners.marks(sight));
             return out;
         }
@@ -415,7 +417,7 @@ impl Tool for Voxels {
             let parts = stamp_at(sight.settled.frame(), hand, sight.view, pointer.at);
             return parts
                 .into_iter()
-                .map(|(class, cells)| Mark::Voxels(cells, class.color()))
+                .map(|(class, cells)| ToolMark::Voxels(cells, class.color()))
                 .collect();
         }
         let mut out = Vec::new();
@@ -427,16 +429,16 @@ impl Tool for Voxels {
             };
             let frame = sight.settled.frame();
             let cells = tipped(frame, hand.verb, brush(hand), &ray);
-            out.push(Mark::Voxels(hand.both_sides(frame.extent(), cells), color));
+            out.push(ToolMark::Voxels(hand.both_sides(frame.extent(), cells), color));
         }
-        if let Some(Drag::Block {
+        if let Some(VoxelDrag::Block {
             first, last, height, ..
         }) = &self.drag
         {
             let flat = (0..3).filter(|a| first.normal[*a] == 0);
             let across: Vec<usize> = flat.map(|a| first.cell[a].abs_diff(last[a]) + 1).collect();
             if let [a, b] = across[..] {
-                out.push(Mark::Tag(
+                out.push(ToolMark::Tag(
                     At::Screen(pointer.at),
                     tf!("{a} × {b} × {height} voxels", a = a, b = b, height = height),
                 ));
@@ -445,7 +447,7 @@ impl Tool for Voxels {
         out
     }
 
-    fn options(&self, hand: &Hand) -> Vec<Setting> {
+    fn options(&self, hand: &Hand) -> Vec<ToolOption> {
         options::options(hand)
     }
 
@@ -491,7 +493,7 @@ impl Tool for Voxels {
 
     fn wants(&self) -> Wants {
         match self.drag {
-            Some(Drag::Block { .. } | Drag::Choose(Area::Block { .. })) => Wants::Wheel,
+            Some(VoxelDrag::Block { .. } | VoxelDrag::Choose(SelectionVolume::Block { .. })) => Wants::Wheel,
             _ if !self.corners.is_empty() => Wants::Points,
             _ => Wants::Nothing,
         }

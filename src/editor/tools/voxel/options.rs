@@ -1,24 +1,24 @@
 //! Options of the voxel tool, and actions on chosen voxels.
 
 use crate::tools::paints::voxel_classes;
-use crate::tools::setting::{Control, Number, Setting};
+use crate::tools::setting::{Control, NumberSlider, ToolOption};
 use crate::tools::{Hand, VoxelMode, VoxelTip, VoxelVerb};
 use language::tf;
 
 /// All options of the tool.
-pub(super) fn options(hand: &Hand) -> Vec<Setting> {
+pub(super) fn options(hand: &Hand) -> Vec<ToolOption> {
     let mut out = vec![
-        Setting::title("Voxel brush"),
-        Setting::segments("mode", hand.voxel_mode, &VoxelMode::ALL, 3),
+        ToolOption::title("Voxel brush"),
+        ToolOption::segments("mode", hand.voxel_mode, &VoxelMode::ALL, 3),
     ];
     if hand.voxel_mode == VoxelMode::Brush {
-        out.push(Setting::segments("tip", hand.voxel_tip, &VoxelTip::ALL, 2));
+        out.push(ToolOption::segments("tip", hand.voxel_tip, &VoxelTip::ALL, 2));
     }
     if matches!(hand.voxel_mode, VoxelMode::Brush | VoxelMode::Block) {
         let height = hand.voxel_height as f64;
-        out.push(Setting::number("height", "Height, vx", height, [1.0, 16.0], 0));
+        out.push(ToolOption::number("height", "Height, vx", height, [1.0, 16.0], 0));
     }
-    out.push(Setting::toggle(
+    out.push(ToolOption::toggle(
         "symmetry",
         hand.symmetry,
         "Symmetry about the ego axis",
@@ -26,7 +26,7 @@ pub(super) fn options(hand: &Hand) -> Vec<Setting> {
     ));
     if matches!(hand.voxel_mode, VoxelMode::ChooseLasso | VoxelMode::ChoosePolygon) {
         let hint = "The outline chooses voxels behind others, too";
-        out.push(Setting::toggle(
+        out.push(ToolOption::toggle(
             "through",
             hand.voxels_through,
             "Hidden ones, too",
@@ -41,11 +41,11 @@ pub(super) fn options(hand: &Hand) -> Vec<Setting> {
         return out;
     }
     out.extend([
-        Setting::segments("verb", hand.verb, &VoxelVerb::ALL, 3),
-        Setting::gap(),
-        Setting::new(
+        ToolOption::segments("verb", hand.verb, &VoxelVerb::ALL, 3),
+        ToolOption::gap(),
+        ToolOption::new(
             "size",
-            Control::Number(Number {
+            Control::Number(NumberSlider {
                 title: "Size",
                 label: "Voxel brush size",
                 hint: "[ and ], or Ctrl+wheel",
@@ -57,13 +57,13 @@ pub(super) fn options(hand: &Hand) -> Vec<Setting> {
                 wide: true,
             }),
         ),
-        Setting::gap(),
+        ToolOption::gap(),
     ]);
     out.push(match hand.verb {
-        VoxelVerb::Remove => {
-            Setting::text("Removes voxels in the 3D view. Painted voxels are locked: generation keeps them.")
-        }
-        _ => Setting::new(
+        VoxelVerb::Remove => ToolOption::text(
+            "Removes voxels in the 3D view. Painted voxels are locked: generation keeps them.",
+        ),
+        _ => ToolOption::new(
             "class",
             Control::Class {
                 chosen: hand.voxel_class,
@@ -76,7 +76,7 @@ pub(super) fn options(hand: &Hand) -> Vec<Setting> {
 }
 
 /// Actions on the chosen voxels.
-fn chosen(hand: &Hand) -> [Setting; 2] {
+fn chosen(hand: &Hand) -> [ToolOption; 2] {
     let n = hand.voxels.len();
     let text = match n {
         0 => "No voxel is chosen. Shift adds to those chosen, Ctrl takes out of them.".to_owned(),
@@ -84,29 +84,29 @@ fn chosen(hand: &Hand) -> [Setting; 2] {
         n => tf!("{n} voxels chosen", n = n),
     };
     let buttons = vec![
-        Setting::button("remove", "Remove them", "Del", n > 0),
-        Setting::button("recolour", "Recolour them", "in the class below", n > 0),
-        Setting::button("lock", "Lock them", "generation keeps them", n > 0),
-        Setting::button("unlock", "Unlock them", "", n > 0),
-        Setting::button(
+        ToolOption::button("remove", "Remove them", "Del", n > 0),
+        ToolOption::button("recolour", "Recolour them", "in the class below", n > 0),
+        ToolOption::button("lock", "Lock them", "generation keeps them", n > 0),
+        ToolOption::button("unlock", "Unlock them", "", n > 0),
+        ToolOption::button(
             "stamp",
             "Keep as stamp",
             "set down elsewhere, as often as you like",
             n > 0,
         ),
     ];
-    [Setting::text(text), Setting::new("", Control::Row(buttons))]
+    [ToolOption::text(text), ToolOption::new("", Control::Row(buttons))]
 }
 
 /// Actions on the stamp.
-fn stamp(hand: &Hand) -> Vec<Setting> {
+fn stamp(hand: &Hand) -> Vec<ToolOption> {
     match hand.stamp.len() {
-        0 => vec![Setting::text(
+        0 => vec![ToolOption::text(
             "Choose voxels first, by wand, box, sphere or lasso, and keep them as a stamp",
         )],
         n => vec![
-            Setting::text(tf!("{n} voxels are set down where you click.", n = n)),
-            Setting::button("turn_stamp", "Turn by 90°", "", true),
+            ToolOption::text(tf!("{n} voxels are set down where you click.", n = n)),
+            ToolOption::button("turn_stamp", "Turn by 90°", "", true),
         ],
     }
 }

@@ -3,14 +3,20 @@
 use glam::DVec3;
 
 use crate::Edit;
-use crate::pick::{Ray, VoxelHit};
+use crate::pick::{PickRay, VoxelHit};
 use crate::tools::Hand;
 use crate::tools::rays::along_axis;
-use crate::voxel_ops::{self, Cell};
+use crate::voxel_ops::{self, VoxelIndex};
 use scene::{Class, Extent, Frame};
 
 /// The edit of a face pulled as far as the pointer is.
-pub(super) fn pulled(ray: &Ray, frame: &Frame, hand: &Hand, first: &VoxelHit, face: &[Cell]) -> Option<Edit> {
+pub(super) fn pulled(
+    ray: &PickRay,
+    frame: &Frame,
+    hand: &Hand,
+    first: &VoxelHit,
+    face: &[VoxelIndex],
+) -> Option<Edit> {
     let [x, y, z] = first.cell;
     let normal = DVec3::from_array(first.normal.map(f64::from));
     let surface_m = frame.extent().center(x, y, z) + normal * (Extent::VOXEL_M / 2.0);

@@ -4,12 +4,17 @@ use glam::DVec2;
 
 use super::target::target;
 use crate::Edit;
-use crate::tools::{Act, Context, Hand, Pointer, Response, View, VoxelVerb};
-use crate::voxel_ops::Cell;
+use crate::tools::{Act, Context, Hand, Pointer, Response, ScreenProjection, VoxelVerb};
+use crate::voxel_ops::VoxelIndex;
 use scene::{Class, Frame};
 
 /// The voxels of the stamp, by class, where a press would set it down; empty where it has no place.
-pub(super) fn stamp_at(frame: &Frame, hand: &Hand, view: &dyn View, at: DVec2) -> Vec<(Class, Vec<Cell>)> {
+pub(super) fn stamp_at(
+    frame: &Frame,
+    hand: &Hand,
+    view: &dyn ScreenProjection,
+    at: DVec2,
+) -> Vec<(Class, Vec<VoxelIndex>)> {
     let cell = view
         .ray(at)
         .and_then(|ray| target(frame, VoxelVerb::Attach, [1, 1], &ray).first().copied());

@@ -1,12 +1,12 @@
 //! Voxels that a brush would change: a block or a ball in front of the face under the ray, or behind it.
 
-use crate::pick::{self, Ray, VoxelHit};
+use crate::pick::{self, PickRay, VoxelHit};
 use crate::tools::{VoxelTip, VoxelVerb};
 use scene::{Class, Extent, Frame};
 
 /// Voxels of the first face along the ray that a block covers: free ones in front of it to attach, others behind it to remove
 /// or recolour.
-pub(super) fn target(frame: &Frame, verb: VoxelVerb, size: [usize; 2], ray: &Ray) -> Vec<[usize; 3]> {
+pub(super) fn target(frame: &Frame, verb: VoxelVerb, size: [usize; 2], ray: &PickRay) -> Vec<[usize; 3]> {
     tipped(frame, verb, (VoxelTip::Block, size), ray)
 }
 
@@ -15,7 +15,7 @@ pub(super) fn tipped(
     frame: &Frame,
     verb: VoxelVerb,
     brush: (VoxelTip, [usize; 2]),
-    ray: &Ray,
+    ray: &PickRay,
 ) -> Vec<[usize; 3]> {
     let Some(hit) = pick::ray_voxels(ray, &frame.occupancy, |_, _| true) else {
         // On empty ground voxels are attached to the floor of the grid.
@@ -109,9 +109,9 @@ mod tests {
         Frame::new(BevLayout::default(), BTreeMap::new(), grid)
     }
 
-    fn down(x: usize, y: usize) -> Ray {
+    fn down(x: usize, y: usize) -> PickRay {
         let p = Extent::WINDOW.center(x, y, 15);
-        Ray::new(p + DVec3::Z * 5.0, -DVec3::Z).expect("a direction")
+        PickRay::new(p + DVec3::Z * 5.0, -DVec3::Z).expect("a direction")
     }
 
     #[test]
@@ -139,16 +139,16 @@ mod tests {
     fn the_floor_is_that_of_the_whole_map() {
         let extent = Extent::new([-150, -110], [480, 320]).expect("sound");
         let frame = Frame::new(BevLayout::over(extent), BTreeMap::new(), VoxelGrid::over(extent));
-        let ray = Ray::new(DVec3::new(100.1, 60.1, 9.0), -DVec3::Z).expect("a direction");
+        let ray = PickRay::new(DVec3::new(100.1, 60.1, 9.0), -DVec3::Z).expect("a direction");
         let cells = target(&frame, VoxelVerb::Attach, [3, 1], &ray);
         assert_eq!((cells.len(), cells[4]), (9, [400, 260, 0]));
-        let ray = Ray::new(DVec3::new(131.9, 83.9, 9.0), -DVec3::Z).expect("a direction");
+        let ray = PickRay::new(DVec3::new(131.9, 83.9, 9.0), -DVec3::Z).expect("a direction");
         assert_eq!(
             target(&frame, VoxelVerb::Attach, [3, 1], &ray).len(),
             4,
             "cut at the rim"
         );
-        let ray = Ray::new(DVec3::new(132.1, 60.1, 9.0), -DVec3::Z).expect("a direction");
+        let ray = PickRay::new(DVec3::new(132.1, 60.1, 9.0), -DVec3::Z).expect("a direction");
         assert!(target(&frame, VoxelVerb::Attach, [3, 1], &ray).is_empty());
     }
 
@@ -177,7 +177,7 @@ mod tests {
     fn faces_from_the_side() {
         let frame = frame();
         let from = Extent::WINDOW.center(80, 100, 1);
-        let ray = Ray::new(from, DVec3::X).expect("a direction");
+        let ray = PickRay::new(from, DVec3::X).expect("a direction");
         assert_eq!(
             target(&frame, VoxelVerb::Attach, [1, 1], &ray),
             vec![[99, 100, 1]]

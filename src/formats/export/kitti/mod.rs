@@ -19,7 +19,7 @@ mod objects;
 use scene::{LidarSweep, Pose, Scene, SceneBox};
 
 use self::camera::FrontCamera;
-use super::{Exporter, OutFile, Product, Products, Span};
+use super::{ExportSpan, Exporter, OutFile, Product, Products};
 use crate::kitti::{EGO_TO_VELO, ego_from_velo, matrix_of};
 use crate::physical::to_physical_ground;
 use crate::{FormatError, Holds, semantic_kitti};
@@ -32,7 +32,7 @@ pub const EXPORTER: Exporter = Exporter {
     holds: &[Holds::Points],
     lost: "all but the first scan, and its single points: they come back as voxels with the class of most of them; barriers as \
            manmade, cones as others, construction vehicles as trailers",
-    span: Span::Clip,
+    span: ExportSpan::Clip,
     needs: &[Product::Sweep],
     write,
 };

@@ -44,7 +44,7 @@ pub(super) struct Quaternion {
 }
 
 #[derive(Clone, Copy, PartialEq, Message)]
-pub(super) struct Pose {
+pub(super) struct FoxglovePose {
     #[prost(message, optional, tag = "1")]
     pub position: Option<Vector3>,
     #[prost(message, optional, tag = "2")]
@@ -90,7 +90,7 @@ pub(super) struct PoseInFrame {
     #[prost(string, tag = "2")]
     pub frame_id: String,
     #[prost(message, optional, tag = "3")]
-    pub pose: Option<Pose>,
+    pub pose: Option<FoxglovePose>,
 }
 
 #[derive(Clone, PartialEq, Message)]
@@ -158,7 +158,7 @@ pub(super) struct PointCloud {
     #[prost(string, tag = "2")]
     pub frame_id: String,
     #[prost(message, optional, tag = "3")]
-    pub pose: Option<Pose>,
+    pub pose: Option<FoxglovePose>,
     #[prost(fixed32, tag = "4")]
     pub point_stride: u32,
     #[prost(message, repeated, tag = "5")]
@@ -174,7 +174,7 @@ pub(super) struct Grid {
     #[prost(string, tag = "2")]
     pub frame_id: String,
     #[prost(message, optional, tag = "3")]
-    pub pose: Option<Pose>,
+    pub pose: Option<FoxglovePose>,
     #[prost(fixed32, tag = "4")]
     pub column_count: u32,
     #[prost(message, optional, tag = "5")]
@@ -196,7 +196,7 @@ pub(super) struct VoxelGrid {
     #[prost(string, tag = "2")]
     pub frame_id: String,
     #[prost(message, optional, tag = "3")]
-    pub pose: Option<Pose>,
+    pub pose: Option<FoxglovePose>,
     #[prost(fixed32, tag = "4")]
     pub row_count: u32,
     #[prost(fixed32, tag = "5")]
@@ -237,7 +237,7 @@ pub(super) struct KeyValuePair {
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct CubePrimitive {
     #[prost(message, optional, tag = "1")]
-    pub pose: Option<Pose>,
+    pub pose: Option<FoxglovePose>,
     #[prost(message, optional, tag = "2")]
     pub size: Option<Vector3>,
     #[prost(message, optional, tag = "3")]
@@ -305,7 +305,7 @@ impl From<DQuat> for Quaternion {
     }
 }
 
-impl From<scene::Pose> for Pose {
+impl From<scene::Pose> for FoxglovePose {
     fn from(pose: scene::Pose) -> Self {
         Self {
             position: Some(pose.translation_m.into()),

@@ -17,7 +17,7 @@ use mcap::{Compression, WriteOptions, Writer};
 use prost::Message;
 use scene::{Camera, Lens, LidarPattern, LidarSweep, Pose, Scene, SceneBox};
 
-use super::{Exporter, OutFile, Picture, Product, Products, Span};
+use super::{ExportPicture, ExportSpan, Exporter, OutFile, Product, Products};
 use crate::recipe::{self, Recipe};
 use crate::sensor_names::{self, LIDAR};
 use crate::{FormatError, Holds, jpeg, moments, physical};
@@ -34,7 +34,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("scene.mcap"),
     holds: &[Holds::Boxes, Holds::Points, Holds::Pictures, Holds::Occupancy],
     lost: "",
-    span: Span::Clip,
+    span: ExportSpan::Clip,
     needs: &[Product::Sweep, Product::Pictures],
     write: |scene, products| Ok(vec![OutFile::new("scene.mcap", to_bytes(scene, products)?)]),
 };
@@ -297,7 +297,12 @@ fn pictures(
 }
 
 /// At the size of the picture. Distortion as OpenCV lists it; f-theta, which the schema does not know, by its name.
-fn calibration(camera: &Camera, name: &str, picture: &Picture, timestamp: Option<Time>) -> CameraCalibration {
+fn calibration(
+    camera: &Camera,
+    name: &str,
+    picture: &ExportPicture,
+    timestamp: Option<Time>,
+) -> CameraCalibration {
     let camera = camera.resized(picture.width as u32, picture.height as u32);
     let ([fx, fy], [cx, cy]) = (camera.focal_px, camera.center_px);
     let (model, distortion) = match camera.lens {

@@ -9,7 +9,7 @@ use scene::raster::polygon_cells;
 use scene::{BevLayer, BevLayout, PolylineKind};
 use serde_json::{Map, Value, json};
 
-use super::outline::{Area, areas};
+use super::outline::{PolygonWithHoles, areas};
 use crate::FormatError;
 use crate::nuscenes::tokens::Tokens;
 use crate::opendrive::write::lane_graph::{GraphLane, lane_graph, outline};
@@ -61,7 +61,7 @@ pub(super) fn to_bytes(layout: &BevLayout, shift_m: DVec2, tokens: &Tokens) -> R
             json!({"orientation": 0.0, "road_block_token": ""}),
         ),
     ] {
-        let row = |(i, area): (usize, &Area)| {
+        let row = |(i, area): (usize, &PolygonWithHoles)| {
             let mut row = more.clone();
             row["token"] = tokens.token(layer.name(), i as u64).into();
             row["polygon_token"] = out.polygon(area).into();
@@ -111,7 +111,7 @@ impl Expansion<'_> {
         points_m.iter().map(&mut one).collect()
     }
 
-    fn polygon(&mut self, area: &Area) -> String {
+    fn polygon(&mut self, area: &PolygonWithHoles) -> String {
         let token = self.tokens.token("polygon", self.polygons.len() as u64);
         let outside = self.points(&area.outside);
         let hole = |ring: &Vec<DVec2>| json!({"node_tokens": self.points(ring)});
@@ -133,7 +133,7 @@ impl Expansion<'_> {
             paths.insert(token.clone(), path(&lane.middle_m, self.shift_m));
             let leads = json!({"incoming": named(&lane.incoming), "outgoing": named(&lane.outgoing)});
             connectivity.insert(token.clone(), leads);
-            let polygon = self.polygon(&Area {
+            let polygon = self.polygon(&PolygonWithHoles {
                 outside: outline(&lane.sides_m),
                 holes: Vec::new(),
             });

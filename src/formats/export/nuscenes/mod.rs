@@ -15,10 +15,10 @@ use glam::{DVec2, DVec3};
 use scene::{Pose, Scene, SceneBox};
 use serde::Serialize;
 
-use super::{Exporter, OutFile, Product, Products, Span};
+use super::{ExportSpan, Exporter, OutFile, Product, Products};
 use crate::nuscenes::tables::{
-    Attribute, CalibratedSensor, Category, EgoPose, Instance, Lidarseg, Log, Map, Sample, SampleAnnotation,
-    SampleData, SceneRow, Sensor, Visibility,
+    Attribute, CalibratedSensor, Category, EgoPose, Instance, Lidarseg, Log, NuscenesMap, NuscenesSample,
+    NuscenesSensor, SampleAnnotation, SampleData, SceneRow, Visibility,
 };
 use crate::nuscenes::tokens::Tokens;
 use crate::nuscenes::{KEY_FRAMES_HZ, categories};
@@ -34,7 +34,7 @@ pub const EXPORTER: Exporter = Exporter {
     lost: "what happens between key frames and after the last one, names and paint of boxes, velocities of a scene that \
            stands still, slopes of the ground, beams of the LiDAR and further LiDARs, distortion and shutters of cameras, size of the own vehicle; voxels, map \
            and scenery are inferred anew from the LiDAR",
-    span: Span::Clip,
+    span: ExportSpan::Clip,
     needs: &[Product::Sweep, Product::Truth],
     write,
 };
@@ -55,10 +55,10 @@ const SPLIT: &str = "all";
 /// All rows.
 #[derive(Default)]
 struct Tables {
-    sample: Vec<Sample>,
+    sample: Vec<NuscenesSample>,
     sample_data: Vec<SampleData>,
     ego_pose: Vec<EgoPose>,
-    sensor: Vec<Sensor>,
+    sensor: Vec<NuscenesSensor>,
     calibrated_sensor: Vec<CalibratedSensor>,
     sample_annotation: Vec<SampleAnnotation>,
     instance: Vec<Instance>,
@@ -107,7 +107,7 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
                 .filter(|i| *i < times_s.len())
                 .map_or_else(String::new, |i| writing.sample_token(i))
         };
-        let row = Sample {
+        let row = NuscenesSample {
             token: sample,
             timestamp: timestamp_us(time_s),
             scene_token: writing.tokens.token("scene", 0),
@@ -196,7 +196,7 @@ impl Writing<'_> {
             recipe: Some(serde_json::to_value(recipe).map_err(FormatError::new)?),
         };
         self.table("log", &[row])?;
-        let row = Map {
+        let row = NuscenesMap {
             token: self.tokens.token("map", 0),
             log_tokens: vec![log],
             category: "semantic_prior".into(),

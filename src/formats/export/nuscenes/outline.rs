@@ -8,7 +8,7 @@ const APART_M: f64 = 0.01;
 
 /// A connected area: cells that share an edge.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Area {
+pub(super) struct PolygonWithHoles {
     /// Counter-clockwise, in the frame of the map, m.
     pub(super) outside: Vec<DVec2>,
     /// Clockwise.
@@ -22,11 +22,11 @@ const ALONG: [[i64; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 const ENDS: [[i64; 2]; 4] = [[1, 0], [1, 1], [0, 1], [0, 0]];
 
 /// Areas of the columns for which `covers` holds, by their lowest column.
-pub(super) fn areas(extent: Extent, covers: impl Fn(usize, usize) -> bool) -> Vec<Area> {
+pub(super) fn areas(extent: Extent, covers: impl Fn(usize, usize) -> bool) -> Vec<PolygonWithHoles> {
     let cells: Vec<bool> = extent.all_columns().map(|[x, y]| covers(x, y)).collect();
-    let map = Cells { extent, cells };
+    let map = CoveredCells { extent, cells };
     let (area_of, count) = map.areas();
-    let mut out = vec![Area::default(); count];
+    let mut out = vec![PolygonWithHoles::default(); count];
     // Sides that an outline has passed, a bit each.
     let mut passed = vec![0u8; extent.columns()];
     for at in 0..extent.columns() {
@@ -45,12 +45,12 @@ pub(super) fn areas(extent: Extent, covers: impl Fn(usize, usize) -> bool) -> Ve
     out
 }
 
-struct Cells {
+struct CoveredCells {
     extent: Extent,
     cells: Vec<bool>,
 }
 
-impl Cells {
+impl CoveredCells {
     fn index(&self, [x, y]: [i64; 2]) -> Option<usize> {
         let inside = |v: i64, n: usize| usize::try_from(v).ok().filter(|v| *v < n);
         let (x, y) = (inside(x, self.extent.nx())?, inside(y, self.extent.ny())?);
@@ -144,7 +144,7 @@ fn signed_area(ring: &[DVec2]) -> f64 {
 mod tests {
     use super::*;
 
-    fn of(rows: &[&str]) -> Vec<Area> {
+    fn of(rows: &[&str]) -> Vec<PolygonWithHoles> {
         let extent = Extent::new([-2, 3], [rows[0].len(), rows.len()]).expect("sound");
         areas(extent, |x, y| rows[rows.len() - 1 - y].as_bytes()[x] == b'#')
     }
@@ -168,7 +168,7 @@ mod tests {
             let extent = Extent::new([0, 0], [9, 7]).expect("sound");
             let cells: Vec<bool> = (0..63).map(|_| dice.below(5) < 3).collect();
             let found = areas(extent, |x, y| cells[extent.index(x, y)]);
-            let area = |a: &Area| {
+            let area = |a: &PolygonWithHoles| {
                 assert!(signed_area(&a.outside) > 0.0);
                 let holes = a.holes.iter().map(|h| signed_area(h));
                 signed_area(&a.outside) + holes.inspect(|h| assert!(*h < 0.0)).sum::<f64>()

@@ -7,8 +7,8 @@ use glam::DVec3;
 use scene::{BoxId, LidarPoint, LidarSweep, Returns, Scene, SceneBox};
 
 use super::{Writing, log_name, timestamp_us};
-use crate::export::{Picture, Products, nuscenes_lidar};
-use crate::nuscenes::tables::{CalibratedSensor, EgoPose, Lidarseg, SampleData, Sensor};
+use crate::export::{ExportPicture, Products, nuscenes_lidar};
+use crate::nuscenes::tables::{CalibratedSensor, EgoPose, Lidarseg, NuscenesSensor, SampleData};
 use crate::nuscenes::{categories, wxyz};
 use crate::sensor_names::{self, LIDAR};
 use crate::{FormatError, jpeg, physical};
@@ -45,7 +45,7 @@ pub(super) struct Sighted {
 }
 
 /// A file of a sensor.
-struct Measured<'a> {
+struct SensorFile<'a> {
     sensor: usize,
     sample: &'a str,
     now: &'a Scene,
@@ -66,7 +66,7 @@ impl Sensors {
         let lidar = rig.lidars.iter().take(1).map(|l| l.ego_from_sensor());
         for (i, pose) in cameras.chain(lidar).enumerate() {
             let camera = rig.cameras.get(i);
-            writing.tables.sensor.push(Sensor {
+            writing.tables.sensor.push(NuscenesSensor {
                 token: writing.tokens.token("sensor", i as u64),
                 channel: channels[i].clone(),
                 modality: camera.map_or("lidar", |_| "camera").into(),
@@ -172,7 +172,7 @@ impl Sensors {
         now: &Scene,
         is_key_frame: bool,
     ) -> String {
-        let measured = Measured {
+        let measured = SensorFile {
             sensor: self.channels.len() - 1,
             sample,
             now,
@@ -186,7 +186,7 @@ impl Sensors {
     fn add_picture(
         &mut self,
         writing: &mut Writing<'_>,
-        picture: &Picture,
+        picture: &ExportPicture,
         camera: usize,
         sample: &str,
         now: &Scene,
@@ -195,7 +195,7 @@ impl Sensors {
         let size = [picture.width as u32, picture.height as u32];
         let resized = now.rig.cameras[camera].resized(size[0], size[1]);
         writing.tables.calibrated_sensor[camera].camera_intrinsic = intrinsics(&resized);
-        let measured = Measured {
+        let measured = SensorFile {
             sensor: camera,
             sample,
             now,
@@ -208,7 +208,7 @@ impl Sensors {
     }
 
     /// The rows of a file, and the file. Returns the token.
-    fn add(&mut self, writing: &mut Writing<'_>, measured: Measured<'_>) -> String {
+    fn add(&mut self, writing: &mut Writing<'_>, measured: SensorFile<'_>) -> String {
         let (sensor, count) = (measured.sensor, self.counts[measured.sensor]);
         self.counts[sensor] += 1;
         let token = writing

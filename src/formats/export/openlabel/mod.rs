@@ -8,7 +8,7 @@
 use scene::{Camera, Lens, Pose, Scene, SceneBox};
 use serde_json::{Map, Value, json};
 
-use super::{Exporter, OutFile, Products, Span};
+use super::{ExportSpan, Exporter, OutFile, Products};
 use crate::sensor_names::{self, LIDAR};
 use crate::{FormatError, Holds, moments, recipe};
 
@@ -19,7 +19,7 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: Some("openlabel.json"),
     holds: &[Holds::Boxes],
     lost: "",
-    span: Span::Clip,
+    span: ExportSpan::Clip,
     needs: &[],
     write: |scene, products| Ok(vec![OutFile::new("openlabel.json", to_bytes(scene, products)?)]),
 };

@@ -15,10 +15,10 @@ use serde_json::{Value, json};
 
 use crate::FormatError;
 use crate::import::glb::IMPORTER;
-use crate::import::{Content, Loaded, Source};
+use crate::import::{Content, ImportFile, ImportedScene};
 
-fn read_at(bytes: &[u8], name: &str, path: Option<PathBuf>) -> Result<Loaded, FormatError> {
-    let source = Source {
+fn read_at(bytes: &[u8], name: &str, path: Option<PathBuf>) -> Result<ImportedScene, FormatError> {
+    let source = ImportFile {
         bytes,
         name,
         path: path.as_deref(),
@@ -30,7 +30,7 @@ fn read_at(bytes: &[u8], name: &str, path: Option<PathBuf>) -> Result<Loaded, Fo
     }
 }
 
-fn read(bytes: &[u8]) -> Loaded {
+fn read(bytes: &[u8]) -> ImportedScene {
     read_at(bytes, "a file", None).expect("sound")
 }
 

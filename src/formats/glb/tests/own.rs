@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::{Blocks, read, refusal, text};
 use crate::export;
 use crate::glb::container;
-use crate::import::Loaded;
+use crate::import::ImportedScene;
 use crate::recipe::Recipe;
 use crate::table_tests::random_scene;
 
@@ -98,7 +98,7 @@ fn car_on_a_road() -> Scene {
 fn what_is_moved_copied_or_deleted_elsewhere_reads_back_as_it_is_seen() {
     let scene = car_on_a_road();
     let bytes = to_bytes(&scene).expect("sound");
-    let cars = |loaded: &Loaded| -> Vec<[usize; 3]> {
+    let cars = |loaded: &ImportedScene| -> Vec<[usize; 3]> {
         let all = loaded.scene.frame().occupancy.iter_set();
         all.filter(|v| v.3 == 4).map(|(x, y, z, _)| [x, y, z]).collect()
     };
@@ -175,7 +175,7 @@ fn parts_that_were_cut_off_and_things_that_were_added_are_seen() {
         let count = d["accessors"][indices]["count"].as_u64().expect("a count");
         d["accessors"][indices]["count"] = json!(count - 6);
     });
-    let road = |loaded: &Loaded| -> BTreeSet<[usize; 3]> {
+    let road = |loaded: &ImportedScene| -> BTreeSet<[usize; 3]> {
         let all = loaded.scene.frame().occupancy.iter_set();
         all.filter(|v| v.3 == 11).map(|(x, y, z, _)| [x, y, z]).collect()
     };

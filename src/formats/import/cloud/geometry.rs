@@ -49,7 +49,7 @@ const SMOOTH: usize = 4;
 /// A class for each point on the map, of m in the ego frame: driveable surface, other flat, manmade, vegetation or others.
 pub(super) fn classes(points: &[DVec3]) -> Vec<Class> {
     let columns: Vec<usize> = points.iter().map(|p| column(*p)).collect();
-    let ground = Ground::grow(points, &columns);
+    let ground = CloudGround::grow(points, &columns);
     let stands = |i: usize| points[i].z - ground.height_m[columns[i]] >= GROUND_BAND_M;
     let standing: Vec<usize> = (0..points.len()).filter(|i| stands(*i)).collect();
     let mut above = vec![Above::default(); Window::COLUMNS];
@@ -96,14 +96,14 @@ fn distance_m(a: usize, b: usize) -> f64 {
 }
 
 /// Heights of the ground per column.
-struct Ground {
+struct CloudGround {
     /// Height of the ground that was found there or is near, m.
     height_m: Vec<f64>,
     /// Reached from the vehicle without a step.
     is_driven: Vec<bool>,
 }
 
-impl Ground {
+impl CloudGround {
     fn grow(points: &[DVec3], columns: &[usize]) -> Self {
         let mut lowest = vec![f64::INFINITY; Window::COLUMNS];
         for (p, c) in points.iter().zip(columns) {

@@ -44,7 +44,7 @@ const TOLD_TILT_DEG: f64 = 2.0;
 
 /// The ground around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ground {
+pub(super) struct GroundPlane {
     /// Its height at the origin, m.
     pub(super) height_m: f64,
     /// Slope along x and y.
@@ -53,7 +53,7 @@ pub(super) struct Ground {
     is_beside: bool,
 }
 
-impl Ground {
+impl GroundPlane {
     /// The ground that these points lie on; `None` if they show no ground.
     pub(super) fn of(points: impl Iterator<Item = DVec3>) -> Option<Self> {
         let lowest = lowest(points);
@@ -147,9 +147,9 @@ fn lowest(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
 }
 
 /// The plane that most of these points lie on and few lie below; `None` if no three of them give one.
-fn plane(points: &[DVec3]) -> Option<Ground> {
+fn plane(points: &[DVec3]) -> Option<GroundPlane> {
     let mut random = SplitMix64::new(0);
-    let mut best: Option<(i64, Ground)> = None;
+    let mut best: Option<(i64, GroundPlane)> = None;
     for _ in 0..TRIALS {
         if points.len() < 3 {
             return None;
@@ -174,11 +174,11 @@ fn plane(points: &[DVec3]) -> Option<Ground> {
 }
 
 /// The plane through three points, if they tell one that is not too steep.
-fn through([a, b, c]: [DVec3; 3]) -> Option<Ground> {
+fn through([a, b, c]: [DVec3; 3]) -> Option<GroundPlane> {
     let (ab, ac) = (b - a, c - a);
     let area = ab.truncate().perp_dot(ac.truncate());
     let slope = DVec2::new(ab.z * ac.y - ac.z * ab.y, ac.z * ab.x - ab.z * ac.x) / area;
-    (area.abs() >= LEAST_SPREAD_M2 && slope.length() <= STEEPEST).then(|| Ground {
+    (area.abs() >= LEAST_SPREAD_M2 && slope.length() <= STEEPEST).then(|| GroundPlane {
         height_m: a.z - slope.dot(a.truncate()),
         slope,
         is_beside: false,
@@ -187,7 +187,7 @@ fn through([a, b, c]: [DVec3; 3]) -> Option<Ground> {
 
 /// The plane of least squares, if it is not too steep. A slope counts as an error of one metre's height a metre: so it is level across
 /// a strip that is too narrow to tell.
-fn fitted<'a>(points: impl Iterator<Item = &'a DVec3>) -> Option<Ground> {
+fn fitted<'a>(points: impl Iterator<Item = &'a DVec3>) -> Option<GroundPlane> {
     let mut rows = vec![vec![0.0; 4]; 3];
     for p in points {
         let row = [p.x, p.y, 1.0, p.z];
@@ -201,7 +201,7 @@ fn fitted<'a>(points: impl Iterator<Item = &'a DVec3>) -> Option<Ground> {
     }
     let found = solve(rows)?;
     let slope = DVec2::new(found[0], found[1]);
-    (slope.length() <= STEEPEST).then_some(Ground {
+    (slope.length() <= STEEPEST).then_some(GroundPlane {
         height_m: found[2],
         slope,
         is_beside: false,
@@ -235,7 +235,7 @@ mod tests {
     fn ground_is_found_at_its_height_whatever_its_tilt() {
         for height_m in [-2.2, -1.84, -0.8, 0.0, 35.0] {
             for slope in [DVec2::ZERO, DVec2::new(0.05, 0.0), DVec2::new(-0.08, 0.07)] {
-                let found = Ground::of(street(height_m, slope).into_iter()).expect("ground");
+                let found = GroundPlane::of(street(height_m, slope).into_iter()).expect("ground");
                 assert!(
                     (found.height_m - height_m).abs() < 0.03,
                     "{found:?}, expected {height_m}"
@@ -254,13 +254,13 @@ mod tests {
             points
                 .push((DVec2::from_angle(turn) * (4.0 + f64::from(i % 15))).extend(-4.0 - f64::from(i % 3)));
         }
-        let found = Ground::of(points.into_iter()).expect("ground");
+        let found = GroundPlane::of(points.into_iter()).expect("ground");
         assert!((found.height_m + 1.9).abs() < 0.03, "{found:?}");
     }
 
     #[test]
     fn what_is_no_ground_is_not_taken_for_it() {
-        let of = |points: Vec<DVec3>| Ground::of(points.into_iter());
+        let of = |points: Vec<DVec3>| GroundPlane::of(points.into_iter());
         assert_eq!(of(Vec::new()), None);
         assert_eq!(of(vec![DVec3::NAN; 100]), None);
         assert_eq!(
@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn only_ground_off_the_map_is_lifted_and_that_is_told() {
-        let ground = |height_m| Ground {
+        let ground = |height_m| GroundPlane {
             height_m,
             slope: DVec2::ZERO,
             is_beside: true,
@@ -304,7 +304,7 @@ mod tests {
         );
         assert_eq!(told(35.2), "the ground lies at 35.20 m: lowered by 35.20 m");
         assert_eq!(told(-35.2), "the ground lies at -35.20 m: lifted by 35.20 m");
-        let tilted = Ground {
+        let tilted = GroundPlane {
             slope: DVec2::new(0.1, 0.0),
             ..ground(0.0)
         };

@@ -18,8 +18,8 @@ use std::sync::{Arc, LazyLock};
 use glam::DVec3;
 use scene::{Class, Pose, Recorded, SensorRig, VoxelGrid, Window};
 
-use super::{GUESSED, Loaded, Source, labelled};
-use level::Ground;
+use super::{GUESSED, ImportFile, ImportedScene, labelled};
+use level::GroundPlane;
 
 /// Fields of points whose numbers are classes of Occ3D, in small letters.
 pub(super) const LABELS: [&str; 6] = [
@@ -144,7 +144,7 @@ impl Loose {
 
 impl Cloud {
     /// An empty cloud of a file: lifted as the user says, else by the height of its ground.
-    pub(super) fn of(source: &Source<'_>) -> Self {
+    pub(super) fn of(source: &ImportFile<'_>) -> Self {
         Self {
             lift_m: source.lift_m,
             is_asked: source.lift_m.is_some(),
@@ -201,8 +201,8 @@ impl Cloud {
             Label::None => !is_labelled,
         };
         let points = waiting.iter().filter(|(_, label)| shows_ground(*label));
-        let ground = Ground::of(points.map(|(at, _)| *at));
-        let lift_m = ground.map_or(0.0, Ground::lift_m);
+        let ground = GroundPlane::of(points.map(|(at, _)| *at));
+        let lift_m = ground.map_or(0.0, GroundPlane::lift_m);
         self.lift_m = Some(lift_m);
         self.notes = match ground {
             Some(ground) => ground.told(),
@@ -262,7 +262,7 @@ impl Cloud {
         mut self,
         name: &str,
         left_out: BTreeMap<String, usize>,
-    ) -> Result<Loaded, NothingOnTheMap> {
+    ) -> Result<ImportedScene, NothingOnTheMap> {
         match self.lift_m {
             None => self.level(),
             Some(m) if self.is_asked => self.notes = vec![format!("lifted by {m:.2} m, as asked for")],
@@ -292,7 +292,7 @@ impl Cloud {
         if by_shape {
             scene.change_canvas(|canvas| canvas.inferred.recorded = Arc::new(Recorded::of_voxels()));
         }
-        Ok(Loaded {
+        Ok(ImportedScene {
             scene,
             inferred: match by_shape {
                 true => &GUESSED_BY_SHAPE,

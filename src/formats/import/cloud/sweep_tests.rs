@@ -8,7 +8,7 @@ use super::tests::{at, street};
 use super::*;
 use crate::import::{self, Content};
 
-fn loaded(points: &[(DVec3, Class)], with_labels: bool, lift_m: Option<f64>) -> Loaded {
+fn loaded(points: &[(DVec3, Class)], with_labels: bool, lift_m: Option<f64>) -> ImportedScene {
     let mut cloud = Cloud {
         lift_m,
         is_asked: lift_m.is_some(),
@@ -49,7 +49,7 @@ fn a_sweep_in_its_sensors_frame_keeps_its_road_and_says_so() {
             assert_eq!(at(grid, 3.0, 1.0, -0.8), Some(Class::DriveableSurface), "{told}");
         }
         // By hand, as it is without a lift, and not at all.
-        let road = |loaded: &Loaded| loaded.scene.frame().layout.count(BevLayer::DrivableArea);
+        let road = |loaded: &ImportedScene| loaded.scene.frame().layout.count(BevLayer::DrivableArea);
         let by_hand = loaded(&points, with_labels, Some(mount_m));
         let (found, by_hand) = (road(&found) as f64, road(&by_hand) as f64);
         assert!((found / by_hand - 1.0).abs() < 0.05, "{found} {by_hand}");

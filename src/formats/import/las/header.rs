@@ -19,7 +19,7 @@ const MOST_PER_BYTE: u64 = 32;
 const MOST_POINTS: u64 = 200_000_000;
 
 /// The fields of a header that are used.
-pub(super) struct Header {
+pub(super) struct LasHeader {
     /// Point format, 0 to 10.
     pub(super) format: u8,
     /// Bytes of one point.
@@ -38,7 +38,7 @@ pub(super) struct Header {
     pub(super) is_own: bool,
 }
 
-impl Header {
+impl LasHeader {
     pub(super) fn read(bytes: &[u8]) -> Result<Self, LasError> {
         if !bytes.starts_with(b"LASF") {
             let found = quoted(&String::from_utf8_lossy(&bytes[..bytes.len().min(4)]), 8);

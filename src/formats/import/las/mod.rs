@@ -14,11 +14,11 @@ use glam::DVec3;
 use scene::{Class, Window};
 
 use super::cloud::{Cloud, Label, NothingOnTheMap};
-use super::{Content, Importer, Source};
+use super::{Content, ImportFile, Importer};
 use crate::las::{Asprs, of_asprs};
 use crate::{FormatError, Holds};
-use header::Header;
-use points::Record;
+use header::LasHeader;
+use points::LasPoint;
 
 /// See the module.
 pub const IMPORTER: Importer = Importer {
@@ -78,8 +78,8 @@ fn wrong(what: &'static str, found: impl ToString, expected: impl Into<String>) 
 
 /// Reads a file whose point `origin_m` (in the file's coordinates) becomes the origin of the scene, as the ground under the
 /// vehicle; without one it is found as the module says.
-pub fn read_around(source: &Source<'_>, origin_m: Option<DVec3>) -> Result<Content, LasError> {
-    let header = Header::read(source.bytes)?;
+pub fn read_around(source: &ImportFile<'_>, origin_m: Option<DVec3>) -> Result<Content, LasError> {
+    let header = LasHeader::read(source.bytes)?;
     let origin_m = match origin_m {
         Some(origin_m) => origin_m,
         None => origin(&header, source.bytes, source.lift_m.is_some())?,
@@ -142,13 +142,13 @@ const GROUND_REACH_M: f64 = 40.0;
 /// The point that is subtracted from every point: zero for a cloud of this program. Else x and y are those of the
 /// middle, to the metre, or 0 for a cloud around the origin. z is the height of the ground there; it is 0 where the
 /// user says how far to lift, and for a cloud around the origin whose ground is on the map.
-fn origin(header: &Header, bytes: &[u8], keeps_height: bool) -> Result<DVec3, LasError> {
+fn origin(header: &LasHeader, bytes: &[u8], keeps_height: bool) -> Result<DVec3, LasError> {
     if header.is_own {
         return Ok(DVec3::ZERO);
     }
     let every = header.points.div_ceil(SAMPLED).max(1);
     let (mut sample, mut at) = (Vec::new(), 0);
-    points::each(header, bytes, |record: &Record| {
+    points::each(header, bytes, |record: &LasPoint| {
         if at % every == 0 && record.at_m.is_finite() {
             sample.push(record.at_m);
         }

@@ -10,11 +10,11 @@ use glam::DVec3;
 use laz::record::{LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor};
 use laz::{DecompressionSelection, LazItem, LazVlr};
 
-use super::header::Header;
+use super::header::LasHeader;
 use super::{LasError, wrong};
 
 /// The fields of a point that are used.
-pub(super) struct Record {
+pub(super) struct LasPoint {
     /// In the file's coordinates, m.
     pub(super) at_m: DVec3,
     /// Number of the standard.
@@ -25,8 +25,8 @@ pub(super) struct Record {
     pub(super) is_withheld: bool,
 }
 
-impl Record {
-    fn new(header: &Header, bytes: &[u8]) -> Self {
+impl LasPoint {
+    fn new(header: &LasHeader, bytes: &[u8]) -> Self {
         let int = |at: usize| bytes[at..].first_chunk().map_or(0, |b| i32::from_le_bytes(*b));
         let steps = DVec3::from_array([0, 4, 8].map(|at| f64::from(int(at))));
         let (classification, is_withheld) = match header.format {
@@ -43,12 +43,16 @@ impl Record {
 }
 
 /// Every point in turn.
-pub(super) fn each(header: &Header, bytes: &[u8], mut take: impl FnMut(&Record)) -> Result<(), LasError> {
+pub(super) fn each(
+    header: &LasHeader,
+    bytes: &[u8],
+    mut take: impl FnMut(&LasPoint),
+) -> Result<(), LasError> {
     let body = &bytes[header.body..];
     let Some(laszip) = &header.laszip else {
         let there = usize::try_from(header.points).unwrap_or(usize::MAX);
         for point in body.chunks_exact(header.length).take(there) {
-            take(&Record::new(header, point));
+            take(&LasPoint::new(header, point));
         }
         return Ok(());
     };
@@ -78,7 +82,7 @@ struct Packing {
 
 impl Packing {
     /// From LASzip's own record. It must describe exactly the fields of the point format.
-    fn read(header: &Header, record: &[u8]) -> Result<Self, LasError> {
+    fn read(header: &LasHeader, record: &[u8]) -> Result<Self, LasError> {
         let expected = format!(
             "fields of point format {} with {} bytes",
             header.format, header.length
@@ -119,7 +123,12 @@ impl Packing {
         })
     }
 
-    fn unpack(&self, header: &Header, body: &[u8], take: &mut impl FnMut(&Record)) -> Result<(), LasError> {
+    fn unpack(
+        &self,
+        header: &LasHeader,
+        body: &[u8],
+        take: &mut impl FnMut(&LasPoint),
+    ) -> Result<(), LasError> {
         let mut point = vec![0; header.length];
         let packed = |point: u64, problem: String| LasError::Packed { point, problem };
         if self.layers == 0 {
@@ -133,7 +142,7 @@ impl Packing {
                 unpacker
                     .decompress_next(&mut point)
                     .map_err(|e| packed(at, e.to_string()))?;
-                take(&Record::new(header, &point));
+                take(&LasPoint::new(header, &point));
             }
             return Ok(());
         }
@@ -155,7 +164,7 @@ impl Packing {
                 unpacker
                     .decompress_next(&mut point)
                     .map_err(|e| packed(at, e.to_string()))?;
-                take(&Record::new(header, &point));
+                take(&LasPoint::new(header, &point));
                 at += 1;
             }
             rest = &rest[chunk.len()..];
@@ -165,7 +174,7 @@ impl Packing {
 
     /// The first chunk of layers in these bytes, and its number of points. It consists of a point as it is, the number
     /// of points, the sizes of the layers, and the layers. `None` if it is longer than the bytes.
-    fn chunk_of<'a>(&self, header: &Header, bytes: &'a [u8]) -> Option<(&'a [u8], u64)> {
+    fn chunk_of<'a>(&self, header: &LasHeader, bytes: &'a [u8]) -> Option<(&'a [u8], u64)> {
         let word = |i: usize| {
             let at = header.length + 4 * i;
             let word = bytes.get(at..at + 4)?.first_chunk()?;

@@ -7,7 +7,7 @@ use laz::{LasZipCompressor, LazVlrBuilder};
 
 use super::*;
 use crate::export::las::to_bytes;
-use crate::import::{GUESSED, Loaded};
+use crate::import::{GUESSED, ImportedScene};
 use crate::las::record_length;
 use crate::points_tests::{point, sweep};
 
@@ -125,8 +125,8 @@ impl Foreign {
     }
 }
 
-fn loaded(bytes: &[u8]) -> Result<Loaded, LasError> {
-    let source = Source {
+fn loaded(bytes: &[u8]) -> Result<ImportedScene, LasError> {
+    let source = ImportFile {
         bytes,
         name: "cloud",
         path: None,
@@ -142,7 +142,7 @@ fn refused(bytes: &[u8]) -> String {
     loaded(bytes).map(drop).expect_err("refused").to_string()
 }
 
-fn at(loaded: &Loaded, at: [f64; 3]) -> u8 {
+fn at(loaded: &ImportedScene, at: [f64; 3]) -> u8 {
     let [x, y, z] = Window::voxel_at(DVec3::from_array(at)).expect("on the map");
     loaded.scene.frame().occupancy.get(x, y, z)
 }
@@ -181,7 +181,7 @@ fn a_surveyed_street_is_moved_to_the_origin() {
         }
     }
     let street = Foreign::street(7);
-    let source = Source {
+    let source = ImportFile {
         bytes: &street.plain(),
         name: "cloud",
         path: None,
@@ -342,7 +342,7 @@ fn damaged_laz_does_no_harm() {
                 let at = body + below(bytes.len() - body);
                 damaged[at] = below(256) as u8;
             }
-            let header = Header::read(&damaged).expect("the header is whole");
+            let header = LasHeader::read(&damaged).expect("the header is whole");
             if let Err(error) = points::each(&header, &damaged, |_| {}) {
                 let line = error.to_string();
                 assert!(

@@ -133,7 +133,7 @@ fn a_folder_without_tables_is_one_line() {
     let whole = foreign();
     assert!(read(&whole.path().join("v1.0-mini")).is_ok());
     // From memory alone there are no other tables.
-    let alone = Source {
+    let alone = ImportFile {
         bytes: b"[{\"token\": \"a\"}]",
         name: "a",
         path: None,

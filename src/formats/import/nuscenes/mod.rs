@@ -29,7 +29,7 @@ use scene::{
     Weather, draft, infer,
 };
 
-use super::{Content, Importer, Loaded, Source};
+use super::{Content, ImportFile, ImportedScene, Importer};
 use crate::nuscenes::yaw_rad;
 use crate::{FormatError, Holds, input};
 
@@ -83,12 +83,15 @@ fn in_folder(folder: &Path) -> Option<PathBuf> {
     })
 }
 
-fn read_scene(source: &Source<'_>) -> Result<Loaded, FormatError> {
+fn read_scene(source: &ImportFile<'_>) -> Result<ImportedScene, FormatError> {
     Ok(read_drive(source, 0)?.0)
 }
 
 /// A scene by its place in the list of their names, and what it was made of.
-fn read_drive(source: &Source<'_>, which: usize) -> Result<(Loaded, read::Recording), FormatError> {
+fn read_drive(
+    source: &ImportFile<'_>,
+    which: usize,
+) -> Result<(ImportedScene, read::Recording), FormatError> {
     let mut skipped = Skipped::new();
     let recording = read::recording(source, which, &mut skipped)?;
     let frames = &recording.frames;
@@ -147,7 +150,7 @@ fn read_drive(source: &Source<'_>, which: usize) -> Result<(Loaded, read::Record
         let recorded = Arc::new(Recorded::all_of(&scene));
         scene.change_canvas(|canvas| canvas.inferred.recorded = recorded);
     }
-    let loaded = Loaded {
+    let loaded = ImportedScene {
         scene,
         inferred,
         skipped,

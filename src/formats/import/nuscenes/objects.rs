@@ -19,7 +19,7 @@ const JITTER_M: f64 = 0.5;
 const LONGEST_S: f64 = 1.5;
 
 /// Objects of a scene.
-pub(super) struct Things {
+pub(super) struct RecordedObjects {
     /// Objects that stand and are always there.
     pub(super) standing: BTreeMap<BoxId, SceneBox>,
     /// Objects that move, come or go.
@@ -29,9 +29,9 @@ pub(super) struct Things {
 }
 
 /// The objects, numbered in order. Objects that are not sound are counted.
-pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> Things {
+pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> RecordedObjects {
     let times_s: Vec<f64> = recording.frames.iter().map(|f| f.time_s).collect();
-    let mut out = Things {
+    let mut out = RecordedObjects {
         standing: BTreeMap::new(),
         tracks: BTreeMap::new(),
         moving: vec![Vec::new(); times_s.len()],

@@ -7,10 +7,10 @@ use scene::{
     draft, infer,
 };
 
-use super::objects::{Things, holds};
-use super::read::{KeyFrame, Recording, Sweep};
+use super::objects::{RecordedObjects, holds};
+use super::read::{KeyFrame, RecordedSweep, Recording};
 use super::{Skipped, count};
-use crate::import::Source;
+use crate::import::ImportFile;
 use crate::occ3d;
 
 /// Largest file of a sweep or of its labels, bytes: a hundred times those of the data set.
@@ -25,7 +25,7 @@ const VOXEL_MARGIN_M: f64 = 0.4;
 const CLASSES: u64 = 32;
 
 /// The parts of the scene that stand still.
-pub(super) struct Observed {
+pub(super) struct StaticScene {
     pub(super) layout: BevLayout,
     pub(super) voxels: VoxelGrid,
     pub(super) unobserved: Option<Unobserved>,
@@ -33,12 +33,12 @@ pub(super) struct Observed {
 
 /// `None` if there is neither a label nor a sweep on the map.
 pub(super) fn observed(
-    source: &Source<'_>,
+    source: &ImportFile<'_>,
     recording: &Recording,
-    things: &Things,
+    things: &RecordedObjects,
     extent: Extent,
     skipped: &mut Skipped,
-) -> Option<Observed> {
+) -> Option<StaticScene> {
     let mut touched = vec![true; extent.columns()];
     let (mut voxels, unobserved) = match labels(source, recording, things, extent, &mut touched, skipped) {
         Some((voxels, unobserved)) => (voxels, unobserved),
@@ -46,7 +46,7 @@ pub(super) fn observed(
     };
     let layout = infer::layout(&voxels);
     lay_ground(&mut voxels, &layout, &touched);
-    Some(Observed {
+    Some(StaticScene {
         layout,
         voxels,
         unobserved,
@@ -83,9 +83,9 @@ pub(super) fn in_data_set(filename: &str) -> Option<String> {
 
 /// Occ3D labels of the key frames, each column from the nearest one that has them.
 fn labels(
-    source: &Source<'_>,
+    source: &ImportFile<'_>,
     recording: &Recording,
-    things: &Things,
+    things: &RecordedObjects,
     extent: Extent,
     touched: &mut [bool],
     skipped: &mut Skipped,
@@ -176,9 +176,9 @@ fn take_out(column: &mut [u8; Extent::NZ], moving: &[SceneBox], center: DVec3) -
 
 /// Points of the sweeps by the vote of each voxel, and the drafts of standing boxes.
 fn sweeps(
-    source: &Source<'_>,
+    source: &ImportFile<'_>,
     recording: &Recording,
-    things: &Things,
+    things: &RecordedObjects,
     extent: Extent,
     skipped: &mut Skipped,
 ) -> Option<VoxelGrid> {
@@ -241,10 +241,10 @@ impl Votes {
     fn add(
         &mut self,
         recording: &Recording,
-        (frame, sweep): (&KeyFrame, &Sweep),
+        (frame, sweep): (&KeyFrame, &RecordedSweep),
         points: &[u8],
         labels: Option<&[u8]>,
-        (things, moving): (&Things, &[SceneBox]),
+        (things, moving): (&RecordedObjects, &[SceneBox]),
     ) {
         let standing: Vec<(&BoxId, &SceneBox)> = things.standing.iter().collect();
         for (i, point) in points.chunks_exact(POINT).enumerate() {

@@ -8,9 +8,9 @@ use scene::{Camera, Pose, Scene, SensorRig};
 
 use super::occupancy::in_data_set;
 use super::{IMPORTER, in_folder, read, read_drive, rows};
-use crate::import::{Source, scene_name};
+use crate::import::{ImportFile, scene_name};
 use crate::nuscenes::pose;
-use crate::nuscenes::tables::{CalibratedSensor, EgoPose, Sample, SampleData, Sensor};
+use crate::nuscenes::tables::{CalibratedSensor, EgoPose, NuscenesSample, NuscenesSensor, SampleData};
 use crate::{FormatError, input};
 
 /// Cameras of a ring.
@@ -32,17 +32,17 @@ pub struct PictureFolder {
 /// The pictures of a key frame.
 struct KeyPictures {
     sample: String,
-    pictures: Vec<Picture>,
+    pictures: Vec<RecordedPicture>,
 }
 
 #[derive(Clone)]
-struct Picture {
+struct RecordedPicture {
     channel: String,
     file: PathBuf,
     global_from_ego: Pose,
 }
 
-impl Picture {
+impl RecordedPicture {
     /// Place in the ring of the camera that took it, that camera in the world frame, and the file. `None` if its
     /// intrinsics are not sound.
     fn placed(&self, cameras: &[Camera], world_from_global: &Pose) -> Option<(usize, Camera, PathBuf)> {
@@ -85,7 +85,7 @@ impl PictureFolder {
             ))
         })?;
         let bytes = input::read(&tables, IMPORTER.largest).map_err(FormatError::new)?;
-        let source = Source {
+        let source = ImportFile {
             bytes: &bytes,
             name: "",
             path: Some(&tables),
@@ -114,7 +114,7 @@ impl PictureFolder {
 
     /// A drive. Errors if there is no such, or its tables cannot be read.
     pub fn drive(&self, which: usize) -> Result<PictureDrive, FormatError> {
-        let source = Source {
+        let source = ImportFile {
             bytes: &self.bytes,
             name: &scene_name(&self.tables),
             path: Some(&self.tables),
@@ -124,7 +124,7 @@ impl PictureFolder {
         let scene = loaded.scene;
         let of_key = |key: &KeyPictures| {
             let frame = recording.frames.iter().find(|f| f.token == key.sample)?;
-            let placed = |p: &Picture| p.placed(&scene.rig.cameras, &recording.world_from_global);
+            let placed = |p: &RecordedPicture| p.placed(&scene.rig.cameras, &recording.world_from_global);
             let mut seen: Vec<(usize, Camera, PathBuf)> = key.pictures.iter().filter_map(placed).collect();
             seen.sort_by_key(|(place, ..)| *place);
             let (cameras, files) = seen.into_iter().map(|(_, camera, file)| (camera, file)).unzip();
@@ -174,7 +174,7 @@ fn clockwise(cameras: &[Camera], channel: &str) -> Option<usize> {
 }
 
 /// Key frames with the pictures of six cameras by drive, and how many lack some.
-fn drives(source: &Source<'_>) -> Result<(Vec<Vec<KeyPictures>>, usize), FormatError> {
+fn drives(source: &ImportFile<'_>) -> Result<(Vec<Vec<KeyPictures>>, usize), FormatError> {
     let scenes = read::listed(source)?;
     let channel_of = channels(source)?;
     let data: Vec<SampleData> = rows::of(source, "sample_data", |row: &SampleData| {
@@ -183,7 +183,7 @@ fn drives(source: &Source<'_>) -> Result<(Vec<Vec<KeyPictures>>, usize), FormatE
     let wanted: HashSet<&str> = data.iter().map(|d| &*d.ego_pose_token).collect();
     let poses: Vec<EgoPose> = rows::of(source, "ego_pose", |row: &EgoPose| wanted.contains(&*row.token))?;
     let poses: HashMap<&str, &EgoPose> = poses.iter().map(|p| (&*p.token, p)).collect();
-    let mut pictures: HashMap<&str, Vec<Picture>> = HashMap::new();
+    let mut pictures: HashMap<&str, Vec<RecordedPicture>> = HashMap::new();
     for row in &data {
         let Some(file) = in_data_set(&row.filename).and_then(|at| source.place(&at).ok()) else {
             continue;
@@ -195,14 +195,14 @@ fn drives(source: &Source<'_>) -> Result<(Vec<Vec<KeyPictures>>, usize), FormatE
         let taken = pictures.entry(&row.sample_token).or_default();
         let channel = &channel_of[&row.calibrated_sensor_token];
         if file.is_file() && !taken.iter().any(|p| p.channel == *channel) {
-            taken.push(Picture {
+            taken.push(RecordedPicture {
                 channel: channel.clone(),
                 file,
                 global_from_ego: pose(&what, ego.rotation, ego.translation).map_err(FormatError::new)?,
             });
         }
     }
-    let mut samples: Vec<Sample> = rows::of(source, "sample", |_| true)?;
+    let mut samples: Vec<NuscenesSample> = rows::of(source, "sample", |_| true)?;
     samples.sort_by(|a, b| (a.timestamp, &a.token).cmp(&(b.timestamp, &b.token)));
     let place: HashMap<&str, usize> = scenes.iter().enumerate().map(|(i, s)| (&*s.token, i)).collect();
     let (mut drives, mut incomplete) = (Vec::new(), 0);
@@ -223,8 +223,9 @@ fn drives(source: &Source<'_>) -> Result<(Vec<Vec<KeyPictures>>, usize), FormatE
 }
 
 /// Channels of cameras by the token of their calibration.
-fn channels(source: &Source<'_>) -> Result<HashMap<String, String>, FormatError> {
-    let sensors: Vec<Sensor> = rows::of(source, "sensor", |row: &Sensor| row.modality == "camera")?;
+fn channels(source: &ImportFile<'_>) -> Result<HashMap<String, String>, FormatError> {
+    let sensors: Vec<NuscenesSensor> =
+        rows::of(source, "sensor", |row: &NuscenesSensor| row.modality == "camera")?;
     let channel: HashMap<&str, &str> = sensors.iter().map(|s| (&*s.token, &*s.channel)).collect();
     let calibrated: Vec<CalibratedSensor> =
         rows::of(source, "calibrated_sensor", |row: &CalibratedSensor| {

@@ -8,11 +8,11 @@ use scene::{BoxLabel, BoxName, Class, Pose, SensorRig};
 
 use super::{Skipped, count, rig, rows};
 use crate::FormatError;
-use crate::import::Source;
+use crate::import::ImportFile;
 use crate::nuscenes::categories::{self, Means};
 use crate::nuscenes::tables::{
-    Attribute, CalibratedSensor, Category, EgoPose, Instance, Lidarseg, Map, Sample, SampleAnnotation,
-    SampleData, SceneRow, Sensor,
+    Attribute, CalibratedSensor, Category, EgoPose, Instance, Lidarseg, NuscenesMap, NuscenesSample,
+    NuscenesSensor, SampleAnnotation, SampleData, SceneRow,
 };
 use crate::nuscenes::{pose, yaw_rad};
 use crate::sensor_names::LIDAR;
@@ -49,11 +49,11 @@ pub(super) struct KeyFrame {
     /// Where the vehicle was.
     pub(super) world_from_ego: Pose,
     /// Its sweep, if it has one.
-    pub(super) sweep: Option<Sweep>,
+    pub(super) sweep: Option<RecordedSweep>,
 }
 
 /// A sweep.
-pub(super) struct Sweep {
+pub(super) struct RecordedSweep {
     /// File, from the folder of the data set on.
     pub(super) filename: String,
     /// File of its labels, from there on.
@@ -86,7 +86,7 @@ pub(super) struct Annotation {
 }
 
 /// All scenes, by name.
-pub(super) fn listed(source: &Source<'_>) -> Result<Vec<SceneRow>, FormatError> {
+pub(super) fn listed(source: &ImportFile<'_>) -> Result<Vec<SceneRow>, FormatError> {
     let mut scenes: Vec<SceneRow> = rows::parse(source.bytes, |_| true).map_err(FormatError::new)?;
     scenes.sort_by(|a, b| (&a.name, &a.token).cmp(&(&b.name, &b.token)));
     Ok(scenes)
@@ -94,7 +94,7 @@ pub(super) fn listed(source: &Source<'_>) -> Result<Vec<SceneRow>, FormatError> 
 
 /// A scene by its place in the list.
 pub(super) fn recording(
-    source: &Source<'_>,
+    source: &ImportFile<'_>,
     which: usize,
     skipped: &mut Skipped,
 ) -> Result<Recording, FormatError> {
@@ -110,7 +110,7 @@ pub(super) fn recording(
     let data: Vec<SampleData> = rows::of(source, "sample_data", |row: &SampleData| {
         row.is_key_frame && place.contains_key(&*row.sample_token)
     })?;
-    let sensors: Vec<Sensor> = rows::of(source, "sensor", |_| true)?;
+    let sensors: Vec<NuscenesSensor> = rows::of(source, "sensor", |_| true)?;
     let wanted: HashSet<&str> = data.iter().map(|d| &*d.calibrated_sensor_token).collect();
     let calibrated: Vec<CalibratedSensor> =
         rows::of(source, "calibrated_sensor", |row: &CalibratedSensor| {
@@ -154,8 +154,14 @@ pub(super) fn recording(
 }
 
 /// The key frames of a scene in order of time.
-fn samples(source: &Source<'_>, scene: &SceneRow, skipped: &mut Skipped) -> Result<Vec<Sample>, FormatError> {
-    let mut samples: Vec<Sample> = rows::of(source, "sample", |row: &Sample| row.scene_token == scene.token)?;
+fn samples(
+    source: &ImportFile<'_>,
+    scene: &SceneRow,
+    skipped: &mut Skipped,
+) -> Result<Vec<NuscenesSample>, FormatError> {
+    let mut samples: Vec<NuscenesSample> = rows::of(source, "sample", |row: &NuscenesSample| {
+        row.scene_token == scene.token
+    })?;
     samples.sort_by(|a, b| (a.timestamp, &a.token).cmp(&(b.timestamp, &b.token)));
     let found = samples.len();
     samples.dedup_by_key(|s| s.timestamp);
@@ -183,14 +189,14 @@ fn samples(source: &Source<'_>, scene: &SceneRow, skipped: &mut Skipped) -> Resu
 
 /// Sensors by the token of their calibration.
 pub(super) struct Kinds<'a> {
-    by_token: HashMap<&'a str, (&'a CalibratedSensor, &'a Sensor)>,
+    by_token: HashMap<&'a str, (&'a CalibratedSensor, &'a NuscenesSensor)>,
     /// Channels in the order of the table.
     pub(super) channels: Vec<&'a str>,
 }
 
 impl<'a> Kinds<'a> {
-    fn new(sensors: &'a [Sensor], calibrated: &'a [CalibratedSensor]) -> Self {
-        let by_token: HashMap<&str, &Sensor> = sensors.iter().map(|s| (&*s.token, s)).collect();
+    fn new(sensors: &'a [NuscenesSensor], calibrated: &'a [CalibratedSensor]) -> Self {
+        let by_token: HashMap<&str, &NuscenesSensor> = sensors.iter().map(|s| (&*s.token, s)).collect();
         let pair = |c: &'a CalibratedSensor| Some((&*c.token, (c, *by_token.get(&*c.sensor_token)?)));
         Self {
             by_token: calibrated.iter().filter_map(pair).collect(),
@@ -199,7 +205,7 @@ impl<'a> Kinds<'a> {
     }
 
     /// The sensor that measured something.
-    pub(super) fn of(&self, data: &SampleData) -> Option<(&'a CalibratedSensor, &'a Sensor)> {
+    pub(super) fn of(&self, data: &SampleData) -> Option<(&'a CalibratedSensor, &'a NuscenesSensor)> {
         self.by_token.get(&*data.calibrated_sensor_token).copied()
     }
 }
@@ -230,7 +236,7 @@ fn reference<'a>(
 }
 
 /// Poses of the vehicle, one for each.
-fn ego_poses(source: &Source<'_>, of: &[&SampleData]) -> Result<Vec<Pose>, FormatError> {
+fn ego_poses(source: &ImportFile<'_>, of: &[&SampleData]) -> Result<Vec<Pose>, FormatError> {
     let wanted: HashSet<&str> = of.iter().map(|d| &*d.ego_pose_token).collect();
     let found: Vec<EgoPose> = rows::of(source, "ego_pose", |row: &EgoPose| wanted.contains(&*row.token))?;
     let by_token: HashMap<&str, &EgoPose> = found.iter().map(|p| (&*p.token, p)).collect();
@@ -252,11 +258,11 @@ fn ego_poses(source: &Source<'_>, of: &[&SampleData]) -> Result<Vec<Pose>, Forma
 
 /// The frame that the scene's coordinates are in, see the module above, and whether Sceneloom wrote the folder.
 fn world_from_global(
-    source: &Source<'_>,
+    source: &ImportFile<'_>,
     scene: &SceneRow,
     first: &Pose,
 ) -> Result<(Pose, bool), FormatError> {
-    let maps: Vec<Map> = rows::of_optional(source, "map", |row: &Map| {
+    let maps: Vec<NuscenesMap> = rows::of_optional(source, "map", |row: &NuscenesMap| {
         row.log_tokens.contains(&scene.log_token)
     })?;
     let origin_m = maps.iter().find_map(|m| m.world_origin_m);
@@ -280,7 +286,7 @@ fn world_from_global(
 }
 
 /// Files of labels by the token of their sweep.
-fn lidarseg(source: &Source<'_>, of: &[&SampleData]) -> Result<HashMap<String, String>, FormatError> {
+fn lidarseg(source: &ImportFile<'_>, of: &[&SampleData]) -> Result<HashMap<String, String>, FormatError> {
     let wanted: HashSet<&str> = of.iter().map(|d| &*d.token).collect();
     let rows: Vec<Lidarseg> = rows::of_optional(source, "lidarseg", |row: &Lidarseg| {
         wanted.contains(&*row.sample_data_token)
@@ -295,12 +301,12 @@ fn sweep(
     kinds: &Kinds<'_>,
     data: &SampleData,
     labels_of: &HashMap<String, String>,
-) -> Result<Option<Sweep>, FormatError> {
+) -> Result<Option<RecordedSweep>, FormatError> {
     let Some((calibrated, _)) = kinds.of(data).filter(|(_, sensor)| sensor.modality == "lidar") else {
         return Ok(None);
     };
     let ego_from_lidar = pose("LiDAR", calibrated.rotation, calibrated.translation);
-    Ok(Some(Sweep {
+    Ok(Some(RecordedSweep {
         filename: data.filename.clone(),
         labels: labels_of.get(&data.token).cloned(),
         ego_from_lidar: ego_from_lidar.map_err(FormatError::new)?,
@@ -308,7 +314,7 @@ fn sweep(
 }
 
 /// Class of each number in lidarseg files.
-fn label_classes(source: &Source<'_>) -> Result<Vec<Option<Class>>, FormatError> {
+fn label_classes(source: &ImportFile<'_>) -> Result<Vec<Option<Class>>, FormatError> {
     let categories: Vec<Category> = rows::of(source, "category", |_| true)?;
     let mut out = vec![Some(Class::Others); 256];
     for category in &categories {
@@ -325,7 +331,7 @@ fn label_classes(source: &Source<'_>) -> Result<Vec<Option<Class>>, FormatError>
 
 /// Boxes of the key frames by object, in the order of the table of instances.
 fn objects(
-    source: &Source<'_>,
+    source: &ImportFile<'_>,
     place: &HashMap<&str, usize>,
     world_from_global: &Pose,
     skipped: &mut Skipped,

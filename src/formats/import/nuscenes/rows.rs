@@ -8,14 +8,14 @@ use serde::Deserializer as _;
 use serde::de::{DeserializeOwned, SeqAccess, Visitor};
 
 use crate::FormatError;
-use crate::import::Source;
+use crate::import::ImportFile;
 
 /// Largest table that is read, bytes: `sample_data.json` of all of nuScenes has about 1.3 GB.
 const LARGEST: u64 = 2 << 30;
 
 /// The rows of the table of that name for which `keep` holds. Errors if the file is not there or no such table.
 pub(super) fn of<T: DeserializeOwned>(
-    source: &Source<'_>,
+    source: &ImportFile<'_>,
     table: &str,
     keep: impl FnMut(&T) -> bool,
 ) -> Result<Vec<T>, FormatError> {
@@ -26,7 +26,7 @@ pub(super) fn of<T: DeserializeOwned>(
 
 /// Reads rows as [`of`] does from a table that may be missing; there are none then.
 pub(super) fn of_optional<T: DeserializeOwned>(
-    source: &Source<'_>,
+    source: &ImportFile<'_>,
     table: &str,
     keep: impl FnMut(&T) -> bool,
 ) -> Result<Vec<T>, FormatError> {

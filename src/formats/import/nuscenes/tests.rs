@@ -23,7 +23,7 @@ pub(super) fn written(scene: &Scene) -> TempDir {
     folder_of(&(EXPORTER.write)(scene, &mut products).expect("written"))
 }
 
-pub(super) fn read(folder: &Path) -> Result<Loaded, FormatError> {
+pub(super) fn read(folder: &Path) -> Result<ImportedScene, FormatError> {
     match import::read(folder)?.1 {
         Content::Scene(loaded) => Ok(*loaded),
         other => panic!("{other:?}"),

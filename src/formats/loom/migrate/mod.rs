@@ -25,12 +25,12 @@ pub struct Migration {
     /// Additions of the next version over this one, for a person.
     pub what: &'static str,
     /// The change that is made to a file.
-    pub change: Change,
+    pub change: MigrationChange,
 }
 
 /// Change that a step makes.
 #[derive(Clone, Copy)]
-pub enum Change {
+pub enum MigrationChange {
     /// The next version only added keys and entries that may be absent: no change is needed.
     Added,
     /// `scene.json` or other entries change. Errors say in one line which part cannot be converted.
@@ -79,8 +79,8 @@ impl<'a, R: Read + Seek> Old<'a, R> {
 
     pub(super) fn migrate(&mut self, step: &Migration) -> Result<(), ProjectError> {
         match step.change {
-            Change::Added => Ok(()),
-            Change::Rewrites(change) => change(self),
+            MigrationChange::Added => Ok(()),
+            MigrationChange::Rewrites(change) => change(self),
         }
     }
 

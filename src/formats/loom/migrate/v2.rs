@@ -3,13 +3,13 @@
 use serde_json::Value;
 
 use super::super::{ProjectError, SCENE};
-use super::{Change, Entries, Migration, old_prompt};
+use super::{Entries, Migration, MigrationChange, old_prompt};
 
 /// Conditions are a field of the scene; before, the prompt held them in words.
 pub(super) const TO_V3: Migration = Migration {
     from: 2,
     what: "time of day, weather, wet ground, visibility and sun as conditions of the scene",
-    change: Change::Rewrites(read_prompt),
+    change: MigrationChange::Rewrites(read_prompt),
 };
 
 fn read_prompt(entries: &mut dyn Entries) -> Result<(), ProjectError> {

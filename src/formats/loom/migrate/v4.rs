@@ -15,12 +15,12 @@ use super::super::archive::MAX_JSON;
 use super::super::header::{ExtentHeader, entry_name, track_entry};
 use super::super::names::MAX_FRAMES;
 use super::super::{ProjectError, SCENE};
-use super::{Change, Entries, Migration};
+use super::{Entries, Migration, MigrationChange};
 
 pub(super) const TO_V5: Migration = Migration {
     from: 4,
     what: "one canvas in the world frame, and tracks, in place of frames",
-    change: Change::Rewrites(canvas_and_clip),
+    change: MigrationChange::Rewrites(canvas_and_clip),
 };
 
 /// Parts of a frame that are entries.

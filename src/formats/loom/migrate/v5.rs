@@ -1,9 +1,9 @@
 //! From version 5 to 6: a file may keep versions and typed words beside its scene.
 
-use super::{Change, Migration};
+use super::{Migration, MigrationChange};
 
 pub(super) const TO_V6: Migration = Migration {
     from: 5,
     what: "versions and typed words beside the scene",
-    change: Change::Added,
+    change: MigrationChange::Added,
 };

@@ -1,9 +1,9 @@
 //! From version 6 to 7: a scene may have a road network.
 
-use super::{Change, Migration};
+use super::{Migration, MigrationChange};
 
 pub(super) const TO_V7: Migration = Migration {
     from: 6,
     what: "the road network",
-    change: Change::Added,
+    change: MigrationChange::Added,
 };

@@ -11,12 +11,12 @@ const SMALLEST: usize = 4;
 /// at least [`SMALLEST`] cells. Corners lie on borders of cells, so a centre of a cell is never on an edge.
 pub(super) fn outlines(extent: Extent, is_in: impl Fn(usize) -> bool) -> Vec<Vec<DVec2>> {
     let is_in = large(extent, is_in);
-    let mut open: Vec<Sweep> = Vec::new();
+    let mut open: Vec<PatchRuns> = Vec::new();
     let mut out = Vec::new();
     for x in 0..extent.nx() {
         let runs = runs(extent.ny(), |y| is_in[extent.index(x, y)]);
         let meets = |a: &[usize; 2], b: &[usize; 2]| a[0] < b[1] && b[0] < a[1];
-        let before: Vec<Sweep> = std::mem::take(&mut open);
+        let before: Vec<PatchRuns> = std::mem::take(&mut open);
         let last: Vec<[usize; 2]> = before.iter().map(|s| s.runs[s.runs.len() - 1]).collect();
         let mut goes_on: Vec<Option<usize>> = vec![None; runs.len()];
         for (i, run) in runs.iter().enumerate() {
@@ -38,19 +38,19 @@ pub(super) fn outlines(extent: Extent, is_in: impl Fn(usize) -> bool) -> Vec<Vec
             }
         }
         let fresh = runs.iter().zip(&goes_on).filter(|(_, g)| g.is_none());
-        open.extend(fresh.map(|(run, _)| Sweep { x, runs: vec![*run] }));
+        open.extend(fresh.map(|(run, _)| PatchRuns { x, runs: vec![*run] }));
     }
     out.extend(open.into_iter().map(|s| s.outline(extent)));
     out
 }
 
 /// One run of cells in each column of x, from column `x` on.
-struct Sweep {
+struct PatchRuns {
     x: usize,
     runs: Vec<[usize; 2]>, // first cell, one behind the last
 }
 
-impl Sweep {
+impl PatchRuns {
     /// Counter-clockwise: the lower borders with growing x, then the upper ones back.
     fn outline(&self, extent: Extent) -> Vec<DVec2> {
         let low = extent.min_m().truncate();

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 use glam::DVec2;
 
-use super::chains::{Chain, Near, Surface, surface};
-use super::zones::{ALONG_COSINE, Run, Zones, runs};
+use super::chains::{Chain, GroundKind, Near, surface};
+use super::zones::{ALONG_COSINE, ChainStretch, Zones, runs};
 use scene::BevLayout;
 
 /// Middles of lanes that are side by side are this far apart, m.
@@ -89,7 +89,7 @@ struct Pass<'a> {
 }
 
 /// A neighbour beside a sample.
-struct Hit {
+struct LaneNeighbour {
     chain: usize,
     k: usize,
     left_m: f64,
@@ -101,14 +101,14 @@ impl Pass<'_> {
     fn run(&mut self) {
         let all = (0..self.chains.len()).flat_map(|c| self.zones.free(self.chains, c));
         let mut queue: BinaryHeap<(usize, std::cmp::Reverse<(usize, usize)>)> = BinaryHeap::new();
-        let put = |queue: &mut BinaryHeap<_>, run: Run| {
+        let put = |queue: &mut BinaryHeap<_>, run: ChainStretch| {
             if run.len >= SHORTEST {
                 queue.push((run.len, std::cmp::Reverse((run.chain, run.from))));
             }
         };
         all.for_each(|run| put(&mut queue, run));
         while let Some((len, std::cmp::Reverse((chain, from)))) = queue.pop() {
-            let run = Run { len, chain, from };
+            let run = ChainStretch { len, chain, from };
             let samples: Vec<usize> = run.samples(&self.chains[chain]).collect();
             let left: Vec<&[usize]> = samples
                 .split(|k| self.owner[chain][*k].is_some())
@@ -120,7 +120,7 @@ impl Pass<'_> {
                     self.bundle(chain, samples);
                 }
                 parts => parts.iter().for_each(|part| {
-                    let run = Run {
+                    let run = ChainStretch {
                         len: part.len(),
                         chain,
                         from: part[0],
@@ -136,14 +136,14 @@ impl Pass<'_> {
     }
 
     /// Neighbours to one side of a sample (1: left), the nearest first.
-    fn neighbours(&self, chain: usize, k: usize, side: f64) -> Vec<Hit> {
+    fn neighbours(&self, chain: usize, k: usize, side: f64) -> Vec<LaneNeighbour> {
         let (p, direction) = (self.chains[chain].points_m[k], self.chains[chain].direction(k));
         let left = direction.perp() * side;
-        let mut out: Vec<Hit> = Vec::new();
+        let mut out: Vec<LaneNeighbour> = Vec::new();
         let mut at_m = 0.0;
         loop {
             let here = p + left * at_m;
-            let mut best: Option<Hit> = None;
+            let mut best: Option<LaneNeighbour> = None;
             for s in self.near.within(here, APART_M[1] + 0.5) {
                 let cosine = s.direction.dot(direction);
                 let along_m = (s.at_m - p).dot(direction);
@@ -159,7 +159,7 @@ impl Pass<'_> {
                 let apart_m = left_m - at_m;
                 let nearer = best.as_ref().is_none_or(|b| left_m < b.left_m * side);
                 if (APART_M[0]..=APART_M[1]).contains(&apart_m) && nearer {
-                    best = Some(Hit {
+                    best = Some(LaneNeighbour {
                         chain: s.chain,
                         k: s.k,
                         left_m: left_m * side,
@@ -182,7 +182,7 @@ impl Pass<'_> {
         let extent = self.layout.extent();
         (1..8).all(|i| {
             let here = surface(self.layout, extent, from.lerp(to, f64::from(i) / 8.0));
-            matches!(here, Surface::Road | Surface::Carpark | Surface::Beyond)
+            matches!(here, GroundKind::Road | GroundKind::Carpark | GroundKind::Beyond)
         })
     }
 

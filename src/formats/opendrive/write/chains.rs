@@ -199,7 +199,7 @@ fn once(chains: Vec<Chain>) -> Vec<Chain> {
 
 /// A sample of a chain.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
+pub(super) struct ChainSample {
     pub chain: usize,
     pub k: usize,
     pub at_m: DVec2,
@@ -208,7 +208,7 @@ pub(super) struct Sample {
 
 /// All samples by place.
 pub(super) struct Near {
-    cells: HashMap<[i32; 2], Vec<Sample>>,
+    cells: HashMap<[i32; 2], Vec<ChainSample>>,
 }
 
 /// Side of a cell, m.
@@ -216,10 +216,10 @@ const CELL_M: f64 = 4.0;
 
 impl Near {
     pub fn new(chains: &[Chain]) -> Self {
-        let mut cells: HashMap<[i32; 2], Vec<Sample>> = HashMap::new();
+        let mut cells: HashMap<[i32; 2], Vec<ChainSample>> = HashMap::new();
         for (i, chain) in chains.iter().enumerate() {
             for (k, p) in chain.points_m.iter().enumerate() {
-                cells.entry(Self::cell(*p)).or_default().push(Sample {
+                cells.entry(Self::cell(*p)).or_default().push(ChainSample {
                     chain: i,
                     k,
                     at_m: *p,
@@ -235,7 +235,7 @@ impl Near {
     }
 
     /// Samples within a distance, always in the same order.
-    pub fn within(&self, p: DVec2, reach_m: f64) -> impl Iterator<Item = &Sample> {
+    pub fn within(&self, p: DVec2, reach_m: f64) -> impl Iterator<Item = &ChainSample> {
         let [x0, y0] = Self::cell(p - reach_m);
         let [x1, y1] = Self::cell(p + reach_m);
         (x0..=x1)
@@ -248,7 +248,7 @@ impl Near {
 
 /// Ground at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Surface {
+pub(super) enum GroundKind {
     Road,
     Carpark,
     Walkway,
@@ -257,20 +257,20 @@ pub(super) enum Surface {
 }
 
 /// The surface under a point of a map.
-pub(super) fn surface(layout: &BevLayout, extent: Extent, p: DVec2) -> Surface {
+pub(super) fn surface(layout: &BevLayout, extent: Extent, p: DVec2) -> GroundKind {
     use scene::BevLayer::{CarparkArea, DrivableArea, Walkway};
     let Some([x, y]) = extent.column_at(p.x, p.y) else {
-        return Surface::Beyond;
+        return GroundKind::Beyond;
     };
     let cell = layout.cell(x, y);
     if cell & CarparkArea.bit() != 0 {
-        Surface::Carpark
+        GroundKind::Carpark
     } else if cell & DrivableArea.bit() != 0 {
-        Surface::Road
+        GroundKind::Road
     } else if cell & Walkway.bit() != 0 {
-        Surface::Walkway
+        GroundKind::Walkway
     } else {
-        Surface::Other
+        GroundKind::Other
     }
 }
 

@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::bundles::Bundled;
 use super::chains::{Chain, Near, STEP_M};
 use super::fit::{placed, reference};
-use super::roads::{Contact, End, Road};
+use super::roads::{Contact, End, WrittenRoad};
 use super::strips::{PAVED_IN_JUNCTION_M, Station, Strip, Strips};
 use super::turns::{left_alone, turns};
 use super::ways::{Forks, through};
@@ -19,7 +19,7 @@ use scene::road_map::resampled;
 pub(super) const NEAR_ZONE: usize = 40;
 
 /// A junction that is to be written.
-pub(super) struct Junction {
+pub(super) struct WrittenJunction {
     pub id: u32,
     pub connections: Vec<Connection>,
 }
@@ -35,7 +35,7 @@ pub(super) struct Connection {
 
 /// A lane where a road meets a zone.
 #[derive(Clone, Copy)]
-pub(super) struct Door {
+pub(super) struct ZoneLaneEnd {
     pub road: usize,
     pub at_end: bool,
     pub contact: Contact,
@@ -45,7 +45,7 @@ pub(super) struct Door {
     pub two_way: bool,
 }
 
-impl Door {
+impl ZoneLaneEnd {
     /// The end of the road that it belongs to.
     pub fn arm(&self) -> (usize, bool) {
         (self.road, self.at_end)
@@ -55,12 +55,12 @@ impl Door {
 /// Where traffic comes into a zone and where it leaves it.
 #[derive(Default)]
 pub(super) struct Gates {
-    pub inward: Vec<Door>,
-    pub outward: Vec<Door>,
+    pub inward: Vec<ZoneLaneEnd>,
+    pub outward: Vec<ZoneLaneEnd>,
 }
 
 /// Data for connecting roads.
-pub(super) struct Ground<'a> {
+pub(super) struct ConnectionContext<'a> {
     pub layout: &'a BevLayout,
     pub chains: &'a [Chain],
     pub near: &'a Near,
@@ -71,11 +71,11 @@ pub(super) struct Ground<'a> {
 /// Adds connecting roads and returns the junctions. `roads` are those of the bundles, with ids; new roads get the ids
 /// from `next_id` on, and junctions the ids behind those.
 pub(super) fn connect(
-    ground: &mut Ground<'_>,
+    ground: &mut ConnectionContext<'_>,
     bundled: &Bundled,
-    roads: &mut Vec<Road>,
+    roads: &mut Vec<WrittenRoad>,
     next_id: u32,
-) -> Vec<Junction> {
+) -> Vec<WrittenJunction> {
     let gates = gates(ground, bundled, roads);
     let forks = Forks::find(ground);
     let mut id = next_id;
@@ -116,7 +116,7 @@ pub(super) fn connect(
             roads.push(road);
         }
         if !connections.is_empty() {
-            junctions.push(Junction {
+            junctions.push(WrittenJunction {
                 id: junctions.len() as u32,
                 connections,
             });
@@ -137,8 +137,12 @@ pub(super) fn connect(
 }
 
 /// The lanes at the ends of roads, by zone. Zones that one end of a road touches become one.
-fn gates(ground: &mut Ground<'_>, bundled: &Bundled, roads: &[Road]) -> BTreeMap<usize, Gates> {
-    let mut doors: Vec<(Door, bool, usize, usize)> = Vec::new(); // inward, sample in the zone
+fn gates(
+    ground: &mut ConnectionContext<'_>,
+    bundled: &Bundled,
+    roads: &[WrittenRoad],
+) -> BTreeMap<usize, Gates> {
+    let mut doors: Vec<(ZoneLaneEnd, bool, usize, usize)> = Vec::new(); // inward, sample in the zone
     for (r, road) in roads.iter().enumerate() {
         for at_end in [false, true] {
             let mut of_end: Vec<(usize, usize)> = Vec::new();
@@ -165,7 +169,7 @@ fn gates(ground: &mut Ground<'_>, bundled: &Bundled, roads: &[Road]) -> BTreeMap
                     continue;
                 };
                 of_end.push((chain, zone));
-                let door = Door {
+                let door = ZoneLaneEnd {
                     road: r,
                     at_end,
                     contact,
@@ -206,20 +210,20 @@ fn gates(ground: &mut Ground<'_>, bundled: &Bundled, roads: &[Road]) -> BTreeMap
 }
 
 /// A way through a zone, from its first to its last point.
-pub(super) struct Way {
-    pub from: Door,
-    pub to: Door,
+pub(super) struct ZonePath {
+    pub from: ZoneLaneEnd,
+    pub to: ZoneLaneEnd,
     pub points_m: Vec<DVec2>,
 }
 
 /// True for a way that has a length.
-pub(super) fn is_apart(way: &Way) -> bool {
+pub(super) fn is_apart(way: &ZonePath) -> bool {
     let length: f64 = way.points_m.windows(2).map(|w| w[0].distance(w[1])).sum();
     length > 1.0
 }
 
 /// The road of one lane along a way; its width goes over from one lane's to the other's.
-fn connecting(ground: &Ground<'_>, way: &Way) -> Option<Road> {
+fn connecting(ground: &ConnectionContext<'_>, way: &ZonePath) -> Option<WrittenRoad> {
     let total: f64 = way.points_m.windows(2).map(|w| w[0].distance(w[1])).sum();
     let count = (total / STEP_M).ceil().max(2.0) as usize + 1;
     let middle = resampled(&way.points_m, count);
@@ -262,7 +266,7 @@ fn connecting(ground: &Ground<'_>, way: &Way) -> Option<Road> {
     let mut strips = lane.with_sides(ground.layout, &stations, PAVED_IN_JUNCTION_M, |_| true);
     let (s_m, off_m) = placed(&reference, &line);
     strips.seen_from(|i| side * half(i) - off_m[i]);
-    Some(Road {
+    Some(WrittenRoad {
         id: 0,
         junction: None,
         links: vec![[None; 2]; strips.kinds.len()],

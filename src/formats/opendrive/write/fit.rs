@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::super::geometry::{Geometry, ReferenceLine, Shape};
+use super::super::geometry::{CurveShape, Geometry, ReferenceLine};
 use scene::road_map::project;
 
 /// The curve stays this close to the points, m.
@@ -28,7 +28,7 @@ pub(crate) fn reference(points: &[DVec2], ends_rad: [Option<f64>; 2]) -> Option<
     if clean.len() < 2 {
         return None;
     }
-    let line = Line::new(clean, ends_rad);
+    let line = SampledLine::new(clean, ends_rad);
     let mut stack = vec![(0, line.points.len() - 1)];
     let mut records: Vec<Geometry> = Vec::new();
     while let Some((from, to)) = stack.pop() {
@@ -57,7 +57,7 @@ pub(crate) fn reference(points: &[DVec2], ends_rad: [Option<f64>; 2]) -> Option<
 
 /// Two straight records in one direction are one.
 fn one(last: &Geometry, next: &Geometry) -> Option<Geometry> {
-    let straight = |g: &Geometry| *g.shape() == Shape::Line;
+    let straight = |g: &Geometry| *g.shape() == CurveShape::Line;
     let [a, b] = [last.at(0.0), next.at(next.length_m)];
     let alike = straight(last)
         && straight(next)
@@ -69,20 +69,20 @@ fn one(last: &Geometry, next: &Geometry) -> Option<Geometry> {
             a.position_m,
             chord.to_angle(),
             chord.length(),
-            Shape::Line,
+            CurveShape::Line,
         )
     };
     alike.then(both)?.ok()
 }
 
 /// Points with the way to each and the heading at each.
-struct Line {
+struct SampledLine {
     points: Vec<DVec2>,
     along_m: Vec<f64>,
     heading_rad: Vec<f64>,
 }
 
-impl Line {
+impl SampledLine {
     fn new(points: Vec<DVec2>, ends_rad: [Option<f64>; 2]) -> Self {
         let mut along_m = vec![0.0];
         for pair in points.windows(2) {
@@ -155,7 +155,7 @@ impl Line {
         let way_m = self.along_m[to] - self.along_m[from];
         let straight = bend.iter().all(|b| *b < STRAIGHT_RAD);
         if straight && between.iter().all(|p| away_m(*p, start, end) < NEAR_M / 2.0) {
-            return Geometry::new(0.0, start, chord.to_angle(), chord.length(), Shape::Line).ok();
+            return Geometry::new(0.0, start, chord.to_angle(), chord.length(), CurveShape::Line).ok();
         }
         if !shortest && (way_m > LONGEST_M || turn.abs() > MOST_TURN_RAD) {
             return None;
@@ -170,7 +170,7 @@ impl Line {
         let u = [0.0, out.x, square.x, cube.x];
         let v = [0.0, out.y, square.y, cube.y];
         let length_m = arc_length(&u, &v);
-        let shape = Shape::ParamPoly3 {
+        let shape = CurveShape::ParamPoly3 {
             u,
             v,
             normalized: true,
@@ -279,7 +279,7 @@ mod tests {
             .collect();
         let line = checked(&points);
         assert_eq!(line.records().len(), 1);
-        assert_eq!(line.records()[0].shape(), &Shape::Line);
+        assert_eq!(line.records()[0].shape(), &CurveShape::Line);
         assert!((line.end_s_m() - points[0].distance(points[160])).abs() < 1e-9);
     }
 

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec2;
 
 use super::network;
-use super::roads::{End, Road};
+use super::roads::{End, WrittenRoad};
 use super::strips::Strip;
 use scene::BevLayout;
 use scene::roads::curve::{distinct, length_m, simplified};
@@ -83,7 +83,7 @@ pub(crate) fn lane_graph(layout: &BevLayout) -> Vec<GraphLane> {
 }
 
 /// A strip of a road as a lane; `None` if it is no lane, or has no length or width on the map.
-fn lane(layout: &BevLayout, road: &Road, strip: usize) -> Option<GraphLane> {
+fn lane(layout: &BevLayout, road: &WrittenRoad, strip: usize) -> Option<GraphLane> {
     let Strip::Lane { along, .. } = road.strips.kinds[strip] else {
         return None;
     };

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use glam::DVec2;
 
-use super::roads::Road;
+use super::roads::WrittenRoad;
 use super::strips::Strip;
 use crate::xml_text::number;
 use scene::speed_limits::SpeedLimits;
@@ -21,13 +21,13 @@ const SHORTEST_M: f64 = 3.0;
 const WHOLE: f64 = 0.01;
 
 /// Where limits come from: roads that a user has reshaped go before lines of the layout.
-pub(super) struct Limits<'a> {
+pub(super) struct SpeedLimitSource<'a> {
     roads: &'a RoadNetwork,
     middles: BTreeMap<RoadId, Vec<DVec2>>,
     along_lanes: SpeedLimits,
 }
 
-impl<'a> Limits<'a> {
+impl<'a> SpeedLimitSource<'a> {
     pub fn of(layout: &BevLayout, roads: &'a RoadNetwork) -> Self {
         Self {
             roads,
@@ -37,7 +37,7 @@ impl<'a> Limits<'a> {
     }
 
     /// The `<type>` elements of a road, each with its limit; none if no limit is known.
-    pub fn write(&self, out: &mut String, road: &Road) {
+    pub fn write(&self, out: &mut String, road: &WrittenRoad) {
         let runs = self.runs(road);
         if runs.iter().all(|(_, limit)| limit.is_none()) {
             return;
@@ -53,7 +53,7 @@ impl<'a> Limits<'a> {
     }
 
     /// Limits in m/s and where each begins, m along the road; at least one.
-    fn runs(&self, road: &Road) -> Vec<(f64, Option<f64>)> {
+    fn runs(&self, road: &WrittenRoad) -> Vec<(f64, Option<f64>)> {
         let middle = road.reference.at(road.reference.end_s_m() / 2.0);
         let found = self
             .roads
@@ -86,7 +86,7 @@ impl<'a> Limits<'a> {
     }
 
     /// The limit of most of a road's lanes at a station, m/s; the lower one of two that as many have.
-    fn of_lanes(&self, road: &Road, station: usize) -> Option<f64> {
+    fn of_lanes(&self, road: &WrittenRoad, station: usize) -> Option<f64> {
         let base = road.reference.at(road.s_m[station]);
         let borders = &road.strips.borders_m;
         let mut votes: BTreeMap<u64, usize> = BTreeMap::new(); // by bits: limits are positive

@@ -12,7 +12,7 @@ use scene::{BevLayer, Extent, PolylineKind};
 
 /// Figures of how well a layout came back.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Figures {
+pub(super) struct RoundTripFigures {
     /// Overlap of paved ground (roads and car parks) and of walkways, 0 to 1.
     pub road: f64,
     pub walkway: f64,
@@ -66,10 +66,10 @@ fn near(lines: &[Vec<DVec2>], others: &[Vec<DVec2>]) -> f64 {
     if all == 0.0 { 1.0 } else { found / all }
 }
 
-pub(super) fn figures(layout: &BevLayout, found: &BevLayout) -> Figures {
+pub(super) fn figures(layout: &BevLayout, found: &BevLayout) -> RoundTripFigures {
     let vehicles = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
     let (a, b) = (lanes(layout), lanes(found));
-    Figures {
+    RoundTripFigures {
         road: iou(layout, found, vehicles),
         walkway: iou(layout, found, BevLayer::Walkway.bit()),
         lanes: near(&a, &b),
@@ -118,7 +118,7 @@ fn figures_of_many_scenes() {
     files.retain(|p| p.extension().is_some_and(|e| e == "loom" || e == "xodr"));
     files.retain(|p| p.to_string_lossy().contains(&only));
     files.sort();
-    let mut of_kind: BTreeMap<String, Vec<[Figures; 2]>> = BTreeMap::new();
+    let mut of_kind: BTreeMap<String, Vec<[RoundTripFigures; 2]>> = BTreeMap::new();
     for path in &files {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
         let layout = layout_of(path);
@@ -145,7 +145,8 @@ fn figures_of_many_scenes() {
         of_kind.entry(kind).or_default().push(both);
     }
     for (kind, all) in &of_kind {
-        let mean = |of: &dyn Fn(&[Figures; 2]) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
+        let mean =
+            |of: &dyn Fn(&[RoundTripFigures; 2]) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
         println!(
             "{kind:14} road {:.3} {:.3}  walkway {:.3} {:.3}  lanes {:.3} back {:.3}  ({} scenes)",
             mean(&|f| f[0].road),

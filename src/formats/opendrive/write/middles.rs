@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 
 use glam::DVec2;
 
-use super::chains::{Chain, Near, Surface, surface};
+use super::chains::{Chain, GroundKind, Near, surface};
 use scene::distance::signed_distance_m;
 use scene::{BevLayer, BevLayout, Extent};
 
@@ -82,7 +82,7 @@ struct Skeleton<'a> {
 }
 
 /// A line of the skeleton: its cells, and whether it ends freely at its start and end.
-struct Line {
+struct SkeletonLine {
     cells: Vec<usize>,
     free: [bool; 2],
 }
@@ -166,7 +166,7 @@ impl Skeleton<'_> {
     }
 
     /// The lines between ends and forks, and rings.
-    fn lines(&self) -> Vec<Line> {
+    fn lines(&self) -> Vec<SkeletonLine> {
         let cells: Vec<usize> = (0..self.set.len()).filter(|c| self.set[*c]).collect();
         let degree = |c: usize| self.next(c).len();
         let mut out = Vec::new();
@@ -194,7 +194,7 @@ impl Skeleton<'_> {
                     (before, at) = (at, next);
                 }
                 let end = line[line.len() - 1];
-                out.push(Line {
+                out.push(SkeletonLine {
                     cells: line,
                     free: [degree(start) == 1, degree(end) == 1],
                 });
@@ -212,7 +212,7 @@ impl Skeleton<'_> {
     }
 
     /// Takes away branches into corners; false if there is no such branch.
-    fn prune(&mut self, lines: &[Line]) -> bool {
+    fn prune(&mut self, lines: &[SkeletonLine]) -> bool {
         let mut any = false;
         for line in lines {
             let fork = match line.free {
@@ -232,7 +232,13 @@ impl Skeleton<'_> {
 
 /// One or two lanes along a middle line; none if it is too short or too narrow. `depths` are those in the ground
 /// without lanes and in all paved ground, m.
-fn of_line(layout: &BevLayout, near: &Near, depths: [&[f32]; 2], line: &Line, left_hand: bool) -> Vec<Chain> {
+fn of_line(
+    layout: &BevLayout,
+    near: &Near,
+    depths: [&[f32]; 2],
+    line: &SkeletonLine,
+    left_hand: bool,
+) -> Vec<Chain> {
     let extent = layout.extent();
     let [half_m, whole_m] = depths.map(|depth| {
         let mut all: Vec<f64> = line.cells.iter().map(|c| f64::from(depth[*c])).collect();
@@ -311,7 +317,7 @@ fn extend(layout: &BevLayout, near: &Near, points: &mut Vec<DVec2>, join: bool) 
     let mut reach_m = 0.0;
     while reach_m < REACH_M {
         let p = end + ahead * (reach_m + 0.2);
-        let paved = matches!(surface(layout, extent, p), Surface::Road | Surface::Carpark);
+        let paved = matches!(surface(layout, extent, p), GroundKind::Road | GroundKind::Carpark);
         let met = near
             .within(p, if join { 1.0 } else { COVERED_M - 1.0 })
             .next()

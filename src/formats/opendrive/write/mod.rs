@@ -24,10 +24,10 @@ mod zones;
 use super::own_rows;
 use bundles::Bundled;
 use chains::{Chain, Near};
-use connect::{Ground, Junction};
-use limits::Limits;
+use connect::{ConnectionContext, WrittenJunction};
+use limits::SpeedLimitSource;
 use on_road::OnRoads;
-use roads::Road;
+use roads::WrittenRoad;
 use scene::distance::nearest_source;
 use scene::{Background, BevLayout, RoadNetwork};
 use zones::Zones;
@@ -70,7 +70,7 @@ fn text_of(
     (reshaped, background): (&RoadNetwork, &Background),
     detail: Detail,
 ) -> String {
-    let limits = Limits::of(layout, reshaped);
+    let limits = SpeedLimitSource::of(layout, reshaped);
     let (mut roads, junctions) = network(layout);
     if roads.is_empty() {
         roads.push(on_road::nowhere(layout));
@@ -100,7 +100,7 @@ fn text_of(
 }
 
 /// Roads and junctions of a layout.
-fn network(layout: &BevLayout) -> (Vec<Road>, Vec<Junction>) {
+fn network(layout: &BevLayout) -> (Vec<WrittenRoad>, Vec<WrittenJunction>) {
     let mut chains = chains::of_layout(layout);
     let mut near = Near::new(&chains);
     let mut found = grouped(layout, &chains, &near);
@@ -114,7 +114,7 @@ fn network(layout: &BevLayout) -> (Vec<Road>, Vec<Junction>) {
     let left_hand = is_left_hand(&bundled);
     let mut roads = of_bundles(layout, &chains, &near, &bundled, left_hand);
     let next_id = roads.len() as u32 + 1;
-    let mut ground = Ground {
+    let mut ground = ConnectionContext {
         layout,
         chains: &chains,
         near: &near,
@@ -138,7 +138,7 @@ fn of_bundles(
     near: &Near,
     bundled: &Bundled,
     left_hand: bool,
-) -> Vec<Road> {
+) -> Vec<WrittenRoad> {
     let extent = layout.extent();
     let mut sample_in = vec![None; extent.columns()];
     for (c, chain) in chains.iter().enumerate().filter(|(_, chain)| !chain.two_way) {
@@ -171,7 +171,7 @@ fn of_bundles(
                 _ => is_member(chain),
             }
         };
-        if let Some(mut road) = Road::of_bundle(layout, chains, bundle, left_hand, is_own) {
+        if let Some(mut road) = WrittenRoad::of_bundle(layout, chains, bundle, left_hand, is_own) {
             road.id = out.len() as u32 + 1;
             road.bundle = Some(id);
             out.push(road);

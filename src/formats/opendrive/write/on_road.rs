@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use super::areas::outlines;
 use super::fit::reference;
-use super::roads::Road;
+use super::roads::WrittenRoad;
 use super::strips::{Strip, Strips};
 use crate::xml_text::number;
 use scene::background::PostKind;
@@ -29,12 +29,12 @@ const IN_JUNCTION_M: f64 = 10.0;
 
 /// Roads that get objects.
 pub(super) struct OnRoads<'a> {
-    roads: &'a mut [Road],
+    roads: &'a mut [WrittenRoad],
     stations: Vec<(usize, usize, DVec2)>, // every few metres: road, station, place
 }
 
 /// A place on a road.
-struct Place {
+struct RoadPosition {
     road: usize,
     s_m: f64,
     t_m: f64,
@@ -42,8 +42,8 @@ struct Place {
 }
 
 impl<'a> OnRoads<'a> {
-    pub fn new(roads: &'a mut [Road]) -> Self {
-        let of_road = |(r, road): (usize, &Road)| {
+    pub fn new(roads: &'a mut [WrittenRoad]) -> Self {
+        let of_road = |(r, road): (usize, &WrittenRoad)| {
             let n = road.s_m.len();
             let some = (0..n).step_by(EVERY).chain([n - 1]);
             let placed = some.map(|i| (r, i, road.reference.at(road.s_m[i]).position_m));
@@ -56,7 +56,7 @@ impl<'a> OnRoads<'a> {
     }
 
     /// The nearest place on any road; roads outside of junctions come before roads in them if both are near.
-    fn nearest(&self, p: DVec2) -> Option<Place> {
+    fn nearest(&self, p: DVec2) -> Option<RoadPosition> {
         let cost = |(r, _, at): &(usize, usize, DVec2)| {
             let more_m = self.roads[*r].junction.map_or(0.0, |_| IN_JUNCTION_M);
             at.distance(p) + more_m
@@ -71,7 +71,7 @@ impl<'a> OnRoads<'a> {
         let (ahead, way) = (DVec2::from_angle(base.heading_rad), p - base.position_m);
         let s_m = (road.s_m[i] + way.dot(ahead)).clamp(0.0, road.reference.end_s_m());
         let base = road.reference.at(s_m);
-        Some(Place {
+        Some(RoadPosition {
             road: r,
             s_m,
             t_m: DVec2::from_angle(base.heading_rad).perp_dot(p - base.position_m),
@@ -244,10 +244,10 @@ impl<'a> OnRoads<'a> {
 }
 
 /// A road without any lane: a file needs at least one road.
-pub(super) fn nowhere(layout: &BevLayout) -> Road {
+pub(super) fn nowhere(layout: &BevLayout) -> WrittenRoad {
     let from = layout.extent().min_m().truncate();
     let line = reference(&[from, from + DVec2::X], [None, None]).expect("two points a metre apart");
-    Road {
+    WrittenRoad {
         id: 1,
         junction: None,
         s_m: vec![0.0, line.end_s_m()],

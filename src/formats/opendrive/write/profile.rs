@@ -1,12 +1,12 @@
 //! Numbers along a road as records: widths and offsets as straight pieces, heights as cubics.
 
-use super::roads::Road;
+use super::roads::WrittenRoad;
 use super::strips::Strip;
 use scene::Relief;
 
 /// One record: where it begins and a, b, c, d from there on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Record {
+pub(super) struct CubicRecord {
     pub s_m: f64,
     pub k: [f64; 4],
 }
@@ -19,7 +19,7 @@ const HEIGHT_M: f64 = 0.01;
 const TILT_RAD: f64 = 0.003;
 
 /// Straight pieces through as few of the values as stay within `near` of all.
-pub(super) fn straight(s_m: &[f64], values: &[f64], near: f64) -> Vec<Record> {
+pub(super) fn straight(s_m: &[f64], values: &[f64], near: f64) -> Vec<CubicRecord> {
     let mut kept = vec![0];
     let mut stack = vec![(0, values.len() - 1)];
     while let Some((from, to)) = stack.pop() {
@@ -34,15 +34,15 @@ pub(super) fn straight(s_m: &[f64], values: &[f64], near: f64) -> Vec<Record> {
     let pieces = kept.windows(2).map(|ends| {
         let [from, to] = [ends[0], ends[1]];
         let slope = (values[to] - values[from]) / (s_m[to] - s_m[from]);
-        Record {
+        CubicRecord {
             s_m: s_m[from],
             k: [values[from], slope, 0.0, 0.0],
         }
     });
-    let mut out: Vec<Record> = Vec::new();
+    let mut out: Vec<CubicRecord> = Vec::new();
     for piece in pieces {
         // One that goes on as the last one does is no other.
-        let same = |last: &Record| (last.k[1] - piece.k[1]).abs() < SAME_SLOPE;
+        let same = |last: &CubicRecord| (last.k[1] - piece.k[1]).abs() < SAME_SLOPE;
         if !out.last().is_some_and(same) {
             out.push(piece);
         }
@@ -51,7 +51,7 @@ pub(super) fn straight(s_m: &[f64], values: &[f64], near: f64) -> Vec<Record> {
 }
 
 /// Heights of the ground under the reference line of a road; none if all of it is at 0.
-pub(super) fn elevation(road: &Road, relief: &Relief) -> Vec<Record> {
+pub(super) fn elevation(road: &WrittenRoad, relief: &Relief) -> Vec<CubicRecord> {
     if relief.is_flat() {
         return Vec::new();
     }
@@ -84,7 +84,7 @@ pub(super) fn elevation(road: &Road, relief: &Relief) -> Vec<Record> {
             let middle = usize::midpoint(from, to);
             stack.extend([(middle, to), (from, middle)]);
         } else {
-            out.push(Record {
+            out.push(CubicRecord {
                 s_m: road.s_m[from],
                 k,
             });
@@ -94,7 +94,7 @@ pub(super) fn elevation(road: &Road, relief: &Relief) -> Vec<Record> {
 }
 
 /// Tilt of the ground across the lanes of a road; none if it is tilted nowhere.
-pub(super) fn superelevation(road: &Road, relief: &Relief) -> Vec<Record> {
+pub(super) fn superelevation(road: &WrittenRoad, relief: &Relief) -> Vec<CubicRecord> {
     if relief.is_flat() {
         return Vec::new();
     }

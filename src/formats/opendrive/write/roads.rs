@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::super::geometry::ReferenceLine;
 use super::bundles::{Bundle, Member};
-use super::chains::{Chain, Surface, surface};
+use super::chains::{Chain, GroundKind, surface};
 use super::fit::{placed, reference};
 use super::strips::{PAVED_M, Station, Strip, Strips, median};
 use scene::BevLayout;
@@ -21,7 +21,7 @@ const WIDEST_HALF_M: f64 = 2.6;
 const SHARED_M: f64 = 0.3;
 
 /// A road that is to be written.
-pub(super) struct Road {
+pub(super) struct WrittenRoad {
     /// Id in the file.
     pub id: u32,
     /// Id of the junction that it connects through.
@@ -65,7 +65,7 @@ pub(super) struct Contact {
     pub lane: i32,
 }
 
-impl Road {
+impl WrittenRoad {
     /// Id of a strip's lane.
     pub fn lane_id(&self, strip: usize) -> i32 {
         let center = self.strips.center;
@@ -248,11 +248,11 @@ fn alone_half_m(
             let looks = (1..=(HALF_M[1] * 10.0) as i32).map(|i| f64::from(i) / 10.0);
             let mut free = looks.take_while(|m| {
                 let p = s.at_m + s.left * (side * m);
-                surface(layout, extent, p) == Surface::Road && is_own(p)
+                surface(layout, extent, p) == GroundKind::Road && is_own(p)
             });
             free.by_ref().last().unwrap_or(0.0)
         };
-        if surface(layout, extent, s.at_m) != Surface::Beyond {
+        if surface(layout, extent, s.at_m) != GroundKind::Beyond {
             last = Some(paved(1.0).min(paved(-1.0)).clamp(HALF_M[0], HALF_M[1]));
         }
         looks.push(last);

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::chains::{Surface, surface};
+use super::chains::{GroundKind, surface};
 use scene::BevLayout;
 
 /// Paved ground belongs to a road up to this far from its lanes, m; less to one that leads through a junction, as it turns.
@@ -69,7 +69,7 @@ impl Strips {
         most_m: f64,
         is_own: impl Fn(DVec2) -> bool,
     ) -> Self {
-        let around = Around {
+        let around = RoadsideProbe {
             layout,
             most_m,
             is_own: &is_own,
@@ -114,13 +114,13 @@ struct Reach {
 }
 
 /// Surroundings of the lanes, as far as they are looked at.
-struct Around<'a> {
+struct RoadsideProbe<'a> {
     layout: &'a BevLayout,
     most_m: f64,
     is_own: &'a dyn Fn(DVec2) -> bool,
 }
 
-impl Around<'_> {
+impl RoadsideProbe<'_> {
     /// Strips to one side (1: left) with their outer borders, from the lanes outward.
     fn sides(&self, stations: &[Station], edge_m: &[f64], side: f64) -> Vec<(Strip, Vec<f64>)> {
         let looks: Vec<Option<Reach>> = stations
@@ -184,37 +184,37 @@ impl Around<'_> {
         let at = |m: f64| {
             let p = edge + out * m;
             match surface(layout, extent, p) {
-                Surface::Beyond => Surface::Beyond,
+                GroundKind::Beyond => GroundKind::Beyond,
                 found if (self.is_own)(p) => found,
-                _ => Surface::Beyond,
+                _ => GroundKind::Beyond,
             }
         };
-        if surface(layout, extent, edge) == Surface::Beyond {
+        if surface(layout, extent, edge) == GroundKind::Beyond {
             return None;
         }
         // The far end of the run of one surface that begins at `from`.
-        let run = |of: Surface, from: f64, most: f64| {
+        let run = |of: GroundKind, from: f64, most: f64| {
             let mut m = from;
             while m < from + most && at(m + LOOK_M / 2.0) == of {
                 m += LOOK_M;
             }
             m
         };
-        let paved_m = run(Surface::Road, 0.0, most_m);
-        let carpark_m = run(Surface::Carpark, paved_m, CARPARK_M);
+        let paved_m = run(GroundKind::Road, 0.0, most_m);
+        let carpark_m = run(GroundKind::Carpark, paved_m, CARPARK_M);
         let beyond_m = match carpark_m > paved_m {
-            true => run(Surface::Road, carpark_m, most_m),
+            true => run(GroundKind::Road, carpark_m, most_m),
             false => carpark_m,
         };
         let mut from = beyond_m;
         let capped = paved_m >= most_m || carpark_m - paved_m >= CARPARK_M;
-        while !capped && from < beyond_m + VERGE_M && at(from + LOOK_M / 2.0) == Surface::Other {
+        while !capped && from < beyond_m + VERGE_M && at(from + LOOK_M / 2.0) == GroundKind::Other {
             from += LOOK_M;
         }
         let to = if capped {
             from
         } else {
-            run(Surface::Walkway, from, WALKWAY_M)
+            run(GroundKind::Walkway, from, WALKWAY_M)
         };
         let walkway_m = if to > from { [from, to] } else { [beyond_m; 2] };
         Some(Reach {

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use roxmltree::{Document, Node};
 
-use super::measure::{Figures, figures, lanes, read_back};
+use super::measure::{RoundTripFigures, figures, lanes, read_back};
 use super::*;
 use crate::opendrive::{self, RoadNetwork};
 use crate::table_tests::random_scene;
@@ -61,7 +61,7 @@ fn read(text: &str) -> RoadNetwork {
     opendrive::read(text.as_bytes()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn at_least(found: Figures, road: f64, walkway: f64, lanes: f64) {
+fn at_least(found: RoundTripFigures, road: f64, walkway: f64, lanes: f64) {
     assert!(
         found.road >= road && found.walkway >= walkway && found.lanes >= lanes,
         "{found:?}"
@@ -156,7 +156,7 @@ fn links_lead_back_and_lanes_meet() {
         .filter(|n| n.has_tag_name("connection"))
         .collect();
     assert_eq!(connections.len(), 12);
-    let at_end = |road: &opendrive::Road, end: bool, lane: i32| -> [DVec2; 2] {
+    let at_end = |road: &opendrive::XodrRoad, end: bool, lane: i32| -> [DVec2; 2] {
         let s = if end { road.length_m() } else { 0.0 };
         let section = &road.sections[0];
         let mut t = Vec::new();

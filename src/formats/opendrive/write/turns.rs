@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use glam::DVec2;
 
-use super::chains::{STEP_M, Surface, surface};
-use super::connect::{Door, Gates, Ground, NEAR_ZONE, Way, is_apart};
+use super::chains::{GroundKind, STEP_M, surface};
+use super::connect::{ConnectionContext, Gates, NEAR_ZONE, ZoneLaneEnd, ZonePath, is_apart};
 use super::curve::{BACK_RAD, curve};
 use super::fit::wrapped;
 use super::roads::Contact;
@@ -25,16 +25,16 @@ const TIGHTER: [f64; 3] = [0.8, 0.65, 0.5];
 const JOIN_M: [f64; 2] = [3.0, 16.0];
 
 /// Turns between arms that no lane joins, where the ground is paved.
-pub(super) fn turns(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>) {
-    let arms = |doors: &[Door]| -> Vec<(usize, bool)> {
-        let arms: BTreeSet<(usize, bool)> = doors.iter().map(Door::arm).collect();
+pub(super) fn turns(ground: &ConnectionContext<'_>, gates: &Gates, ways: &mut Vec<ZonePath>) {
+    let arms = |doors: &[ZoneLaneEnd]| -> Vec<(usize, bool)> {
+        let arms: BTreeSet<(usize, bool)> = doors.iter().map(ZoneLaneEnd::arm).collect();
         arms.into_iter().collect()
     };
     let joined: BTreeSet<_> = ways.iter().map(|w| (w.from.arm(), w.to.arm())).collect();
-    let of = |doors: &[Door], arm: (usize, bool)| -> Vec<Door> {
-        let mut lanes: Vec<Door> = doors.iter().filter(|d| d.arm() == arm).copied().collect();
+    let of = |doors: &[ZoneLaneEnd], arm: (usize, bool)| -> Vec<ZoneLaneEnd> {
+        let mut lanes: Vec<ZoneLaneEnd> = doors.iter().filter(|d| d.arm() == arm).copied().collect();
         // From left to right as traffic sees them.
-        let left = |d: &Door| DVec2::from_angle(d.contact.heading_rad).perp_dot(d.contact.at_m);
+        let left = |d: &ZoneLaneEnd| DVec2::from_angle(d.contact.heading_rad).perp_dot(d.contact.at_m);
         lanes.sort_by(|a, b| left(b).total_cmp(&left(a)));
         lanes
     };
@@ -47,7 +47,7 @@ pub(super) fn turns(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>) {
             }
             let (inward, outward) = (of(&gates.inward, from), of(&gates.outward, to));
             let turn = wrapped(outward[0].contact.heading_rad - inward[0].contact.heading_rad);
-            let pairs: Vec<(Door, Door)> = if turn.abs() > BACK_RAD {
+            let pairs: Vec<(ZoneLaneEnd, ZoneLaneEnd)> = if turn.abs() > BACK_RAD {
                 continue;
             } else if turn > STRAIGHT_RAD {
                 vec![(inward[0], outward[0])]
@@ -60,7 +60,7 @@ pub(super) fn turns(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>) {
                 let ways =
                     |aside_m| direct(ground, from, to, aside_m).or_else(|| around(ground, from, to, aside_m));
                 let points_m = ASIDE_M.into_iter().find_map(ways);
-                found.extend(points_m.map(|points_m| Way { from, to, points_m }));
+                found.extend(points_m.map(|points_m| ZonePath { from, to, points_m }));
             }
         }
     }
@@ -68,8 +68,8 @@ pub(super) fn turns(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>) {
 }
 
 /// Lanes that no way begins or ends at get the straightest one that can be driven.
-pub(super) fn left_alone(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>) {
-    let same = |a: &Door, b: &Door| (a.arm(), a.contact.lane) == (b.arm(), b.contact.lane);
+pub(super) fn left_alone(ground: &ConnectionContext<'_>, gates: &Gates, ways: &mut Vec<ZonePath>) {
+    let same = |a: &ZoneLaneEnd, b: &ZoneLaneEnd| (a.arm(), a.contact.lane) == (b.arm(), b.contact.lane);
     for from in &gates.inward {
         if !ways.iter().any(|w| same(&w.from, from)) {
             ways.extend(straightest(ground, gates.outward.iter().map(|to| (*from, *to))));
@@ -82,16 +82,20 @@ pub(super) fn left_alone(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>
     }
 }
 
-fn straightest(ground: &Ground<'_>, pairs: impl Iterator<Item = (Door, Door)>) -> Option<Way> {
-    let turn = |(from, to): &(Door, Door)| {
+fn straightest(
+    ground: &ConnectionContext<'_>,
+    pairs: impl Iterator<Item = (ZoneLaneEnd, ZoneLaneEnd)>,
+) -> Option<ZonePath> {
+    let turn = |(from, to): &(ZoneLaneEnd, ZoneLaneEnd)| {
         let turn = wrapped(to.contact.heading_rad - from.contact.heading_rad).abs();
         turn + 0.01 * from.contact.at_m.distance(to.contact.at_m)
     };
-    let mut pairs: Vec<(Door, Door)> = pairs.filter(|(from, to)| from.arm() != to.arm()).collect();
+    let mut pairs: Vec<(ZoneLaneEnd, ZoneLaneEnd)> =
+        pairs.filter(|(from, to)| from.arm() != to.arm()).collect();
     pairs.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
     let way = pairs.into_iter().find_map(|(from, to)| {
         let points_m = ASIDE_M.into_iter().find_map(|m| direct(ground, from, to, m))?;
-        Some(Way { from, to, points_m })
+        Some(ZonePath { from, to, points_m })
     });
     way.filter(is_apart)
 }
@@ -102,7 +106,12 @@ fn both(gates: &Gates, arm: (usize, bool)) -> bool {
 }
 
 /// A way that can be driven: one curve, or else straight ways and a tighter curve around the corner.
-fn direct(ground: &Ground<'_>, from: Door, to: Door, aside_m: f64) -> Option<Vec<DVec2>> {
+fn direct(
+    ground: &ConnectionContext<'_>,
+    from: ZoneLaneEnd,
+    to: ZoneLaneEnd,
+    aside_m: f64,
+) -> Option<Vec<DVec2>> {
     let (from, to) = (from.contact, to.contact);
     let tighter = TIGHTER.iter().filter_map(|share| around_corner(from, to, *share));
     let all = curve(from, to).into_iter().chain(tighter);
@@ -134,7 +143,7 @@ fn around_corner(from: Contact, to: Contact, share: f64) -> Option<Vec<DVec2>> {
 }
 
 /// True where a vehicle can follow a line: paved and not too tight.
-fn is_drivable(ground: &Ground<'_>, points: &[DVec2], aside_m: f64) -> bool {
+fn is_drivable(ground: &ConnectionContext<'_>, points: &[DVec2], aside_m: f64) -> bool {
     let total: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
     let even = resampled(points, (total / STEP_M).ceil().max(3.0) as usize + 1);
     let extent = ground.layout.extent();
@@ -149,14 +158,19 @@ fn is_drivable(ground: &Ground<'_>, points: &[DVec2], aside_m: f64) -> bool {
         for aside in [-aside_m, 0.0, aside_m] {
             looks += 1;
             let here = surface(ground.layout, extent, triple[1] + left * aside);
-            paved += usize::from(!matches!(here, Surface::Other | Surface::Walkway));
+            paved += usize::from(!matches!(here, GroundKind::Other | GroundKind::Walkway));
         }
     }
     f64::from(paved as u32) >= PAVED_SHARE * f64::from(looks)
 }
 
 /// A way along a third lane of the zone: onto a ring, around and off it.
-fn around(ground: &Ground<'_>, from: Door, to: Door, aside_m: f64) -> Option<Vec<DVec2>> {
+fn around(
+    ground: &ConnectionContext<'_>,
+    from: ZoneLaneEnd,
+    to: ZoneLaneEnd,
+    aside_m: f64,
+) -> Option<Vec<DVec2>> {
     let first = ground.chains[from.chain].step(from.k, 1).unwrap_or(from.k);
     let zone = (0..NEAR_ZONE as isize)
         .filter_map(|n| {

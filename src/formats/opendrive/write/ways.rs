@@ -4,8 +4,8 @@ use std::collections::{BTreeSet, HashMap};
 
 use glam::DVec2;
 
-use super::chains::Sample;
-use super::connect::{Door, Gates, Ground, Way, is_apart};
+use super::chains::ChainSample;
+use super::connect::{ConnectionContext, Gates, ZoneLaneEnd, ZonePath, is_apart};
 
 /// A lane begins or ends beside another one if it is that near, m, and runs as it does, as a cosine.
 const BESIDE_M: f64 = 1.0;
@@ -25,7 +25,7 @@ pub(super) struct Forks {
 }
 
 impl Forks {
-    pub fn find(ground: &Ground<'_>) -> Self {
+    pub fn find(ground: &ConnectionContext<'_>) -> Self {
         let mut out = Self {
             begin: HashMap::new(),
             end: HashMap::new(),
@@ -35,14 +35,14 @@ impl Forks {
                 continue;
             }
             // The other lane passes by: it does not begin or end there itself.
-            let passes = |s: &Sample, begins: bool| {
+            let passes = |s: &ChainSample, begins: bool| {
                 let other = &ground.chains[s.chain];
                 other.closed || if begins { s.k >= 2 } else { s.k + 2 < other.len() }
             };
             let beside = |k: usize, begins: bool| {
                 let direction = chain.direction(k);
                 let zone = ground.zones.of(i, k)?;
-                let fits = |s: &&Sample| {
+                let fits = |s: &&ChainSample| {
                     s.chain != i
                         && passes(s, begins)
                         && s.direction.dot(direction) > ALIKE_COSINE
@@ -77,8 +77,8 @@ struct Walk {
 }
 
 /// Ways along lanes that lead through, also over lanes that fork off and join; true if any does.
-pub(super) fn through(ground: &Ground<'_>, forks: &Forks, gates: &Gates) -> (Vec<Way>, bool) {
-    let mut out: Vec<Way> = Vec::new();
+pub(super) fn through(ground: &ConnectionContext<'_>, forks: &Forks, gates: &Gates) -> (Vec<ZonePath>, bool) {
+    let mut out: Vec<ZonePath> = Vec::new();
     let mut forked = false;
     for from in &gates.inward {
         let chain = &ground.chains[from.chain];
@@ -122,12 +122,12 @@ pub(super) fn through(ground: &Ground<'_>, forks: &Forks, gates: &Gates) -> (Vec
                     },
                 };
                 (walk.chain, walk.k) = next;
-                let is_here = |d: &&Door| (d.chain, d.k) == next && d.arm() != from.arm();
+                let is_here = |d: &&ZoneLaneEnd| (d.chain, d.k) == next && d.arm() != from.arm();
                 if let Some(to) = gates.outward.iter().find(is_here) {
                     let mut points_m = walk.points_m;
                     points_m.push(to.contact.at_m);
                     forked |= walk.changes > 0;
-                    out.push(Way {
+                    out.push(ZonePath {
                         from: *from,
                         to: *to,
                         points_m,

@@ -2,12 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::connect::Junction;
-use super::limits::Limits;
-use super::profile::{Record, elevation, straight, superelevation};
-use super::roads::{End, Road};
+use super::connect::WrittenJunction;
+use super::limits::SpeedLimitSource;
+use super::profile::{CubicRecord, elevation, straight, superelevation};
+use super::roads::{End, WrittenRoad};
 use super::strips::Strip;
-use crate::opendrive::geometry::{Geometry, Shape};
+use crate::opendrive::geometry::{CurveShape, Geometry};
 use crate::xml_text::{escaped, number};
 use scene::{BevLayer, BevLayout, Relief};
 
@@ -39,10 +39,10 @@ pub(super) fn header(name: &str, layout: &BevLayout) -> String {
 
 /// All roads, then all junctions.
 pub(super) fn network(
-    roads: &[Road],
-    junctions: &[Junction],
+    roads: &[WrittenRoad],
+    junctions: &[WrittenJunction],
     layout: &BevLayout,
-    limits: &Limits<'_>,
+    limits: &SpeedLimitSource<'_>,
 ) -> String {
     let mut out = String::new();
     for r in roads {
@@ -54,7 +54,7 @@ pub(super) fn network(
     out
 }
 
-fn road(out: &mut String, road: &Road, layout: &BevLayout, limits: &Limits<'_>) {
+fn road(out: &mut String, road: &WrittenRoad, layout: &BevLayout, limits: &SpeedLimitSource<'_>) {
     let rule = if road.left_hand { "LHT" } else { "RHT" };
     let junction = road.junction.map_or("-1".into(), |j| j.to_string());
     let length = number(road.reference.end_s_m());
@@ -82,7 +82,7 @@ fn road(out: &mut String, road: &Road, layout: &BevLayout, limits: &Limits<'_>) 
     out.push_str("  </road>\n");
 }
 
-fn link(out: &mut String, road: &Road) {
+fn link(out: &mut String, road: &WrittenRoad) {
     if road.ends.iter().all(Option::is_none) {
         return;
     }
@@ -108,7 +108,7 @@ fn link(out: &mut String, road: &Road) {
 fn geometry(out: &mut String, record: &Geometry) {
     let start = record.at(0.0);
     let shape = match record.shape() {
-        Shape::ParamPoly3 { u, v, .. } => {
+        CurveShape::ParamPoly3 { u, v, .. } => {
             let [u, v] = [u, v].map(|k| k.map(number));
             format!(
                 "<paramPoly3 aU=\"{}\" bU=\"{}\" cU=\"{}\" dU=\"{}\" aV=\"{}\" bV=\"{}\" cV=\"{}\" dV=\"{}\" \
@@ -130,7 +130,7 @@ fn geometry(out: &mut String, record: &Geometry) {
     );
 }
 
-fn records(out: &mut String, indent: &str, name: &str, start: &str, records: &[Record], origin_m: f64) {
+fn records(out: &mut String, indent: &str, name: &str, start: &str, records: &[CubicRecord], origin_m: f64) {
     for record in records {
         let [a, b, c, d] = record.k.map(number);
         let _ = writeln!(
@@ -141,7 +141,7 @@ fn records(out: &mut String, indent: &str, name: &str, start: &str, records: &[R
     }
 }
 
-fn heights(out: &mut String, road: &Road, relief: &Relief) {
+fn heights(out: &mut String, road: &WrittenRoad, relief: &Relief) {
     let lists = [
         ("elevationProfile", "elevation", elevation(road, relief)),
         ("lateralProfile", "superelevation", superelevation(road, relief)),
@@ -155,7 +155,7 @@ fn heights(out: &mut String, road: &Road, relief: &Relief) {
     }
 }
 
-fn lanes(out: &mut String, road: &Road, layout: &BevLayout) {
+fn lanes(out: &mut String, road: &WrittenRoad, layout: &BevLayout) {
     let strips = &road.strips;
     out.push_str("    <lanes>\n");
     let center = &strips.borders_m[strips.center];
@@ -186,7 +186,7 @@ fn lanes(out: &mut String, road: &Road, layout: &BevLayout) {
     out.push_str("      </laneSection>\n    </lanes>\n");
 }
 
-fn lane(out: &mut String, road: &Road, strip: usize, layout: &BevLayout) {
+fn lane(out: &mut String, road: &WrittenRoad, strip: usize, layout: &BevLayout) {
     let kind = road.strips.kinds[strip];
     let name = match kind {
         Strip::Lane { .. } => "driving",
@@ -236,7 +236,7 @@ fn lane(out: &mut String, road: &Road, strip: usize, layout: &BevLayout) {
 }
 
 /// The paint on a border of strips.
-fn marks(out: &mut String, road: &Road, border: usize, layout: &BevLayout) {
+fn marks(out: &mut String, road: &WrittenRoad, border: usize, layout: &BevLayout) {
     let kinds = &road.strips.kinds;
     let is_lane = |strip: Option<usize>| {
         let kind = strip.and_then(|s| kinds.get(s));
@@ -257,7 +257,7 @@ fn marks(out: &mut String, road: &Road, border: usize, layout: &BevLayout) {
 }
 
 /// Style of the paint along a border and where each begins.
-fn paint(road: &Road, border: usize, layout: &BevLayout) -> Vec<(f64, &'static str)> {
+fn paint(road: &WrittenRoad, border: usize, layout: &BevLayout) -> Vec<(f64, &'static str)> {
     let extent = layout.extent();
     let look = |i: usize| -> &'static str {
         let base = road.reference.at(road.s_m[i]);
@@ -303,7 +303,7 @@ fn paint(road: &Road, border: usize, layout: &BevLayout) -> Vec<(f64, &'static s
     out
 }
 
-fn junction(out: &mut String, junction: &Junction) {
+fn junction(out: &mut String, junction: &WrittenJunction) {
     let _ = writeln!(
         out,
         "  <junction name=\"\" id=\"{}\" type=\"default\">",

@@ -32,13 +32,13 @@ pub(super) struct Zones {
 
 /// A stretch of a chain: `len` samples from `from` on, around the end of a ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Run {
+pub(super) struct ChainStretch {
     pub len: usize,
     pub chain: usize,
     pub from: usize,
 }
 
-impl Run {
+impl ChainStretch {
     /// The samples in order.
     pub fn samples(self, chain: &Chain) -> impl DoubleEndedIterator<Item = usize> + use<> {
         let n = chain.len();
@@ -179,12 +179,12 @@ impl Zones {
     }
 
     /// The free stretches of a chain, in order.
-    pub fn free(&self, chains: &[Chain], chain: usize) -> Vec<Run> {
+    pub fn free(&self, chains: &[Chain], chain: usize) -> Vec<ChainStretch> {
         runs(&chains[chain], chain, |k| self.label[chain][k] == FREE)
     }
 
     /// The samples before and behind a stretch; `None` at an end of the chain, and for a ring that is free all around.
-    pub fn beside(&self, chains: &[Chain], run: Run) -> (Option<usize>, Option<usize>) {
+    pub fn beside(&self, chains: &[Chain], run: ChainStretch) -> (Option<usize>, Option<usize>) {
         let chain = &chains[run.chain];
         if chain.closed && run.len == chain.len() {
             return (None, None);
@@ -195,14 +195,14 @@ impl Zones {
 }
 
 /// The stretches of a chain that hold a condition, in order; one that goes around the end of a ring is one.
-pub(super) fn runs(of: &Chain, chain: usize, holds: impl Fn(usize) -> bool) -> Vec<Run> {
+pub(super) fn runs(of: &Chain, chain: usize, holds: impl Fn(usize) -> bool) -> Vec<ChainStretch> {
     let n = of.len();
     // A ring is read from the first sample behind one that does not hold.
     let first = match of.closed {
         true => (0..n).find(|k| !holds((k + n - 1) % n)).unwrap_or(0),
         false => 0,
     };
-    let mut out: Vec<Run> = Vec::new();
+    let mut out: Vec<ChainStretch> = Vec::new();
     let mut open = false;
     for i in 0..n {
         let k = (first + i) % n;
@@ -212,7 +212,7 @@ pub(super) fn runs(of: &Chain, chain: usize, holds: impl Fn(usize) -> bool) -> V
         }
         match out.last_mut().filter(|_| open) {
             Some(run) => run.len += 1,
-            None => out.push(Run {
+            None => out.push(ChainStretch {
                 len: 1,
                 chain,
                 from: k,

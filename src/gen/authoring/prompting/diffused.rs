@@ -9,7 +9,7 @@ use place::lanes::LaneMap;
 use place::road;
 use place::rules::{Placement, broken, place_with};
 use place::to_graph::Graphed;
-use scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectState, SceneGraph};
+use scene::graph::{GraphEdge, LaneRole, Locked, NodeKind, ObjectState, SceneGraph};
 use scene::{BevLayout, SceneBox};
 
 /// Distance from the middle of its stated lane from which on a vehicle drives between two lanes, m.
@@ -86,16 +86,16 @@ pub(super) fn diffuse_and_mend(
 }
 
 /// Statements about things that found no place.
-fn left_out(graph: &SceneGraph, placement: &Placement) -> Vec<Edge> {
+fn left_out(graph: &SceneGraph, placement: &Placement) -> Vec<GraphEdge> {
     let out: BTreeSet<u32> = placement.left_out.iter().map(|l| l.0).collect();
-    let of = |e: &&Edge| out.contains(&e.from);
+    let of = |e: &&GraphEdge| out.contains(&e.from);
     graph.edges.iter().filter(of).copied().collect()
 }
 
 /// True for a vehicle whose lane was stated, that does not stand at the lane's edge and is not in its middle.
 fn is_between_lanes(graph: &SceneGraph, map: &LaneMap<'_>, id: u32, b: &SceneBox) -> bool {
     use LaneRole as L;
-    let lane = |e: &&Edge| {
+    let lane = |e: &&GraphEdge| {
         let to = graph.node(e.to).map(|n| &n.kind);
         e.from == id
             && matches!(

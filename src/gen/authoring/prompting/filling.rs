@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::How;
 use crate::memory::own_scenes;
 use graph_layout::facts::{self, RoadKind};
-use graph_layout::memory::{Entry, Memory, Open, RoadRef};
+use graph_layout::memory::{RememberedScene, RetrievalQuery, RoadRef, SceneMemory};
 use place::description::{Count, Description, Environment, ObjectSpec};
 use scene::graph::ObjectState;
 use scene::{BoxLabel, Class, TimeOfDay, Weather};
@@ -27,11 +27,11 @@ pub struct Remembered {
     pub road: bool,
     /// The nearest of the scenes as a whole.
     #[serde(skip)]
-    pub nearest: Option<Entry>,
+    pub nearest: Option<RememberedScene>,
 }
 
-pub(super) fn memory(how: &How) -> anyhow::Result<(Arc<Memory>, Vec<String>)> {
-    let bundled = Memory::bundled()?;
+pub(super) fn memory(how: &How) -> anyhow::Result<(Arc<SceneMemory>, Vec<String>)> {
+    let bundled = SceneMemory::bundled()?;
     let Some(folder) = &how.own_scenes else {
         return Ok((bundled, Vec::new()));
     };
@@ -41,7 +41,7 @@ pub(super) fn memory(how: &How) -> anyhow::Result<(Arc<Memory>, Vec<String>)> {
 
 /// Fills open parts of a description from the nearest scenes. Returns the road that they propose.
 pub(super) fn fill_in(
-    memory: &Memory,
+    memory: &SceneMemory,
     prompt: &str,
     d: &mut Description,
     seed: u64,
@@ -53,7 +53,7 @@ pub(super) fn fill_in(
     for class in d.absent.iter().flat_map(|a| &a.classes) {
         counts.entry(*class).or_insert(0);
     }
-    let open = Open {
+    let open = RetrievalQuery {
         text: prompt.to_string(),
         road: d.road.kind.and_then(|k| RoadKind::of_template(k.name())),
         environment: d.environment.map(environment),

@@ -8,7 +8,7 @@
 
 mod obelm;
 
-use super::schedule::Level;
+use super::schedule::NoiseLevel;
 use super::solver::{
     DdimStep, Denoiser, Sampler, SolverError, SolverKind, check_finite, check_length, standard_deviation,
 };
@@ -18,7 +18,7 @@ use numeric::philox::{Stream, normal_field};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
     /// Noise levels of the states; the last one is clean data.
-    pub levels: Vec<Level>,
+    pub levels: Vec<NoiseLevel>,
     /// One state per level, each as long as the latent.
     pub states: Vec<Vec<f64>>,
 }
@@ -26,9 +26,9 @@ pub struct Trajectory {
 impl Trajectory {
     /// A latent (`channels` numbers per cell, channel last) with one draw of noise, mixed at each level as in training. A
     /// network that denoises a part of it sees around that part what it saw in training.
-    pub fn noised(clean: &[f64], levels: &[Level], channels: usize, seed: u64) -> Self {
+    pub fn noised(clean: &[f64], levels: &[NoiseLevel], channels: usize, seed: u64) -> Self {
         let noise = normal_field(seed, Stream::Region, clean.len() / channels, channels);
-        let state = |level: &Level| {
+        let state = |level: &NoiseLevel| {
             let pairs = clean.iter().zip(&noise);
             pairs.map(|(x, e)| level.alpha * x + level.sigma * e).collect()
         };
@@ -383,7 +383,7 @@ mod tests {
         let report = |values: &[f64]| {
             let mut still = toy(|_, _| 0.0, |_, _| 0.0);
             let s = Sampler {
-                levels: vec![Level::CLEAN, Level::CLEAN],
+                levels: vec![NoiseLevel::CLEAN, NoiseLevel::CLEAN],
                 ..sampler(1, 1.0)
             };
             invert(&s, values, Refinement::NONE, &mut still, |_, _| Ok(()))

@@ -2,7 +2,7 @@
 //! arXiv 2202.00512.
 
 use super::Prediction;
-use crate::schedule::{Level, ScheduleError};
+use crate::schedule::{NoiseLevel, ScheduleError};
 
 /// One deterministic DDIM step as two numbers: `next = keep * x + push * prediction`.
 ///
@@ -18,7 +18,7 @@ pub struct DdimStep {
 
 impl DdimStep {
     /// The step between two levels, in either direction; `prediction` is made at level `from`.
-    pub fn new(prediction: Prediction, from: &Level, to: &Level) -> Result<Self, ScheduleError> {
+    pub fn new(prediction: Prediction, from: &NoiseLevel, to: &NoiseLevel) -> Result<Self, ScheduleError> {
         // Equal levels are an exact identity; the products below are so only up to rounding.
         if from.log_alpha_bar == to.log_alpha_bar {
             return Ok(Self { keep: 1.0, push: 0.0 });
@@ -79,7 +79,7 @@ impl DdimStep {
 }
 
 /// The clean data that a prediction implies.
-pub fn clean_estimate(prediction: Prediction, level: &Level, x: f64, predicted: f64) -> f64 {
+pub fn clean_estimate(prediction: Prediction, level: &NoiseLevel, x: f64, predicted: f64) -> f64 {
     match prediction {
         Prediction::Epsilon => (x - level.sigma * predicted) / level.alpha,
         Prediction::V => level.alpha * x - level.sigma * predicted,

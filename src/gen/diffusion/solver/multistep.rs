@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{DdimStep, Prediction, SolverError, clean_estimate};
-use crate::schedule::{Level, ScheduleError};
+use crate::schedule::{NoiseLevel, ScheduleError};
 
 /// How a prediction becomes the next state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -53,7 +53,7 @@ impl std::str::FromStr for SolverKind {
 const LARGEST_EXTRAPOLATION: f64 = 10.0;
 
 /// Half the log of the signal-to-noise ratio, log(alpha / sigma); infinite at the two ends.
-fn half_log_snr(level: &Level) -> f64 {
+fn half_log_snr(level: &NoiseLevel) -> f64 {
     0.5 * level.log_alpha_bar - level.sigma.ln()
 }
 
@@ -62,7 +62,7 @@ fn half_log_snr(level: &Level) -> f64 {
 pub struct Stepper<'a> {
     kind: SolverKind,
     prediction: Prediction,
-    levels: &'a [Level],
+    levels: &'a [NoiseLevel],
     /// Clean estimates of the last two levels, newest last.
     clean: Vec<Vec<f64>>,
     /// The state that the last step left from (UniPC: corrected).
@@ -72,7 +72,7 @@ pub struct Stepper<'a> {
 
 impl<'a> Stepper<'a> {
     /// For `levels` from noise to data.
-    pub fn new(kind: SolverKind, prediction: Prediction, levels: &'a [Level]) -> Self {
+    pub fn new(kind: SolverKind, prediction: Prediction, levels: &'a [NoiseLevel]) -> Self {
         Self {
             kind,
             prediction,
@@ -229,7 +229,7 @@ pub fn weights_of(h: f64) -> [f64; 2] {
 }
 
 /// The noise that a prediction implies.
-pub fn noise(prediction: Prediction, level: &Level, x: f64, predicted: f64) -> f64 {
+pub fn noise(prediction: Prediction, level: &NoiseLevel, x: f64, predicted: f64) -> f64 {
     match prediction {
         Prediction::Epsilon => predicted,
         Prediction::V => level.sigma * x + level.alpha * predicted,
@@ -248,7 +248,7 @@ pub struct ObelmStep {
 
 impl ObelmStep {
     /// For three levels that follow each other, noisiest first. Errors if two of them are equal.
-    pub fn new(levels: [&Level; 3]) -> Result<Self, ScheduleError> {
+    pub fn new(levels: [&NoiseLevel; 3]) -> Result<Self, ScheduleError> {
         if let Some(bare) = levels.iter().find(|l| l.alpha == 0.0) {
             return Err(ScheduleError::NoSignal { t: bare.t });
         }

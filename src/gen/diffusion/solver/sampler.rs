@@ -1,7 +1,7 @@
 //! A sampler: all of sampling but the network.
 
 use super::{DdimStep, Denoiser, Guidance, Prediction, SolverKind, Stepper, check_finite, clean_estimate};
-use crate::schedule::{Level, Schedule, ScheduleError, Spacing};
+use crate::schedule::{NoiseLevel, Schedule, ScheduleError, Spacing};
 
 /// Training steps that O-BELM uses: above, the signal (6 % here) is too weak to divide by.
 const OBELM_TRAIN_STEPS: usize = 960;
@@ -18,7 +18,7 @@ pub struct StepView<'a> {
     /// The prediction.
     pub predicted: &'a [f64],
     /// Level of `x` as the network was told.
-    pub level: Level,
+    pub level: NoiseLevel,
     /// State after the step.
     pub next: &'a [f64],
     prediction: Prediction,
@@ -29,7 +29,7 @@ impl<'a> StepView<'a> {
     pub fn new(
         (step, steps): (usize, usize),
         prediction: Prediction,
-        level: Level,
+        level: NoiseLevel,
         (x, predicted, next): (&'a [f64], &'a [f64], &'a [f64]),
     ) -> Self {
         Self {
@@ -58,7 +58,7 @@ pub struct Sampler {
     /// Method by which a prediction becomes the next state.
     pub solver: SolverKind,
     /// `steps + 1` levels, from noise to clean data.
-    pub levels: Vec<Level>,
+    pub levels: Vec<NoiseLevel>,
     /// Meaning of the network's output.
     pub prediction: Prediction,
     /// How its two branches are combined.

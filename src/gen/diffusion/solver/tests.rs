@@ -1,7 +1,7 @@
 //! Extremes of guidance, DDIM steps and models that misbehave.
 
 use super::*;
-use crate::schedule::{Betas, Level, Schedule, Spacing};
+use crate::schedule::{Betas, NoiseLevel, Schedule, Spacing};
 
 /// A closed-form model from two functions of one value and t; counts its calls.
 pub struct Toy<C, U> {
@@ -43,7 +43,7 @@ fn noise(n: usize) -> Vec<f64> {
 fn row_02_leaving_pure_noise() {
     let schedule = Schedule::standard();
     let end = schedule.level(999);
-    for to in [schedule.level(998), schedule.level(499), Level::CLEAN] {
+    for to in [schedule.level(998), schedule.level(499), NoiseLevel::CLEAN] {
         let step = DdimStep::new(Prediction::V, &end, &to).expect("v");
         for v in [-3.0, 0.0, 1e-30, 2.5] {
             let next = step.apply(0.7, v);
@@ -56,14 +56,14 @@ fn row_02_leaving_pure_noise() {
             assert!((next - direct).abs() <= 1e-15);
         }
     }
-    let error = DdimStep::new(Prediction::Epsilon, &end, &Level::CLEAN).expect_err("alpha is 0");
+    let error = DdimStep::new(Prediction::Epsilon, &end, &NoiseLevel::CLEAN).expect_err("alpha is 0");
     assert_eq!(
         error.to_string(),
         "noise prediction cannot leave t = 999, where alpha is 0; expected v prediction"
     );
     // Cosine without rescaling: alpha is tiny, noise prediction explodes but stays finite.
     let plain = Schedule::new(Betas::Cosine, 1000, false).expect("valid");
-    let step = DdimStep::new(Prediction::Epsilon, &plain.level(999), &Level::CLEAN).expect("alpha > 0");
+    let step = DdimStep::new(Prediction::Epsilon, &plain.level(999), &NoiseLevel::CLEAN).expect("alpha > 0");
     assert!(step.apply(1.0, -1.0).is_finite());
 }
 
@@ -97,7 +97,7 @@ fn row_07_first_order_on_gaussian_data() {
         (Betas::Cosine, true, Prediction::V),
     ] {
         let schedule = Schedule::new(betas, 1000, zero_snr).expect("valid");
-        let spread = |l: &Level| (l.alpha * l.alpha * s * s + l.sigma * l.sigma).sqrt();
+        let spread = |l: &NoiseLevel| (l.alpha * l.alpha * s * s + l.sigma * l.sigma).sqrt();
         let of_model = schedule.clone();
         let exact = move |x: f64, t: f64| {
             let l = of_model.level(t as usize);

@@ -18,7 +18,8 @@ use std::time::{Duration, Instant};
 use crate::close_holes::{close_holes, close_holes_of_edit, still_closed};
 use crate::composite::{composite, seam_change_share, untouched_hash, untouched_voxels_changed};
 use crate::contract::{
-    GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
+    ChosenDensities, GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode,
+    Stage,
 };
 use crate::inpaint::{self, InpaintMask};
 use crate::keep_clear::{keep_clear, keep_unobserved, observed_still};
@@ -27,7 +28,7 @@ use crate::keep_objects::{keep_ground, keep_objects};
 use crate::keep_unchanged::keep_unchanged;
 use crate::refine::decode_refined;
 use crate::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
-use crate::request::Request;
+use crate::request::VoxelRequest;
 use diffusion::inversion::Trajectory;
 use diffusion::replay::edit_with_replay;
 use diffusion::solver::Sampler;
@@ -36,12 +37,12 @@ use network::{Condition, Network};
 use new_ground::NewGround;
 use numeric::philox::{Stream, normal_field};
 use scene::{BevLayout, BoxId, Extent, Scene, SceneBox, VoxelGrid, Window};
-use source::{Source, stored_for};
-use standing::Standing;
+use source::{EditSource, stored_for};
+use standing::SceneryVoxels;
 use unfinished::Unfinished;
 
 pub use network::Ablation;
-pub use plan::{Bounds, Place, parts, windows_over};
+pub use plan::{Bounds, LatentWindow, parts, windows_over};
 pub use round_trip::RoundTrip;
 pub use window::is_idle;
 
@@ -77,11 +78,11 @@ impl Glimpses {
 #[derive(Clone)]
 pub struct OccPipeline {
     models: Arc<OccModels>,
-    sources: VecDeque<Source>,
+    sources: VecDeque<EditSource>,
     /// The last draft and its latent. The next draft mostly differs in a few columns, and only those are encoded again.
     draft: Option<(VoxelGrid, Vec<f32>)>,
     /// The voxels beside the road in the last job.
-    standing: Option<Standing>,
+    standing: Option<SceneryVoxels>,
     /// Part of the condition that is hidden from the network, to measure its value.
     ablation: Option<Ablation>,
     /// Finished parts of a whole map whose generation was stopped.
@@ -120,7 +121,7 @@ impl OccPipeline {
     /// values of all other tokens are in memory from the source; `None` if all tokens must be computed.
     fn local_tokens(
         &self,
-        source: &Source,
+        source: &EditSource,
         sampler: &Sampler,
         cells: &[bool],
         params: &GenParams,
@@ -158,9 +159,9 @@ impl OccPipeline {
         scene: &Scene,
         layout: &BevLayout,
         boxes: &BTreeMap<BoxId, SceneBox>,
-        named: Named,
+        named: ChosenDensities,
     ) -> Condition {
-        self.standing = Standing::of(scene, layout, self.standing.as_ref());
+        self.standing = SceneryVoxels::of(scene, layout, self.standing.as_ref());
         Condition::new(layout, boxes, self.standing.as_ref(), named, self.ablation)
     }
 
@@ -290,7 +291,7 @@ impl OccPipeline {
                 frame,
                 &region,
                 true,
-                &Request::of(frame),
+                &VoxelRequest::of(frame),
                 &mut generated,
             ));
         }
@@ -433,7 +434,7 @@ impl OccPipeline {
         drop(network);
         report.network_calls += edited.calls;
         ctx.progress(Stage::Decode, 0, 1)?;
-        let request = Request::of(frame);
+        let request = VoxelRequest::of(frame);
         let observed = observed_still(frame, inpainted, &request);
         let mut generated = report.timed(Stage::Decode, |report| {
             let refine = (params.fine_steps, params.seed);

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::standing::Standing;
-use crate::contract::{GenError, Named};
+use super::standing::SceneryVoxels;
+use crate::contract::{ChosenDensities, GenError};
 use diffusion::solver::{Branch, Denoiser};
-use nets::{ColumnHeights, DecoderInput, KeysValues, Middle, OccModels, Prepared, column_heights};
+use nets::{BlockReuse, ColumnHeights, DecoderInput, KeysValues, OccModels, Prepared, column_heights};
 use nn::Precision;
 use scene::{BevLayout, BoxId, Density, Extent, Frame, SceneBox, VoxelGrid, draft, raster};
 
@@ -33,7 +33,7 @@ pub struct Condition {
     /// Headings of objects.
     pub heading: Vec<u8>,
     /// Densities and completeness that the user chose.
-    pub named: Named,
+    pub named: ChosenDensities,
     /// The layout extruded naively, with the background if it is given.
     pub draft: VoxelGrid,
     /// True if the background is given.
@@ -49,8 +49,8 @@ impl Condition {
     pub fn new(
         layout: &BevLayout,
         boxes: &BTreeMap<BoxId, SceneBox>,
-        standing: Option<&Standing>,
-        named: Named,
+        standing: Option<&SceneryVoxels>,
+        named: ChosenDensities,
         ablation: Option<Ablation>,
     ) -> Self {
         let (empty, none) = (BevLayout::default(), BTreeMap::new());
@@ -126,18 +126,23 @@ impl Denoiser for Network {
         let (dit, step) = (&self.models.dit, t as f32);
         let mut fresh = KeysValues::default();
         let v = match (branch, &self.without) {
-            (Branch::Unconditional, Some(without)) => {
-                dit.forward_in(&x, step, without, &mut fresh, self.precision, Middle::Computed)
-            }
+            (Branch::Unconditional, Some(without)) => dit.forward_in(
+                &x,
+                step,
+                without,
+                &mut fresh,
+                self.precision,
+                BlockReuse::Computed,
+            ),
             _ => {
                 let kept = match &mut self.keys_values {
                     Some(kept) => kept.entry(t.to_bits()).or_default(),
                     None => &mut fresh,
                 };
                 let middle = match self.reuse_steps {
-                    0 | 1 => Middle::Computed,
-                    n if self.predictions.is_multiple_of(n) => Middle::Kept(&mut self.added),
-                    _ => Middle::Reused(&self.added),
+                    0 | 1 => BlockReuse::Computed,
+                    n if self.predictions.is_multiple_of(n) => BlockReuse::Kept(&mut self.added),
+                    _ => BlockReuse::Reused(&self.added),
                 };
                 self.predictions += 1;
                 dit.forward_in(&x, step, &self.condition, kept, self.precision, middle)

@@ -1,6 +1,6 @@
 //! Ground that is new to a map. It has no source to invert: it is drawn from noise to suit the map around it.
 
-use crate::contract::{GenParams, Named};
+use crate::contract::{ChosenDensities, GenParams};
 use crate::region::{COLUMNS_PER_CELL, Region};
 use scene::{Class, Density, Extent, Frame, Window};
 
@@ -77,16 +77,16 @@ impl<'a> NewGround<'a> {
 
     /// Densities that an edit keeps unless the user chooses others: those of the known columns. New ground is generated
     /// like the rest, and completely if there is no rest.
-    pub(super) fn density(&self) -> Named {
+    pub(super) fn density(&self) -> ChosenDensities {
         if !self.known.contains(&true) {
-            return Named {
+            return ChosenDensities {
                 completeness: Some(1.0),
-                ..Named::default()
+                ..ChosenDensities::default()
             };
         }
         let source = &self.frame.source;
         let known = |x: usize, y: usize| self.known[x * Window::NY + y];
-        Named::default().or(&Density::of_columns(
+        ChosenDensities::default().or(&Density::of_columns(
             &source.occupancy,
             source.layout.cells(),
             known,

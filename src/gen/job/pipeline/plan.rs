@@ -9,7 +9,7 @@ use std::ops::Range;
 use crate::contract::{GenParams, RegionMode};
 use crate::inpaint::{InpaintMask, wanted_columns};
 use crate::region::{CELLS_PER_SIDE, COLUMNS_PER_CELL};
-use scene::moved::Columns;
+use scene::moved::ColumnShift;
 use scene::{Extent, Frame, SceneBox};
 use world::draw::hash;
 
@@ -25,12 +25,12 @@ const SEAM: i32 = 4;
 
 /// A window, given by its lowest latent cell, counted from that of the window at the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place(pub [i32; 2]);
+pub struct LatentWindow(pub [i32; 2]);
 
-impl Place {
+impl LatentWindow {
     /// The shift that brings the window to the origin.
-    pub fn to_window(self) -> Columns {
-        Columns(self.0.map(|n| -n * COLUMNS_PER_CELL as i32))
+    pub fn to_window(self) -> ColumnShift {
+        ColumnShift(self.0.map(|n| -n * COLUMNS_PER_CELL as i32))
     }
 
     /// The part of the ground that it covers.
@@ -49,49 +49,49 @@ impl Place {
 }
 
 /// A rectangle of latent cells of the ground, along x and y.
-pub type Cells = [Range<i32>; 2];
+pub type CellRectangle = [Range<i32>; 2];
 
 /// Task of a part.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Task {
+pub enum CallTask {
     /// The cells edited or marked there that were not generated in an earlier window.
     Edit,
     /// The whole window, of which these cells are taken over.
-    Whole(Cells),
+    Whole(CellRectangle),
     /// These cells once more: a border between owners.
-    Seam(Cells),
+    Seam(CellRectangle),
 }
 
 /// One call of the networks.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Part {
+pub struct NetworkCall {
     /// Window of the call.
-    pub place: Place,
+    pub place: LatentWindow,
     /// Its task.
-    pub task: Task,
+    pub task: CallTask,
 }
 
-impl Part {
+impl NetworkCall {
     /// True if the part generates cells of a seam on which a box stands. The box is given in the frame of `window`, and
     /// only cells in that window count.
-    pub fn seam_touches(&self, window: Place, b: &SceneBox) -> bool {
+    pub fn seam_touches(&self, window: LatentWindow, b: &SceneBox) -> bool {
         match &self.task {
-            Task::Seam(cells) => InpaintMask::of_cells(cells).from_cell(window.0).touches(b),
-            Task::Edit | Task::Whole(_) => false,
+            CallTask::Seam(cells) => InpaintMask::of_cells(cells).from_cell(window.0).touches(b),
+            CallTask::Edit | CallTask::Whole(_) => false,
         }
     }
 }
 
 /// The rounds of a job on a map, one after another. The parts of a round see the map as it was before the round.
-pub fn plan(frame: &Frame, params: &GenParams) -> Vec<Vec<Part>> {
+pub fn plan(frame: &Frame, params: &GenParams) -> Vec<Vec<NetworkCall>> {
     match params.region {
         RegionMode::Auto => {
             let wanted = cells_of(frame.extent(), &wanted_columns(frame, params));
-            let places: BTreeSet<Place> = connected(&wanted).iter().flat_map(places_of).collect();
+            let places: BTreeSet<LatentWindow> = connected(&wanted).iter().flat_map(places_of).collect();
             let round = |place| {
-                vec![Part {
+                vec![NetworkCall {
                     place,
-                    task: Task::Edit,
+                    task: CallTask::Edit,
                 }]
             };
             places.into_iter().map(round).collect()
@@ -151,12 +151,12 @@ fn connected(mask: &InpaintMask) -> Vec<BTreeSet<[i32; 2]>> {
 
 /// The windows for a piece: the one at the origin if it holds the piece, else the one with the nearest middle, or as
 /// many as the piece needs.
-fn places_of(piece: &BTreeSet<[i32; 2]>) -> Vec<Place> {
+fn places_of(piece: &BTreeSet<[i32; 2]>) -> Vec<LatentWindow> {
     let bounds = [0, 1].map(|axis| {
         let along = || piece.iter().map(|cell| cell[axis]);
         [along().min().unwrap_or(0), along().max().unwrap_or(0)]
     });
-    let holds = |place: &Place| {
+    let holds = |place: &LatentWindow| {
         (0..2).all(|axis| {
             let [low, high] = bounds[axis].map(|c| c - place.0[axis]);
             low >= MARGIN && high < SIDE - MARGIN
@@ -167,13 +167,13 @@ fn places_of(piece: &BTreeSet<[i32; 2]>) -> Vec<Place> {
         let first = (low + high + 1 - SIDE).div_euclid(2);
         (first + STRIDE / 2).div_euclid(STRIDE) * STRIDE
     };
-    let best = Place(bounds.map(|[low, high]| nearest(low, high)));
-    if let Some(place) = [Place([0, 0]), best].into_iter().find(holds) {
+    let best = LatentWindow(bounds.map(|[low, high]| nearest(low, high)));
+    if let Some(place) = [LatentWindow([0, 0]), best].into_iter().find(holds) {
         return vec![place];
     }
     // A large piece: each cell goes to the window whose middle is nearest.
-    let own = |cell: &[i32; 2]| Place(cell.map(|c| nearest(c, c)));
-    let places: BTreeSet<Place> = piece.iter().map(own).collect();
+    let own = |cell: &[i32; 2]| LatentWindow(cell.map(|c| nearest(c, c)));
+    let places: BTreeSet<LatentWindow> = piece.iter().map(own).collect();
     places.into_iter().collect()
 }
 
@@ -201,19 +201,19 @@ fn along(map: Extent, axis: usize) -> Vec<(i32, Range<i32>)> {
 }
 
 /// Windows that cover a map, and the part of the map that each owns: no column is owned twice.
-pub fn windows_over(map: Extent) -> Vec<(Place, Extent)> {
+pub fn windows_over(map: Extent) -> Vec<(LatentWindow, Extent)> {
     let [x, y] = [along(map, 0), along(map, 1)];
     let mut out = Vec::new();
     for (i, own_x) in &x {
         for (j, own_y) in &y {
-            out.push((Place([*i, *j]), extent_of(&[own_x.clone(), own_y.clone()])));
+            out.push((LatentWindow([*i, *j]), extent_of(&[own_x.clone(), own_y.clone()])));
         }
     }
     out
 }
 
 /// The extent of a rectangle of cells, which has at least one cell.
-pub fn extent_of(cells: &Cells) -> Extent {
+pub fn extent_of(cells: &CellRectangle) -> Extent {
     let cell = COLUMNS_PER_CELL as i32;
     let from = [0, 1].map(|axis| Extent::WINDOW.from()[axis] + cells[axis].start * cell);
     let size = [0, 1].map(|axis| (cells[axis].len() * COLUMNS_PER_CELL).max(1));
@@ -221,7 +221,7 @@ pub fn extent_of(cells: &Cells) -> Extent {
 }
 
 /// A whole map: every window, then the strips along y where owners meet, those along x, and the corners.
-fn whole(map: Extent) -> Vec<Vec<Part>> {
+fn whole(map: Extent) -> Vec<Vec<NetworkCall>> {
     let own = [along(map, 0), along(map, 1)];
     // Strips around the borders between owners, in windows that lie on the map if it is long enough.
     let meets = [0, 1].map(|axis| -> Vec<(i32, Range<i32>)> {
@@ -230,12 +230,12 @@ fn whole(map: Extent) -> Vec<Vec<Part>> {
         let window = |at: i32| (at - SIDE / 2).min(end - SIDE).max(first);
         borders.map(|at| (window(at), at - SEAM..at + SEAM)).collect()
     });
-    let round = |x: &[(i32, Range<i32>)], y: &[(i32, Range<i32>)], task: fn(Cells) -> Task| {
+    let round = |x: &[(i32, Range<i32>)], y: &[(i32, Range<i32>)], task: fn(CellRectangle) -> CallTask| {
         let mut parts = Vec::new();
         for (i, cells_x) in x {
             for (j, cells_y) in y {
-                parts.push(Part {
-                    place: Place([*i, *j]),
+                parts.push(NetworkCall {
+                    place: LatentWindow([*i, *j]),
                     task: task([cells_x.clone(), cells_y.clone()]),
                 });
             }
@@ -243,10 +243,10 @@ fn whole(map: Extent) -> Vec<Vec<Part>> {
         parts
     };
     let rounds = [
-        round(&own[0], &own[1], Task::Whole),
-        round(&meets[0], &own[1], Task::Seam),
-        round(&own[0], &meets[1], Task::Seam),
-        round(&meets[0], &meets[1], Task::Seam),
+        round(&own[0], &own[1], CallTask::Whole),
+        round(&meets[0], &own[1], CallTask::Seam),
+        round(&own[0], &meets[1], CallTask::Seam),
+        round(&meets[0], &meets[1], CallTask::Seam),
     ];
     rounds.into_iter().filter(|parts| !parts.is_empty()).collect()
 }
@@ -262,9 +262,9 @@ mod tests {
     #[test]
     fn an_edit_is_generated_where_it_has_surroundings() {
         // Well within the window at the origin.
-        assert_eq!(places_of(&piece(5..9, 40..44)), [Place([0, 0])]);
+        assert_eq!(places_of(&piece(5..9, 40..44)), [LatentWindow([0, 0])]);
         // At its border: half a window on.
-        assert_eq!(places_of(&piece(47..50, 20..23)), [Place([STRIDE, 0])]);
+        assert_eq!(places_of(&piece(47..50, 20..23)), [LatentWindow([STRIDE, 0])]);
         for at in -700..700 {
             let small = piece(at..at + 12, 3 - at..9 - at);
             let places = places_of(&small);
@@ -279,7 +279,7 @@ mod tests {
         let places = places_of(&road);
         assert!((4..=6).contains(&places.len()), "{places:?}");
         for cell in &road {
-            let holds = |p: &Place| (0..2).all(|a| (0..SIDE).contains(&(cell[a] - p.0[a])));
+            let holds = |p: &LatentWindow| (0..2).all(|a| (0..SIDE).contains(&(cell[a] - p.0[a])));
             assert!(places.iter().any(holds));
         }
     }
@@ -306,7 +306,7 @@ mod tests {
         let alone = whole(Extent::WINDOW);
         assert_eq!(
             (alone.len(), alone[0].len(), alone[0][0].place),
-            (1, 1, Place([0, 0]))
+            (1, 1, LatentWindow([0, 0]))
         );
         for (from, size, rounds) in [
             ([-100, -130], [700, 260], vec![4 * 2, 3 * 2, 4, 3]),
@@ -329,7 +329,7 @@ mod tests {
             }
             // What is done in a window lies in it, and where the map is long enough the window lies on the map.
             for part in found.iter().flatten() {
-                let (Task::Whole(cells) | Task::Seam(cells)) = &part.task else {
+                let (CallTask::Whole(cells) | CallTask::Seam(cells)) = &part.task else {
                     panic!("an edit")
                 };
                 for axis in 0..2 {
@@ -347,12 +347,12 @@ mod tests {
 
     #[test]
     fn places_move_windows_by_whole_cells_and_have_their_own_seeds() {
-        let place = Place([75, -50]);
+        let place = LatentWindow([75, -50]);
         assert_eq!(place.extent().from(), [-100 + 300, -100 - 200]);
         assert_eq!(place.to_window().extent(place.extent()), Extent::WINDOW);
-        assert_eq!(Place([0, 0]).seed(7), 7);
+        assert_eq!(LatentWindow([0, 0]).seed(7), 7);
         let seeds: BTreeSet<u64> = (-9..9)
-            .flat_map(|i| (-9..9).map(move |j| Place([i, j]).seed(7)))
+            .flat_map(|i| (-9..9).map(move |j| LatentWindow([i, j]).seed(7)))
             .collect();
         assert_eq!(seeds.len(), 18 * 18);
     }

@@ -1,7 +1,7 @@
 //! Measures how well a source is restored when it is inverted and sampled again.
 
 use super::OccPipeline;
-use crate::contract::{GenError, GenParams, GenReport, Job, JobCtx, Named, Stage};
+use crate::contract::{ChosenDensities, GenError, GenParams, GenReport, Job, JobCtx, Stage};
 use crate::region::Region;
 use diffusion::inversion::{Refinement, invert, round_trip_error};
 use diffusion::solver::{Guidance, Sampler};
@@ -21,7 +21,7 @@ impl OccPipeline {
     /// The occupancy of a scene's frame, encoded and decoded by the VAE; the decoder gets the frame's draft and masks.
     pub fn reconstruct(&mut self, scene: &Scene) -> Result<VoxelGrid, GenError> {
         let frame = scene.frame();
-        let condition = self.condition(scene, &frame.layout, &frame.boxes, Named::default());
+        let condition = self.condition(scene, &frame.layout, &frame.boxes, ChosenDensities::default());
         let observed = frame.inferred.unobserved.as_ref().map(Unobserved::observed);
         let input = DecoderInput {
             observed: observed.as_deref(),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::network::{Condition, Network, StepKeysValues, density_of_source};
 use super::{CHANNELS, OccPipeline};
 use crate::composite::label_hash;
-use crate::contract::{GenError, GenParams, GenReport, JobCtx, Named, Stage};
+use crate::contract::{ChosenDensities, GenError, GenParams, GenReport, JobCtx, Stage};
 use crate::region::CELLS;
 use diffusion::inversion::{InversionReport, Refinement, Trajectory, invert};
 use diffusion::solver::{Guidance, Sampler, SolverKind};
@@ -38,7 +38,7 @@ pub(super) struct SourceKey {
 }
 
 #[derive(Clone)]
-pub(super) struct Source {
+pub(super) struct EditSource {
     pub(super) key: SourceKey,
     /// The solver for edits of it: O-BELM can only continue what it inverted itself.
     pub(super) solver: SolverKind,
@@ -78,16 +78,16 @@ impl OccPipeline {
     /// The condition that a frame's source is generated from.
     pub(super) fn condition_of_source(&mut self, scene: &Scene) -> Condition {
         let frame = scene.frame();
-        let named = Named::default().or(&density_of_source(frame));
+        let named = ChosenDensities::default().or(&density_of_source(frame));
         self.condition(scene, &frame.source.layout, &frame.source.boxes, named)
     }
 
-    pub(super) fn remember(&mut self, source: Source) {
+    pub(super) fn remember(&mut self, source: EditSource) {
         self.sources.retain(|s| s.key != source.key);
         self.sources.push_front(source);
         self.sources.truncate(KEPT_TRAJECTORIES);
         let mut bytes = 0;
-        let held = |s: &Source| s.trajectory.states.len() * CELLS * CHANNELS * size_of::<f64>();
+        let held = |s: &EditSource| s.trajectory.states.len() * CELLS * CHANNELS * size_of::<f64>();
         let mut trajectory_bytes = 0;
         let fit = self.sources.iter().take_while(|s| {
             trajectory_bytes += held(s);
@@ -112,7 +112,7 @@ impl OccPipeline {
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
-    ) -> Result<Source, GenError> {
+    ) -> Result<EditSource, GenError> {
         let old = &*scene.frame().source;
         let key = self.key(&old.occupancy, condition, params);
         if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
@@ -151,7 +151,7 @@ impl OccPipeline {
         let keys_values = network.keys_values.take().map(Arc::new);
         drop(network);
         report.network_calls += report.inversion_calls;
-        let source = Source {
+        let source = EditSource {
             key,
             solver,
             trajectory: Arc::new(trajectory),
@@ -170,7 +170,7 @@ impl OccPipeline {
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
-    ) -> Result<(Sampler, Source), GenError> {
+    ) -> Result<(Sampler, EditSource), GenError> {
         let source = self.source(scene, condition, params, report, ctx)?;
         if let Some(inversion) = &source.report {
             report.noise_std = Some(inversion.std);
@@ -195,7 +195,7 @@ impl OccPipeline {
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
-    ) -> Result<(Sampler, Source), GenError> {
+    ) -> Result<(Sampler, EditSource), GenError> {
         let key = self.key(&scene.frame().source.occupancy, condition, params);
         let clean: Vec<f64> = match self.sources.iter().find(|s| s.key == key) {
             Some(known) => known.trajectory.latent().to_vec(),
@@ -218,7 +218,7 @@ impl OccPipeline {
         let steps = (params.strength * f64::from(params.steps)).round().max(1.0) as usize;
         sampler.levels.drain(..sampler.steps() - steps);
         let trajectory = Trajectory::noised(&clean, &sampler.levels, CHANNELS, params.seed);
-        let source = Source {
+        let source = EditSource {
             key,
             solver,
             trajectory: Arc::new(trajectory),
@@ -254,7 +254,7 @@ impl OccPipeline {
         keys_values: Option<StepKeysValues>,
     ) {
         let key = self.key(occupancy, condition, params);
-        self.remember(Source {
+        self.remember(EditSource {
             key,
             solver,
             trajectory: Arc::new(trajectory),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::region::Region;
-use scene::background::Columns;
+use scene::background::ColumnLabels;
 use scene::{Background, BevLayout, Class, Extent, Relief, Scene, VoxelGrid, Window};
 
 /// Number of things of a scene whose background describes the places beside its roads, so that the networks invent
@@ -46,13 +46,13 @@ fn stand_in_column(labels: &[u8; Window::NZ], column: &mut [u8; Window::NZ]) {
 
 /// The voxels of a frame's background, kept from one job to the next, since most edits leave it unchanged.
 #[derive(Clone)]
-pub struct Standing {
+pub struct SceneryVoxels {
     background: Arc<Background>,
     relief: Relief,
-    columns: Arc<Columns>,
+    columns: Arc<ColumnLabels>,
 }
 
-impl Standing {
+impl SceneryVoxels {
     /// The background of a scene's frame on the ground of `layout`; reuses `last` if nothing changed. `None` if none of
     /// its things describes the kind of place (a sign alone does not stop invention), or if it was inferred from
     /// voxels, which misses many things.
@@ -63,7 +63,7 @@ impl Standing {
         if let Some(last) = last.filter(same) {
             return Some(last.clone());
         }
-        let mut columns = Columns::new();
+        let mut columns = ColumnLabels::new();
         for thing in scene.background.in_extent(Extent::WINDOW) {
             for (at, labels) in thing.columns(layout) {
                 let all = columns.entry(at).or_insert([Class::FREE; Window::NZ]);
@@ -108,7 +108,7 @@ mod tests {
         for seed in [3, 8] {
             let scene = scene(seed);
             let frame = scene.frame();
-            let standing = Standing::of(&scene, &frame.layout, None).expect("a background");
+            let standing = SceneryVoxels::of(&scene, &frame.layout, None).expect("a background");
             let bare = draft::draft(&frame.layout, frame.boxes.values());
             let mut full = bare.clone();
             standing.stand_in(&mut full);
@@ -133,23 +133,23 @@ mod tests {
     fn what_is_not_known_is_not_given() {
         let mut scene = scene(5);
         let layout = scene.frame().layout.clone();
-        let first = Standing::of(&scene, &layout, None).expect("a background");
-        let again = Standing::of(&scene, &layout, Some(&first)).expect("a background");
+        let first = SceneryVoxels::of(&scene, &layout, None).expect("a background");
+        let again = SceneryVoxels::of(&scene, &layout, Some(&first)).expect("a background");
         assert!(
             Arc::ptr_eq(&first.columns, &again.columns),
             "kept from job to job"
         );
         let mut guessed = scene.clone();
         guessed.change_canvas(|f| f.inferred.background = true);
-        assert!(Standing::of(&guessed, &layout, Some(&first)).is_none());
+        assert!(SceneryVoxels::of(&guessed, &layout, Some(&first)).is_none());
         let mut fewer = (*scene.background).clone();
         let id = fewer.iter().next().expect("a thing").id;
         fewer.remove(id);
         scene.background = Arc::new(fewer);
-        let other = Standing::of(&scene, &layout, Some(&first)).expect("a background");
+        let other = SceneryVoxels::of(&scene, &layout, Some(&first)).expect("a background");
         assert_ne!(first.columns, other.columns);
         scene.background = Arc::default();
-        assert!(Standing::of(&scene, &layout, None).is_none());
+        assert!(SceneryVoxels::of(&scene, &layout, None).is_none());
         assert_eq!(given(&scene), None);
     }
 
@@ -166,7 +166,7 @@ mod tests {
         sign.add(Form::Post(Post::typical(PostKind::Sign, at, 0.0)));
         let columns = sign.iter().next().expect("a sign").columns(&layout);
         scene.background = Arc::new(sign);
-        assert!(Standing::of(&scene, &layout, None).is_none() && given(&scene).is_none());
+        assert!(SceneryVoxels::of(&scene, &layout, None).is_none() && given(&scene).is_none());
         let mut generated = VoxelGrid::new();
         keep_loose_things(&scene, &Region::empty(), &mut generated);
         assert_eq!(generated.count_set(), 0, "outside of the region nothing changes");

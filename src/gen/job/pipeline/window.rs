@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::plan::{Part, Place, Task, extent_of, plan};
+use super::plan::{CallTask, LatentWindow, NetworkCall, extent_of, plan};
 use super::unfinished::Unfinished;
 use crate::contract::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, JobUpdate, RegionMode};
 use crate::inpaint::{self, InpaintMask};
@@ -16,7 +16,7 @@ use scene::{BevLayout, Extent, Frame, Scene, SceneBox, VoxelGrid};
 /// The window at the origin of a job's scene, as a job; `None` if the frame is that window.
 pub(super) fn at_origin(job: &Job) -> Option<Job> {
     (job.scene.frame().extent() != Extent::WINDOW).then(|| Job {
-        scene: Arc::new(job.scene.window_at(Place([0, 0]).to_window())),
+        scene: Arc::new(job.scene.window_at(LatentWindow([0, 0]).to_window())),
         params: job.params.clone(),
     })
 }
@@ -70,7 +70,7 @@ pub(super) fn over_the_map(
     if job.scene.frame().extent() == Extent::WINDOW {
         return run(job, ctx);
     }
-    let mut map = Map {
+    let mut map = GeneratedMap {
         scene: Scene::clone(&job.scene),
         params: job.params.clone(),
     };
@@ -152,16 +152,16 @@ struct Cut {
 }
 
 /// A map that is being generated.
-struct Map {
+struct GeneratedMap {
     /// The scene as generated so far.
     scene: Scene,
     /// The job's parameters; cells to inpaint are removed once they are done.
     params: GenParams,
 }
 
-impl Map {
+impl GeneratedMap {
     /// Cuts a part of a round out of the map as it was before the round; `None` if nothing is left to do there.
-    fn cut(&self, before: &Scene, round: &[Part], part: &Part) -> Option<Cut> {
+    fn cut(&self, before: &Scene, round: &[NetworkCall], part: &NetworkCall) -> Option<Cut> {
         let mut scene = window(before, part.place);
         let mut params = GenParams {
             seed: part.place.seed(self.params.seed),
@@ -170,14 +170,14 @@ impl Map {
         };
         let mut columns = None;
         match &part.task {
-            Task::Whole(_) => {}
-            Task::Edit => {
+            CallTask::Whole(_) => {}
+            CallTask::Edit => {
                 params.inpaint = self.params.inpaint.from_cell(part.place.0);
                 if inpaint::region_of(scene.frame(), &params).is_empty() {
                     return None;
                 }
             }
-            Task::Seam(cells) => {
+            CallTask::Seam(cells) => {
                 let cells = InpaintMask::of_cells(cells).from_cell(part.place.0);
                 params.region = RegionMode::Auto;
                 params.strength = 1.0;
@@ -222,11 +222,11 @@ impl Map {
     }
 
     /// The map's voxels with a result put in its place.
-    fn with(&self, part: &Part, cut: &Cut, result: &GenResult) -> VoxelGrid {
+    fn with(&self, part: &NetworkCall, cut: &Cut, result: &GenResult) -> VoxelGrid {
         let mut occupancy = self.scene.frame().occupancy.clone();
         let made = part.place.to_window().back().grid(&result.occupancy);
         match (&part.task, &cut.columns) {
-            (Task::Whole(cells), _) => occupancy.paste(&made.crop(extent_of(cells))),
+            (CallTask::Whole(cells), _) => occupancy.paste(&made.crop(extent_of(cells))),
             (_, None) => occupancy.paste(&made),
             (_, Some(columns)) => {
                 let taken = Extent::WINDOW
@@ -245,15 +245,21 @@ impl Map {
     }
 
     /// Records the closed holes of a result on the map, and forgets earlier ones in columns that it redraws.
-    fn note_holes(&self, part: &Part, cut: &Cut, result: &GenResult, holes: &mut BTreeSet<[usize; 3]>) {
+    fn note_holes(
+        &self,
+        part: &NetworkCall,
+        cut: &Cut,
+        result: &GenResult,
+        holes: &mut BTreeSet<[usize; 3]>,
+    ) {
         let (window, map) = (part.place.extent(), self.scene.frame().extent());
         let on_map = |x: usize, y: usize| {
             let p = window.center(x, y, 0);
             map.column_at(p.x, p.y)
         };
         let own = match &part.task {
-            Task::Whole(cells) => Some(extent_of(cells)),
-            Task::Edit | Task::Seam(_) => None,
+            CallTask::Whole(cells) => Some(extent_of(cells)),
+            CallTask::Edit | CallTask::Seam(_) => None,
         };
         let taken = |x: usize, y: usize| {
             let p = window.center(x, y, 0);
@@ -276,24 +282,24 @@ impl Map {
     }
 
     /// Takes over a result.
-    fn take(&mut self, part: &Part, cut: &Cut, result: &GenResult) {
+    fn take(&mut self, part: &NetworkCall, cut: &Cut, result: &GenResult) {
         let occupancy = self.with(part, cut, result);
         let settled = match &part.task {
-            Task::Whole(cells) => extent_of(cells),
-            Task::Edit | Task::Seam(_) => part.place.extent(),
+            CallTask::Whole(cells) => extent_of(cells),
+            CallTask::Edit | CallTask::Seam(_) => part.place.extent(),
         };
         self.scene.change_canvas(|frame| {
             frame.occupancy = occupancy;
             frame.settle_within(settled);
         });
-        if part.task == Task::Edit {
+        if part.task == CallTask::Edit {
             self.params.inpaint = self.params.inpaint.without(part.place.0, CELLS_PER_SIDE as i32);
         }
     }
 }
 
 /// The content of a window of a scene. Roads are continued beyond the border of the map, as in the training data.
-fn window(scene: &Scene, place: Place) -> Scene {
+fn window(scene: &Scene, place: LatentWindow) -> Scene {
     let (to_window, extent, map) = (place.to_window(), place.extent(), scene.frame());
     let mut scene = scene.window_at(to_window);
     let shared = map.extent().overlap(&extent);
@@ -564,7 +570,7 @@ mod tests {
             scene.change_canvas(|f| {
                 f.boxes.insert(BoxId(3), car(3, 6.0, 19.0));
             });
-            let mut map = Map {
+            let mut map = GeneratedMap {
                 params: params.clone(),
                 scene,
             };

@@ -24,7 +24,7 @@ use world::draw::Draw;
 const AT_MOST: Duration = Duration::from_secs(28);
 
 /// Kinds of measurement.
-pub enum Task {
+pub enum MeasurementTask {
     /// Times of all presets.
     Calibrate(Presets),
     /// Error of a result.
@@ -45,7 +45,7 @@ pub struct Refine {
 
 /// Messages from the thread.
 #[derive(Clone, Debug)]
-pub enum News {
+pub enum CalibrationEvent {
     /// Parts done, and all parts.
     Progress(usize, usize),
     /// Presets with this machine's times. True if the results are bit by bit those whose errors are known.
@@ -58,42 +58,42 @@ pub enum News {
 
 /// A running task. Dropping it stops the thread soon.
 pub struct Measurement {
-    news: Receiver<News>,
+    news: Receiver<CalibrationEvent>,
     stop: Arc<AtomicBool>,
 }
 
 impl Measurement {
     /// Starts the thread; `wake` is called after each piece of news. Errors if the system gives no thread.
-    pub fn start(task: Task, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
+    pub fn start(task: MeasurementTask, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
         let (out, news) = unbounded();
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = stop.clone();
         let wake = Arc::new(wake);
         let (out_last, wake_last) = (out.clone(), wake.clone());
         let measure = move || {
-            let told = Told { out, wake: &*wake };
+            let told = CalibrationSender { out, wake: &*wake };
             let should_stop = || stopped.load(Ordering::Relaxed);
             match task {
-                Task::Calibrate(presets) => calibrate(presets, &should_stop, &told),
-                Task::Refine(refine) => refined(&refine, &should_stop, &told),
+                MeasurementTask::Calibrate(presets) => calibrate(presets, &should_stop, &told),
+                MeasurementTask::Refine(refine) => refined(&refine, &should_stop, &told),
             }
         };
         job::guard::spawn("measure", measure, move |answer| {
-            let told = Told {
+            let told = CalibrationSender {
                 out: out_last,
                 wake: &*wake_last,
             };
             match answer.unwrap_or_else(|panic| Err(GenError::failed(panic))) {
                 Ok(news) => told.say(news),
                 Err(GenError::Superseded) => {}
-                Err(error) => told.say(News::Failed(error.to_string())),
+                Err(error) => told.say(CalibrationEvent::Failed(error.to_string())),
             }
         })?;
         Ok(Self { news, stop })
     }
 
     /// The next piece of news.
-    pub fn next(&self) -> Option<News> {
+    pub fn next(&self) -> Option<CalibrationEvent> {
         self.news.try_recv().ok()
     }
 }
@@ -104,13 +104,13 @@ impl Drop for Measurement {
     }
 }
 
-struct Told<'a> {
-    out: Sender<News>,
+struct CalibrationSender<'a> {
+    out: Sender<CalibrationEvent>,
     wake: &'a (dyn Fn() + Send + Sync),
 }
 
-impl Told<'_> {
-    fn say(&self, news: News) {
+impl CalibrationSender<'_> {
+    fn say(&self, news: CalibrationEvent) {
         // Sending fails once the window has let go of the measurement; that is fine.
         let _ = self.out.send(news);
         (self.wake)();
@@ -118,7 +118,7 @@ impl Told<'_> {
 }
 
 /// A preset whose source is prepared, and the times of its runs.
-struct Ready {
+struct PreparedPreset {
     preset: usize,
     pipeline: OccPipeline,
     times: Vec<Vec<SizedTime>>, // by case
@@ -148,8 +148,8 @@ fn run(
 fn calibrate(
     mut presets: Presets,
     stop: &(dyn Fn() -> bool + Sync),
-    told: &Told<'_>,
-) -> Result<News, GenError> {
+    told: &CalibrationSender<'_>,
+) -> Result<CalibrationEvent, GenError> {
     let ctx = JobCtx::new(stop, &|_| {});
     let deadline = Instant::now() + AT_MOST;
     let models = OccModels::bundled().map_err(GenError::failed)?;
@@ -159,10 +159,10 @@ fn calibrate(
         .collect();
     let parts = timed.len() + 1;
     let mut same = true;
-    let mut ready: Vec<Ready> = Vec::new();
+    let mut ready: Vec<PreparedPreset> = Vec::new();
     let mut slower = Vec::new(); // than where the presets were measured
     for (k, i) in timed.into_iter().enumerate() {
-        told.say(News::Progress(k, parts));
+        told.say(CalibrationEvent::Progress(k, parts));
         let of = &mut presets.all[i];
         let params = of.knobs.on(GenParams::default());
         let mut pipeline = OccPipeline::new(models.clone());
@@ -184,13 +184,13 @@ fn calibrate(
                 times[c].push(time);
             }
         }
-        ready.push(Ready {
+        ready.push(PreparedPreset {
             preset: i,
             pipeline,
             times,
         });
     }
-    told.say(News::Progress(parts - 1, parts));
+    told.say(CalibrationEvent::Progress(parts - 1, parts));
     let mut draw = Draw::new(0, "calibration");
     while Instant::now() < deadline && !ready.is_empty() {
         let (r, c) = (draw.below(ready.len()), draw.below(cases.len()));
@@ -223,7 +223,7 @@ fn calibrate(
     presets.machine = machine();
     presets.build = build();
     presets.load_per_core = Load::now().per_core;
-    Ok(News::Calibrated(presets, same))
+    Ok(CalibrationEvent::Calibrated(presets, same))
 }
 
 /// Name of this build of the program: figures of another build may not hold.
@@ -237,7 +237,11 @@ pub fn build() -> String {
 }
 
 /// Runs the reference on the same edit.
-fn refined(of: &Refine, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>) -> Result<News, GenError> {
+fn refined(
+    of: &Refine,
+    stop: &(dyn Fn() -> bool + Sync),
+    told: &CalibrationSender<'_>,
+) -> Result<CalibrationEvent, GenError> {
     let params = of.reference.knobs.on(of.params.clone());
     // Inversion and sampling take the same number of steps each.
     let steps = 2 * params.steps as usize;
@@ -249,7 +253,7 @@ fn refined(of: &Refine, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>) -> Re
                 _ => step,
             };
             if half.fetch_max(done, Ordering::Relaxed) < done {
-                told.say(News::Progress(done, steps));
+                told.say(CalibrationEvent::Progress(done, steps));
             }
         }
     };
@@ -277,5 +281,5 @@ fn refined(of: &Refine, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>) -> Re
         &GenReport::default(),
         &reference,
     );
-    Ok(News::Refined(outcome.error))
+    Ok(CalibrationEvent::Refined(outcome.error))
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use anyhow::Context;
 
 use super::cases;
-use super::edits::Outcome;
-use super::report::Row;
+use super::edits::CaseOutcome;
+use super::report::SettingOutcomes;
 use crate::machine::{Load, machine};
 use formats::atomic;
 use job::GenParams;
@@ -17,7 +17,7 @@ use trade::{Cost, Interval, Preset, PresetKnobs, Presets, TradePoint, bootstrap_
 
 /// Presets from the front: the fastest, the knee, the most exact, those between them that lie well apart, and the
 /// reference.
-pub fn presets_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Presets {
+pub fn presets_of(rows: &[&SettingOutcomes], reference: GenParams, models: &OccModels) -> Presets {
     let points: Vec<TradePoint> = rows.iter().map(|r| r.point()).collect();
     let kept = well_apart(rows, &points);
     let names = names(&kept.iter().map(|i| points[*i]).collect::<Vec<_>>());
@@ -38,7 +38,7 @@ pub fn presets_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Pr
 
 /// Rows of the front in the order of their times. Keeps a row only if its time rises and its error falls enough to be
 /// noticed.
-fn well_apart(rows: &[&Row], points: &[TradePoint]) -> Vec<usize> {
+fn well_apart(rows: &[&SettingOutcomes], points: &[TradePoint]) -> Vec<usize> {
     let on_front = front(points);
     let mut order: Vec<usize> = (0..rows.len())
         .filter(|i| on_front[*i] && rows[*i].cost().is_some())
@@ -85,7 +85,7 @@ fn names(kept: &[TradePoint]) -> Vec<String> {
 }
 
 /// A row as a preset; `None` if its time cannot be predicted.
-fn preset(name: String, row: &Row, point: TradePoint) -> Option<Preset> {
+fn preset(name: String, row: &SettingOutcomes, point: TradePoint) -> Option<Preset> {
     let errors = row.all(|o| o.error);
     let probe = row.outcomes.iter().take(cases::KINDS.len());
     Some(Preset {
@@ -103,12 +103,12 @@ fn preset(name: String, row: &Row, point: TradePoint) -> Option<Preset> {
 
 /// The reference as a preset. Its time is computed from one step of all tokens in the dense setting; `None` if that
 /// setting was not measured.
-fn reference_preset(rows: &[&Row], reference: GenParams) -> Option<Preset> {
+fn reference_preset(rows: &[&SettingOutcomes], reference: GenParams) -> Option<Preset> {
     let dense = rows.iter().find(|r| {
         let p = &r.setting.params;
         !p.local && p.steps == 10 && p.reuse_steps == 1
     })?;
-    let step_s = |o: &Outcome| o.stages_s.get("denoise").copied().unwrap_or(0.0) / 10.0;
+    let step_s = |o: &CaseOutcome| o.stages_s.get("denoise").copied().unwrap_or(0.0) / 10.0;
     let (step, total) = (
         median(&dense.all(step_s)),
         median(&dense.all(|o| median(&o.wall_s))),

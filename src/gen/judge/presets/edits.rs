@@ -10,7 +10,7 @@ use anyhow::Context;
 use serde::{Deserialize, Serialize};
 
 use super::cases::Case;
-use super::settings::Setting;
+use super::settings::CandidateSetting;
 use crate::machine::{forget_peak_memory, peak_rss_mb};
 use formats::{atomic, input};
 use job::composite::label_hash;
@@ -40,7 +40,7 @@ pub struct Reference {
 
 /// Outcome of a setting on a case.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Outcome {
+pub struct CaseOutcome {
     /// Share of the region's voxels that differ from the reference; infinite where there is no result.
     pub error: f64,
     /// Number of differing voxels over the number of the region's voxels that either of the two holds occupied.
@@ -160,7 +160,7 @@ impl Bench {
         latent: Option<&[f32]>,
         report: &GenReport,
         reference: &Reference,
-    ) -> Outcome {
+    ) -> CaseOutcome {
         let region = match params.region {
             RegionMode::Full => Region::full(),
             RegionMode::Auto => inpaint::region_of(case.after.frame(), params),
@@ -202,7 +202,7 @@ impl Bench {
             }
             (gap / size.max(1e-30)).sqrt()
         });
-        Outcome {
+        CaseOutcome {
             error: share(differ),
             error_of_occupied: differ as f64 / occupied.max(1) as f64,
             miou: confusion.mean_iou().0.unwrap_or(1.0),
@@ -222,7 +222,7 @@ impl Bench {
             network_calls: report.network_calls - report.inversion_calls,
             stages_s: report.wall_s.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect(),
             notes: report.notes.clone(),
-            ..Outcome::default()
+            ..CaseOutcome::default()
         }
     }
 
@@ -233,20 +233,21 @@ impl Bench {
     pub fn run(
         &self,
         cases: &[Case],
-        settings: &[Setting],
+        settings: &[CandidateSetting],
         repeats: usize,
         base: GenParams,
         seed: u64,
         ctx: &JobCtx<'_>,
         mut at: impl FnMut(usize),
-    ) -> anyhow::Result<Vec<Vec<Outcome>>> {
+    ) -> anyhow::Result<Vec<Vec<CaseOutcome>>> {
         let mut pipeline = OccPipeline::new(self.models.clone());
         let references = cases
             .iter()
             .map(|case| self.reference(&mut pipeline, case, base.clone(), ctx));
         let references = references.collect::<anyhow::Result<Vec<_>>>()?;
         drop(pipeline);
-        let mut outcomes: Vec<Vec<Outcome>> = vec![vec![Outcome::default(); settings.len()]; cases.len()];
+        let mut outcomes: Vec<Vec<CaseOutcome>> =
+            vec![vec![CaseOutcome::default(); settings.len()]; cases.len()];
         let mut order: Vec<usize> = (0..settings.len()).collect();
         let mut draw = Draw::new(seed, "turns");
         shuffle(&mut order, &mut draw);
@@ -272,13 +273,13 @@ impl Bench {
                             Self::compare(case, &params, grid, latent.as_deref(), report, reference)
                         }
                         Err(GenError::Superseded) => return Err(GenError::Superseded.into()),
-                        Err(error) => Outcome {
+                        Err(error) => CaseOutcome {
                             error: f64::INFINITY,
                             notes: vec![error.to_string()],
-                            ..Outcome::default()
+                            ..CaseOutcome::default()
                         },
                     };
-                    outcomes[*i] = Outcome {
+                    outcomes[*i] = CaseOutcome {
                         invert_s,
                         peak_rss_mb: peak_rss_mb(),
                         ..outcome

@@ -7,9 +7,9 @@ use anyhow::{Context, bail};
 use serde::{Deserialize, Serialize};
 
 use super::cases::Case;
-use super::edits::{Bench, Outcome};
-use super::plan::Plan;
-use crate::Progress;
+use super::edits::{Bench, CaseOutcome};
+use super::plan::TradeoffPlan;
+use crate::MeasurementProgress;
 use job::JobCtx;
 use nets::OccModels;
 
@@ -17,12 +17,16 @@ use nets::OccModels;
 #[derive(Default, Serialize, Deserialize)]
 pub struct Raw {
     /// Names of cases by part, each with its outcomes in the order of the settings.
-    pub parts: BTreeMap<String, Vec<(String, Vec<Outcome>)>>,
+    pub parts: BTreeMap<String, Vec<(String, Vec<CaseOutcome>)>>,
 }
 
-impl Plan {
+impl TradeoffPlan {
     /// Measures in this process. Errors if the scene or the folder for references cannot be used.
-    pub fn measure(&self, models: &Arc<OccModels>, progress: &dyn Progress) -> anyhow::Result<Raw> {
+    pub fn measure(
+        &self,
+        models: &Arc<OccModels>,
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<Raw> {
         let bench = Bench {
             models: models.clone(),
             reference_steps: self.reference_steps,

@@ -9,12 +9,12 @@ use serde_json::{Value, json};
 use super::cases::{self, Case};
 use super::choose::presets_of;
 pub use super::choose::write_presets;
-use super::edits::{Bench, Outcome, reference_params};
+use super::edits::{Bench, CaseOutcome, reference_params};
 use super::measure::Raw;
-use super::report::{Row, sensor_json, untouched_the_same};
+use super::report::{SettingOutcomes, sensor_json, untouched_the_same};
 use super::sensors;
-use super::settings::{self, Setting};
-use crate::Progress;
+use super::settings::{self, CandidateSetting};
+use crate::MeasurementProgress;
 use crate::held_out::bare_scene;
 use crate::markdown::told;
 use job::{GenParams, JobCtx};
@@ -27,7 +27,7 @@ pub const PARTS: [&str; 5] = ["edit", "scene", "lidar", "splat", "vae"];
 
 /// Scenes, parts and numbers of a measurement.
 #[derive(Clone, Debug, Default)]
-pub struct Plan {
+pub struct TradeoffPlan {
     /// Scene whose edits are measured; without one, held-out worlds.
     pub scene: Option<PathBuf>,
     /// Some of [`PARTS`].
@@ -52,7 +52,7 @@ pub struct Plan {
 
 /// A setting in a plot of time against error.
 #[derive(Clone, Debug)]
-pub struct Mark {
+pub struct TradeoffPoint {
     /// Its name.
     pub name: String,
     /// Wall time, s: median and interval.
@@ -67,11 +67,11 @@ pub struct Mark {
 
 /// Results of a run.
 #[derive(Default)]
-pub struct Found {
+pub struct TradeResults {
     /// One entry per setting of every part.
     pub points: Vec<Value>,
     /// The settings of edits, to be plotted.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<TradeoffPoint>,
     /// The presets of the slider, if edits were measured.
     pub presets: Option<Presets>,
     /// Figures over all settings of a part.
@@ -80,7 +80,7 @@ pub struct Found {
     pub self_check: Value,
 }
 
-impl Plan {
+impl TradeoffPlan {
     /// Checks the numbers. Errors are one line: the option, the value found and the value expected.
     pub fn check(&self) -> anyhow::Result<()> {
         if let Some(unknown) = self.parts.iter().find(|p| !PARTS.contains(&p.as_str())) {
@@ -98,7 +98,7 @@ impl Plan {
     }
 
     /// Base and settings of edits or scenes.
-    pub(super) fn settings(&self, part: &str) -> (GenParams, Vec<Setting>) {
+    pub(super) fn settings(&self, part: &str) -> (GenParams, Vec<CandidateSetting>) {
         let (base, mut settings) = if part == "edit" {
             let base = GenParams::default();
             (base.clone(), settings::of_edits(base, self.draws, self.seed))
@@ -148,11 +148,11 @@ impl Plan {
         &self,
         raw: &Raw,
         models: &Arc<OccModels>,
-        progress: &dyn Progress,
-    ) -> anyhow::Result<Found> {
-        let mut found = Found {
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<TradeResults> {
+        let mut found = TradeResults {
             figures: json!({}),
-            ..Found::default()
+            ..TradeResults::default()
         };
         for (part, cases) in &raw.parts {
             self.add_part(part, cases, models, &mut found);
@@ -170,15 +170,24 @@ impl Plan {
     }
 
     /// Edits or scenes: points, marks, presets, figures.
-    fn add_part(&self, part: &str, cases: &[(String, Vec<Outcome>)], models: &OccModels, found: &mut Found) {
+    fn add_part(
+        &self,
+        part: &str,
+        cases: &[(String, Vec<CaseOutcome>)],
+        models: &OccModels,
+        found: &mut TradeResults,
+    ) {
         let (base, settings) = self.settings(part);
         let of_setting = |i: usize| cases.iter().filter_map(move |(_, o)| o.get(i)).cloned().collect();
-        let rows = settings.into_iter().enumerate().map(|(i, setting)| Row {
-            setting,
-            outcomes: of_setting(i),
-        });
-        let rows: Vec<Row> = rows.collect();
-        let same_target: Vec<&Row> = rows.iter().filter(|r| !r.setting.other_target).collect();
+        let rows = settings
+            .into_iter()
+            .enumerate()
+            .map(|(i, setting)| SettingOutcomes {
+                setting,
+                outcomes: of_setting(i),
+            });
+        let rows: Vec<SettingOutcomes> = rows.collect();
+        let same_target: Vec<&SettingOutcomes> = rows.iter().filter(|r| !r.setting.other_target).collect();
         let points: Vec<TradePoint> = same_target.iter().map(|r| r.point()).collect();
         let mut on_front = front(&points).into_iter();
         for row in &rows {
@@ -186,7 +195,7 @@ impl Plan {
             found.points.push(row.json(part, on_front));
             if part == "edit" && !row.setting.other_target {
                 let p = row.point();
-                found.marks.push(Mark {
+                found.marks.push(TradeoffPoint {
                     name: row.setting.name.clone(),
                     wall_s: [p.wall_s.median, p.wall_s.low, p.wall_s.high],
                     error: [p.error.median, p.error.low, p.error.high],
@@ -204,7 +213,7 @@ impl Plan {
         }
     }
 
-    fn sensors(&self, models: &Arc<OccModels>, found: &mut Found) -> anyhow::Result<()> {
+    fn sensors(&self, models: &Arc<OccModels>, found: &mut TradeResults) -> anyhow::Result<()> {
         let (frames, repeats) = (self.frames.min(4), self.repeats);
         let mut out = Vec::new();
         if self.has("lidar") {
@@ -222,7 +231,11 @@ impl Plan {
 
     /// Difference between half of the reference's steps and the reference, on the first case: an estimate of the
     /// reference's own error.
-    fn self_check(&self, models: &Arc<OccModels>, progress: &dyn Progress) -> anyhow::Result<Value> {
+    fn self_check(
+        &self,
+        models: &Arc<OccModels>,
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<Value> {
         if !self.has("edit") {
             return Ok(Value::Null);
         }
@@ -236,7 +249,7 @@ impl Plan {
             reference_steps: self.reference_steps,
             kept_in: self.keep_references.clone(),
         };
-        let half = Setting {
+        let half = CandidateSetting {
             name: "half".into(),
             params: reference_params(GenParams::default(), self.reference_steps / 2),
             other_target: false,

@@ -4,21 +4,21 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::edits::Outcome;
+use super::edits::CaseOutcome;
 use super::figures::{percent, seconds};
-use super::sensors::Measured;
-use super::settings::Setting;
+use super::sensors::SettingMeasurement;
+use super::settings::CandidateSetting;
 use numeric::quantile::{median, quantile};
 use trade::{Cost, SizedTime, TradePoint, bootstrap_median};
 
 /// A setting with its outcomes, as a row of the report.
-pub(super) struct Row {
-    pub(super) setting: Setting,
-    pub(super) outcomes: Vec<Outcome>,
+pub(super) struct SettingOutcomes {
+    pub(super) setting: CandidateSetting,
+    pub(super) outcomes: Vec<CaseOutcome>,
 }
 
-impl Row {
-    pub(super) fn all(&self, of: impl Fn(&Outcome) -> f64) -> Vec<f64> {
+impl SettingOutcomes {
+    pub(super) fn all(&self, of: impl Fn(&CaseOutcome) -> f64) -> Vec<f64> {
         self.outcomes.iter().map(of).collect()
     }
 
@@ -40,7 +40,7 @@ impl Row {
     pub(super) fn json(&self, part: &str, on_front: bool) -> Value {
         let point = self.point();
         let every: Vec<f64> = self.outcomes.iter().flat_map(|o| o.wall_s.clone()).collect();
-        let mean = |of: &dyn Fn(&Outcome) -> f64| {
+        let mean = |of: &dyn Fn(&CaseOutcome) -> f64| {
             let values = self.all(of);
             values.iter().sum::<f64>() / values.len().max(1) as f64
         };
@@ -87,7 +87,7 @@ impl Row {
 }
 
 /// True if all settings left the same voxels outside the region.
-pub(super) fn untouched_the_same(outcomes: &[Outcome], rows: &[Row]) -> bool {
+pub(super) fn untouched_the_same(outcomes: &[CaseOutcome], rows: &[SettingOutcomes]) -> bool {
     let same_region = outcomes
         .iter()
         .zip(rows)
@@ -97,7 +97,7 @@ pub(super) fn untouched_the_same(outcomes: &[Outcome], rows: &[Row]) -> bool {
     first.is_none_or(|(hash, changed)| changed == 0 && hashes.all(|h| h == (hash, 0)))
 }
 
-pub(super) fn sensor_json(m: &Measured) -> Value {
+pub(super) fn sensor_json(m: &SettingMeasurement) -> Value {
     json!({
         "part": m.part,
         "name": m.name,

@@ -11,7 +11,7 @@ use crate::machine::peak_rss_mb;
 use dataset::world_of;
 use metrics::iou::Confusion;
 use metrics::stats::mean_ci95;
-use nets::lidar::field::Sampling;
+use nets::lidar::field::RaySampling;
 use nets::lidar::{LearnedRay, LidarNet};
 use nets::{OccModels, fine_vae};
 use numeric::quantile::quantile;
@@ -29,7 +29,7 @@ const REFERENCE_SAMPLES: usize = 4096;
 const COMPARED: usize = 16;
 
 /// One setting of these parts.
-pub struct Measured {
+pub struct SettingMeasurement {
     /// `lidar`, `splat`, `vae`.
     pub part: &'static str,
     /// The knob's value.
@@ -60,7 +60,7 @@ fn timed<T>(repeats: usize, mut work: impl FnMut() -> T) -> (T, Vec<f64>) {
 }
 
 /// Samples per ray of the learned sweep against 4096 on every ray, and beams of the exact cast.
-pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
+pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<SettingMeasurement>> {
     let net = LidarNet::bundled()?;
     let rig = SensorRig::default();
     let Some(pattern) = rig.lidars.first() else {
@@ -69,12 +69,12 @@ pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
     let rays = learned::rays(pattern, rig.velocity_mps());
     let few: Vec<_> = rays.iter().copied().step_by(COMPARED).collect();
     let ways = [
-        ("prior".to_owned(), Sampling::Prior),
-        ("18 samples".into(), Sampling::Uniform(18)),
-        ("36 samples".into(), Sampling::Uniform(36)),
-        ("72 samples".into(), Sampling::Uniform(72)),
-        ("144 samples".into(), Sampling::Uniform(144)),
-        ("288 samples".into(), Sampling::Uniform(288)),
+        ("prior".to_owned(), RaySampling::Prior),
+        ("18 samples".into(), RaySampling::Uniform(18)),
+        ("36 samples".into(), RaySampling::Uniform(36)),
+        ("72 samples".into(), RaySampling::Uniform(72)),
+        ("144 samples".into(), RaySampling::Uniform(144)),
+        ("288 samples".into(), RaySampling::Uniform(288)),
     ];
     let mut walls = vec![Vec::new(); ways.len()];
     let (mut errors, mut flips, mut model) = (walls.clone(), walls.clone(), walls.clone());
@@ -83,7 +83,7 @@ pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
         let scene = bare_scene(i);
         let (world, _) = world_of(TEST_SEED, i, |_| None);
         let field = net.field(&scene.frame().occupancy)?;
-        let exact = net.shoot(&field, &few, Sampling::Uniform(REFERENCE_SAMPLES))?;
+        let exact = net.shoot(&field, &few, RaySampling::Uniform(REFERENCE_SAMPLES))?;
         for (k, (_, sampling)) in ways.iter().enumerate() {
             forget_peak_memory();
             let (found, times) = timed(repeats, || net.shoot(&field, &rays, *sampling));
@@ -113,10 +113,10 @@ pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
             model[k].push(quantile(&off, 0.5));
         }
     }
-    let mut out: Vec<Measured> = ways
+    let mut out: Vec<SettingMeasurement> = ways
         .iter()
         .enumerate()
-        .map(|(k, (name, _))| Measured {
+        .map(|(k, (name, _))| SettingMeasurement {
             part: "lidar",
             name: name.clone(),
             wall_s: bootstrap_median(&walls[k], 1),
@@ -142,7 +142,7 @@ pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
             let grid = bare_scene(i).frame().occupancy.clone();
             walls.extend(timed(repeats, || lidar::sweep(&grid, &pattern, None)).1);
         }
-        out.push(Measured {
+        out.push(SettingMeasurement {
             part: "lidar",
             name: format!("exact cast, {beams} beams"),
             wall_s: bootstrap_median(&walls, 1),
@@ -156,7 +156,7 @@ pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
 }
 
 /// Cut-offs of the splats against none.
-pub fn splats(frames: usize, repeats: usize) -> Vec<Measured> {
+pub fn splats(frames: usize, repeats: usize) -> Vec<SettingMeasurement> {
     let rig = SensorRig::default();
     let [w, h] = VIEW_SIZE;
     let plain = SplatOptions::default();
@@ -201,7 +201,7 @@ pub fn splats(frames: usize, repeats: usize) -> Vec<Measured> {
     }
     ways.iter()
         .enumerate()
-        .map(|(k, (name, _))| Measured {
+        .map(|(k, (name, _))| SettingMeasurement {
             part: "splat",
             name: (*name).into(),
             wall_s: bootstrap_median(&walls[k], 1),
@@ -236,7 +236,11 @@ fn map_errors(maps: &[CameraMaps], truth: &[CameraMaps]) -> (f64, f64) {
 }
 
 /// The two VAEs: time of encoding and decoding, and labels lost on the way (model error: no knob buys it).
-pub fn vaes(models: &Arc<OccModels>, frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
+pub fn vaes(
+    models: &Arc<OccModels>,
+    frames: usize,
+    repeats: usize,
+) -> anyhow::Result<Vec<SettingMeasurement>> {
     let fine = fine_vae()?;
     let mut out = Vec::new();
     for (name, vae) in [("50x50x8", &models.vae), ("100x100x16", &fine)] {
@@ -253,7 +257,7 @@ pub fn vaes(models: &Arc<OccModels>, frames: usize, repeats: usize) -> anyhow::R
             errors.push(grid.count_different(&back) as f64 / grid.count_set().max(1) as f64);
             confusion.add(&grid, &back);
         }
-        out.push(Measured {
+        out.push(SettingMeasurement {
             part: "vae",
             name: name.into(),
             wall_s: bootstrap_median(&walls, 1),

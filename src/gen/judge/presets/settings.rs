@@ -8,7 +8,7 @@ use world::draw::Draw;
 
 /// A setting with a name.
 #[derive(Clone, Debug)]
-pub struct Setting {
+pub struct CandidateSetting {
     /// The knobs that differ from the default: `steps 4, int8`.
     pub name: String,
     /// All parameters.
@@ -48,7 +48,7 @@ pub fn name_of(knobs: &PresetKnobs, base: &PresetKnobs) -> String {
 /// Settings of one base, each only once.
 struct List {
     base: GenParams,
-    settings: Vec<Setting>,
+    settings: Vec<CandidateSetting>,
 }
 
 impl List {
@@ -70,7 +70,7 @@ impl List {
     fn put(&mut self, params: GenParams, extra: Option<String>) {
         let name = name_of(&PresetKnobs::of(&params), &PresetKnobs::of(&self.base));
         if params.check().is_ok() && !self.settings.iter().any(|s| s.params == params) {
-            self.settings.push(Setting {
+            self.settings.push(CandidateSetting {
                 other_target: extra.is_some(),
                 name: name + &extra.unwrap_or_default(),
                 params,
@@ -216,7 +216,7 @@ impl List {
 }
 
 /// The settings of edits: `base`, knobs one at a time, and `draws` random ones.
-pub fn of_edits(base: GenParams, draws: usize, seed: u64) -> Vec<Setting> {
+pub fn of_edits(base: GenParams, draws: usize, seed: u64) -> Vec<CandidateSetting> {
     let mut list = List::new(base);
     list.add_knobs();
     list.add_fine_stages();
@@ -226,7 +226,7 @@ pub fn of_edits(base: GenParams, draws: usize, seed: u64) -> Vec<Setting> {
 }
 
 /// The settings of whole scenes.
-pub fn of_scenes(base: GenParams) -> Vec<Setting> {
+pub fn of_scenes(base: GenParams) -> Vec<CandidateSetting> {
     let mut list = List::new(base.clone());
     for steps in [4, 6, 10, 20, 40] {
         list.add_both_precisions(GenParams {

@@ -8,9 +8,9 @@ use anyhow::Context;
 use glam::DVec2;
 use serde_json::{Value, json};
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::TEST_SEED;
-use crate::suite::{Found, Options, with_interval};
+use crate::suite::{Options, SuiteFigures, with_interval};
 use authoring::{drives, open};
 use numeric::quantile::median;
 use numeric::splitmix::Draw;
@@ -124,7 +124,7 @@ fn judged(i: usize) -> anyhow::Result<Value> {
 
 impl Options {
     /// Compares pictures of baked scenes with the renderer's, from unseen poses.
-    pub(crate) fn gaussians(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
+    pub(crate) fn gaussians(&self, progress: &dyn MeasurementProgress) -> anyhow::Result<SuiteFigures> {
         let mut rows = Vec::new();
         for i in 0..self.frames {
             progress.at("gaussians", i, self.frames);

@@ -5,15 +5,15 @@ use std::time::Instant;
 use serde_json::{Value, json};
 
 use super::world::lidar::lidar_rows;
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::TEST_SEED;
 use crate::machine::peak_rss_mb;
-use crate::suite::{Bar, Found, Options};
+use crate::suite::{Bar, Options, SuiteFigures};
 use dataset::world_of;
 use metrics::lidar::{bird_map, jsd, mmd};
 use metrics::logistic::{Logistic, auc};
 use metrics::sweep::{SweepFigures, loss_features};
-use nets::lidar::field::{Ray, Sampling};
+use nets::lidar::field::{LidarRay, RaySampling};
 use nets::lidar::sites::physical;
 use nets::lidar::{LearnedRay, LidarNet};
 use numeric::quantile::{Sorted, median};
@@ -34,7 +34,7 @@ const SWEEP_S: f64 = 0.25;
 
 /// Figures of one method over all sweeps.
 #[derive(Default)]
-struct Method {
+struct SweepMethodFigures {
     range_error_m: Vec<f64>,
     agree: [usize; 2], // rays, of those that agree on hit or miss
     maps: Vec<Vec<f64>>,
@@ -42,11 +42,11 @@ struct Method {
     points: usize,
 }
 
-impl Method {
+impl SweepMethodFigures {
     /// Adds a sweep: the range found by each ray, and whether a found echo came back.
     fn add(
         &mut self,
-        rays: &[Ray],
+        rays: &[LidarRay],
         truth: &[TruthRay],
         found: &[Option<f64>],
         kept: impl Fn(usize) -> bool,
@@ -75,7 +75,7 @@ impl Method {
         self.maps.push(bird_map(points));
     }
 
-    fn report(&self, truth: &Method) -> anyhow::Result<Value> {
+    fn report(&self, truth: &SweepMethodFigures) -> anyhow::Result<Value> {
         let error = &self.range_error_m;
         let sorted = Sorted::new(error.iter().copied());
         let mean = error.iter().sum::<f64>() / error.len().max(1) as f64;
@@ -95,13 +95,13 @@ impl Method {
 }
 
 /// True if a distance along the ray lies in the grid: outside, there are no labels.
-fn in_grid(ray: &Ray, t: f64) -> bool {
+fn in_grid(ray: &LidarRay, t: f64) -> bool {
     let p = ray.origin + ray.direction * t;
     t >= ray.range_m[0] && Window::voxel_at(p).is_some()
 }
 
 /// Distance to the true surface, if there is one in the grid.
-fn surface(ray: &Ray, real: &TruthRay) -> Option<f64> {
+fn surface(ray: &LidarRay, real: &TruthRay) -> Option<f64> {
     let t = f64::from(real.range_m);
     (real.echo != Echo::Nothing && t > 0.0 && in_grid(ray, t)).then_some(t)
 }
@@ -119,7 +119,7 @@ struct Echoes {
 }
 
 impl Echoes {
-    fn add(&mut self, rays: &[Ray], truth: &[TruthRay], answers: &[LearnedRay]) {
+    fn add(&mut self, rays: &[LidarRay], truth: &[TruthRay], answers: &[LearnedRay]) {
         self.sweeps += 1;
         for ((ray, real), answer) in rays.iter().zip(truth).zip(answers) {
             if real.echo == Echo::OwnBody || surface(ray, real).is_none() || !answer.is_hit() {
@@ -177,13 +177,13 @@ impl Echoes {
 /// All methods on one kind of occupancy.
 #[derive(Default)]
 struct Suite {
-    truth: Method,
-    labelled: Method,
-    lifted: Method,
-    learned: Method,
-    keep_all: Method,
-    uniform: Method,
-    flat: Method,
+    truth: SweepMethodFigures,
+    labelled: SweepMethodFigures,
+    lifted: SweepMethodFigures,
+    learned: SweepMethodFigures,
+    keep_all: SweepMethodFigures,
+    uniform: SweepMethodFigures,
+    flat: SweepMethodFigures,
     echoes: Echoes,
     field_s: Vec<f64>,
     shoot_s: Vec<f64>,
@@ -195,7 +195,7 @@ impl Suite {
         &mut self,
         nets: &[&LidarNet; 2],
         grid: &VoxelGrid,
-        rays: &[Ray],
+        rays: &[LidarRay],
         truth: &[TruthRay],
         seed: u64,
     ) -> anyhow::Result<()> {
@@ -208,7 +208,7 @@ impl Suite {
         ] {
             let start = Instant::now();
             let masks = ColumnMasks::from_grid(&grid);
-            let cast = |r: &Ray| masks.cast(r.origin, r.direction, r.range_m[1]).map(|h| h.range_m);
+            let cast = |r: &LidarRay| masks.cast(r.origin, r.direction, r.range_m[1]).map(|h| h.range_m);
             let found: Vec<Option<f64>> = rays.iter().map(cast).collect();
             method.add(rays, truth, &found, |_| true, start.elapsed().as_secs_f64());
         }
@@ -216,7 +216,7 @@ impl Suite {
         let start = Instant::now();
         let field = net.field(grid)?;
         let field_s = start.elapsed().as_secs_f64();
-        let answers = net.shoot(&field, rays, Sampling::Prior)?;
+        let answers = net.shoot(&field, rays, RaySampling::Prior)?;
         let wall_s = start.elapsed().as_secs_f64();
         self.field_s.push(field_s);
         self.shoot_s.push(wall_s - field_s);
@@ -231,12 +231,12 @@ impl Suite {
             .add(rays, truth, &ranges(&answers), |_| true, wall_s);
         self.echoes.add(rays, truth, &answers);
         let start = Instant::now();
-        let answers = net.shoot(&field, rays, Sampling::Uniform(UNIFORM))?;
+        let answers = net.shoot(&field, rays, RaySampling::Uniform(UNIFORM))?;
         let wall_s = field_s + start.elapsed().as_secs_f64();
         self.uniform
             .add(rays, truth, &ranges(&answers), |i| kept(&answers, i), wall_s);
         let start = Instant::now();
-        let answers = flat.shoot(&flat.field(grid)?, rays, Sampling::Prior)?;
+        let answers = flat.shoot(&flat.field(grid)?, rays, RaySampling::Prior)?;
         let wall_s = start.elapsed().as_secs_f64();
         self.flat
             .add(rays, truth, &ranges(&answers), |i| kept(&answers, i), wall_s);
@@ -332,7 +332,7 @@ fn raised(grid: &VoxelGrid) -> VoxelGrid {
 
 impl Options {
     /// Judges complete worlds, and labels as a drive through them would give.
-    pub(crate) fn lidar(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
+    pub(crate) fn lidar(&self, progress: &dyn MeasurementProgress) -> anyhow::Result<SuiteFigures> {
         let net = match &self.weights {
             Some(dir) => LidarNet::from_dir(dir)?,
             None => LidarNet::bundled()?,

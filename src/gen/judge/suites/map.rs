@@ -4,16 +4,16 @@
 use anyhow::{Context, ensure};
 use serde_json::{Value, json};
 
-use super::generation::row::{Row, Seen};
+use super::generation::row::{SceneFeatures, SceneSet};
 use super::generation::rows_table;
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::{TEST_SEED, scene};
-use crate::suite::{Found, Options};
+use crate::suite::{Options, SuiteFigures};
 use editor::Document;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx, Pipeline};
 use metrics::extractor::Extractor;
-use scene::moved::Columns;
+use scene::moved::ColumnShift;
 use scene::{Edit, Extent, Scene};
 
 /// The sets of scenes, in the order of the table.
@@ -29,7 +29,11 @@ const SIDE_M: f64 = 80.0;
 impl Options {
     /// Judges the windows of the map in `data`, or of one that is generated here: a straight road, `frames` windows
     /// long.
-    pub(crate) fn map(&self, pipeline: &mut OccPipeline, progress: &dyn Progress) -> anyhow::Result<Found> {
+    pub(crate) fn map(
+        &self,
+        pipeline: &mut OccPipeline,
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<SuiteFigures> {
         let map = match &self.data {
             Some(file) => authoring::open::scene(file)?,
             None => {
@@ -43,14 +47,14 @@ impl Options {
             "found a map of one window, expected two or more"
         );
         let extractor = Extractor::bundled()?;
-        let mut rows: [Row; 4] = Default::default();
+        let mut rows: [SceneSet; 4] = Default::default();
         let half = windows.len().div_ceil(2);
         for (i, by) in windows.iter().enumerate() {
             progress.at("judge windows", i, windows.len());
             let (world, window) = (scene(i as u64), window_of(&map, *by));
             let mut add = |row: usize, scene: &Scene| -> anyhow::Result<()> {
                 let grid = &scene.frame().occupancy;
-                let seen = Seen::of(scene, grid, i as u64, &extractor)?;
+                let seen = SceneFeatures::of(scene, grid, i as u64, &extractor)?;
                 rows[row].add(scene, grid, seen);
                 Ok(())
             };
@@ -101,7 +105,7 @@ impl Options {
 }
 
 /// One window of a map, as a scene.
-fn window_of(map: &Scene, by: Columns) -> Scene {
+fn window_of(map: &Scene, by: ColumnShift) -> Scene {
     let mut window = map.window_at(by);
     window.change_canvas(|canvas| {
         canvas.boxes.retain(|_, b| {
@@ -114,11 +118,11 @@ fn window_of(map: &Scene, by: Columns) -> Scene {
 
 /// Shifts that bring each whole window of a map to the origin: row by row along x, each row across y, from the near
 /// right corner.
-fn windows(map: Extent) -> Vec<Columns> {
+fn windows(map: Extent) -> Vec<ColumnShift> {
     let counts = [map.nx(), map.ny()].map(|n| n / SIDE);
     let at = |axis: usize, n: usize| Extent::WINDOW.from()[axis] - map.from()[axis] - (n * SIDE) as i32;
     (0..counts[0])
-        .flat_map(|i| (0..counts[1]).map(move |j| Columns([at(0, i), at(1, j)])))
+        .flat_map(|i| (0..counts[1]).map(move |j| ColumnShift([at(0, i), at(1, j)])))
         .collect()
 }
 
@@ -135,6 +139,6 @@ mod tests {
     fn whole_windows_of_a_map_come_to_the_origin_one_after_another() {
         let map = Extent::new([-100, -130], [650, 260]).expect("sound");
         let found = windows(map);
-        assert_eq!(found, [[0, 30], [-200, 30], [-400, 30]].map(Columns));
+        assert_eq!(found, [[0, 30], [-200, 30], [-400, 30]].map(ColumnShift));
     }
 }

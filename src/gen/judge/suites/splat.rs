@@ -5,9 +5,9 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde_json::json;
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::TEST_SEED;
-use crate::suite::{Found, Options, with_interval};
+use crate::suite::{Options, SuiteFigures, with_interval};
 use dataset::world_of;
 use metrics::maps::{LabelledDepth, MapAgreement, OUTLINE_PX};
 use numeric::quantile::median;
@@ -38,7 +38,7 @@ const WAYS: [(&str, Option<(GroundHeight, bool)>); 5] = [
 
 /// Figures of one way, one value per world.
 #[derive(Default)]
-struct Figures {
+struct SplatFigures {
     labels: Vec<f64>,
     depth_median_m: Vec<f64>,
     depth_p95_m: Vec<f64>,
@@ -86,9 +86,9 @@ fn truth(world: &World, camera: &Camera) -> LabelledDepth {
 
 impl Options {
     /// Judges label agreement, depth error and outlines of every way to draw maps; no bars.
-    pub(crate) fn splat(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
+    pub(crate) fn splat(&self, progress: &dyn MeasurementProgress) -> anyhow::Result<SuiteFigures> {
         let rig = SensorRig::default();
-        let mut found: [Figures; WAYS.len()] = Default::default();
+        let mut found: [SplatFigures; WAYS.len()] = Default::default();
         for i in 0..self.frames {
             progress.at("splat", i, self.frames);
             let (world, _) = world_of(TEST_SEED, i as u64, |_| None);

@@ -3,7 +3,7 @@
 //! everywhere.
 
 use super::Windows;
-use super::random::{Bank, Map};
+use super::random::{Bank, FeatureMapView};
 
 /// Size of the depth images, px.
 pub const IMAGE: [u32; 2] = [80, 45];
@@ -53,7 +53,7 @@ pub fn windows(depth_m: &[f32]) -> Windows {
         .collect();
     let inverse: Vec<f64> = depth_m.iter().map(|d| 1.0 / depth(*d)).collect();
     let data: Vec<f32> = near.iter().map(|v| (*v * 4.0 - 1.0) as f32).collect();
-    let map = Map {
+    let map = FeatureMapView {
         data: &data,
         rows,
         columns,

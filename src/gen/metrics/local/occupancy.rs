@@ -3,7 +3,7 @@
 //! convolutions.
 
 use super::Windows;
-use super::random::{Bank, Map, normal};
+use super::random::{Bank, FeatureMapView, normal};
 use scene::{Class, VoxelGrid, Window};
 use world::draw::Draw;
 
@@ -34,14 +34,14 @@ const OCTANTS: usize = 7;
 
 /// Masks, occupancy, tops and runs of one column.
 #[derive(Clone, Copy, Default)]
-struct Column {
+struct ColumnFeatures {
     masks: u8,
     occupied: u16,
     tops: [Option<u8>; 2], // of manmade, of vegetation
     runs: [u8; 4],
 }
 
-impl Column {
+impl ColumnFeatures {
     fn of(labels: &[u8; NZ]) -> Self {
         let mut out = Self::default();
         let mut below = Class::FREE;
@@ -90,8 +90,8 @@ pub fn names() -> Vec<String> {
 
 /// Features of the 25 x 25 windows of a frame, row by row; in the order of [`names`].
 pub fn windows(grid: &VoxelGrid) -> Windows {
-    let columns: Vec<Column> = (0..Window::COLUMNS)
-        .map(|c| Column::of(grid.column(c / NY, c % NY)))
+    let columns: Vec<ColumnFeatures> = (0..Window::COLUMNS)
+        .map(|c| ColumnFeatures::of(grid.column(c / NY, c % NY)))
         .collect();
     let by_chance = convolved(grid);
     let each = by_chance.into_iter().enumerate().map(|(i, by_chance)| {
@@ -115,7 +115,7 @@ fn convolved(grid: &VoxelGrid) -> Windows {
         sum.zip(&embedding[entry..entry + CHANNELS])
             .for_each(|(s, e)| *s += e);
     }
-    let map = Map {
+    let map = FeatureMapView {
         data: &data,
         rows: Window::NX,
         columns: NY,
@@ -125,7 +125,7 @@ fn convolved(grid: &VoxelGrid) -> Windows {
 
 /// All features except the convolutions of the window that starts at a column. Every figure is per column of the
 /// window.
-fn by_hand(grid: &VoxelGrid, columns: &[Column], x0: usize, y0: usize) -> Vec<f64> {
+fn by_hand(grid: &VoxelGrid, columns: &[ColumnFeatures], x0: usize, y0: usize) -> Vec<f64> {
     let mut shares = [0u32; 17];
     let mut patterns = [[0u32; PATTERNS.len()]; MASKS.len()];
     let mut steps = [[0u32; STEPS.len()]; 2];
@@ -157,7 +157,7 @@ fn by_hand(grid: &VoxelGrid, columns: &[Column], x0: usize, y0: usize) -> Vec<f6
             };
             let across = columns[c + NY + 1];
             for (mask, counts) in patterns.iter_mut().enumerate() {
-                let set = |c: Column| usize::from(c.masks >> mask & 1);
+                let set = |c: ColumnFeatures| usize::from(c.masks >> mask & 1);
                 let (pair, other) = (set(own) + set(across), set(right) + set(ahead));
                 match pair + other {
                     0 => {}

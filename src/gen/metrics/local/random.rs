@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use world::draw::Draw;
 
 /// A map `[rows][columns][channels]`.
-pub struct Map<'a> {
+pub struct FeatureMapView<'a> {
     pub data: &'a [f32],
     pub rows: usize,
     pub columns: usize,
@@ -45,7 +45,7 @@ impl Bank {
 
     /// Mean of every filter's positive part over every whole window of `window` places, row by row. Filters reach
     /// beyond their window, but stay inside the map.
-    pub fn means(&self, map: &Map<'_>, window: [usize; 2]) -> Vec<Vec<f64>> {
+    pub fn means(&self, map: &FeatureMapView<'_>, window: [usize; 2]) -> Vec<Vec<f64>> {
         let (down, across) = (map.rows / window[0], map.columns / window[1]);
         (0..down * across)
             .into_par_iter()
@@ -64,7 +64,7 @@ impl Bank {
             .collect()
     }
 
-    fn add(&self, map: &Map<'_>, x: usize, y: usize, sums: &mut [f64]) {
+    fn add(&self, map: &FeatureMapView<'_>, x: usize, y: usize, sums: &mut [f64]) {
         let row = self.side * self.channels;
         for (filter, sum) in self.weights.iter().zip(sums) {
             let mut value = filter[filter.len() - 1];

@@ -24,13 +24,13 @@ const NY: usize = Window::NY;
 const STEP: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
 /// A side of a column as a step between two corners of the column raster, with the part on its left: (corner, direction).
-type Side = usize;
+type OutlineStep = usize;
 
-fn side(x: usize, y: usize, direction: usize) -> Side {
+fn side(x: usize, y: usize, direction: usize) -> OutlineStep {
     (x * (NY + 1) + y) * 4 + direction
 }
 
-fn middle(side: Side) -> (f64, f64) {
+fn middle(side: OutlineStep) -> (f64, f64) {
     let (corner, direction) = (side / 4, STEP[side % 4]);
     let half = |v: usize, d: isize| v as f64 + 0.5 * d as f64;
     (
@@ -41,9 +41,9 @@ fn middle(side: Side) -> (f64, f64) {
 
 /// For every side of an outline, the sides before and behind it, unless the outline ends at the edge of the grid.
 struct Outlines {
-    before: Vec<Option<Side>>,
-    behind: Vec<Option<Side>>,
-    sides: Vec<Side>,
+    before: Vec<Option<OutlineStep>>,
+    behind: Vec<Option<OutlineStep>>,
+    sides: Vec<OutlineStep>,
 }
 
 impl Outlines {
@@ -91,8 +91,8 @@ impl Outlines {
     }
 
     /// A side with `REACH` sides before and behind it; `None` near an end and on the outline of something small.
-    fn stretch(&self, middle: Side) -> Option<Vec<Side>> {
-        let walk = |links: &[Option<Side>], n: usize| -> Option<Vec<Side>> {
+    fn stretch(&self, middle: OutlineStep) -> Option<Vec<OutlineStep>> {
+        let walk = |links: &[Option<OutlineStep>], n: usize| -> Option<Vec<OutlineStep>> {
             let mut at = middle;
             (0..n)
                 .map(|_| {

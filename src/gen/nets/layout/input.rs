@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use scene::graph::{LaneRole, Locked, Node, NodeKind, SceneGraph, SizeHint};
+use scene::graph::{GraphNode, LaneRole, Locked, NodeKind, SceneGraph, SizeHint};
 use scene::road_map::{RoadMap, resampled};
 use scene::{BoxId, BoxLabel, Class, SceneBox};
 
@@ -25,7 +25,7 @@ pub const KINDS: usize = 27;
 /// Kind of geometry of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Shape {
+pub enum NodeGeometry {
     /// None of its own: ego vehicle, strips, junction.
     None = 0,
     /// Objects and crossings.
@@ -34,13 +34,13 @@ pub enum Shape {
     Line = 2,
 }
 
-impl Shape {
+impl NodeGeometry {
     /// The part of a node's numbers that it uses.
     pub fn channels(self) -> Range<usize> {
         match self {
-            Shape::None => 0..0,
-            Shape::Box => 0..BOX,
-            Shape::Line => BOX..VALUES,
+            NodeGeometry::None => 0..0,
+            NodeGeometry::Box => 0..BOX,
+            NodeGeometry::Line => BOX..VALUES,
         }
     }
 }
@@ -56,7 +56,7 @@ pub struct NodeInput {
     /// Size: 0 not stated, 1 small, 2 large.
     pub size: u8,
     /// Kind of its geometry.
-    pub shape: Shape,
+    pub shape: NodeGeometry,
     /// True if `values` are given and stay.
     pub locked: bool,
     /// Its geometry in the network's units; 0 where it is not given.
@@ -198,17 +198,17 @@ pub fn crossing_box(outline_m: &[DVec2]) -> Option<SceneBox> {
 }
 
 /// The geometry that a node can have.
-pub fn shape_of(node: &Node) -> Shape {
+pub fn shape_of(node: &GraphNode) -> NodeGeometry {
     match &node.kind {
-        NodeKind::Object(_) => Shape::Box,
-        NodeKind::Crossing { polyline } if polyline.is_some() || node.locked.is_some() => Shape::Box,
-        NodeKind::Lane { polyline, .. } if polyline.is_some() || node.locked.is_some() => Shape::Line,
-        _ => Shape::None,
+        NodeKind::Object(_) => NodeGeometry::Box,
+        NodeKind::Crossing { polyline } if polyline.is_some() || node.locked.is_some() => NodeGeometry::Box,
+        NodeKind::Lane { polyline, .. } if polyline.is_some() || node.locked.is_some() => NodeGeometry::Line,
+        _ => NodeGeometry::None,
     }
 }
 
 /// A node as the network sees it; locked geometry becomes its values.
-pub fn node_input(node: &Node) -> NodeInput {
+pub fn node_input(node: &GraphNode) -> NodeInput {
     let kind = kind_of(&node.kind);
     let shape = shape_of(node);
     let (state, size) = match &node.kind {
@@ -223,9 +223,11 @@ pub fn node_input(node: &Node) -> NodeInput {
         _ => (0, 0),
     };
     let values = match (&node.locked, shape) {
-        (Some(Locked::Box(b)), Shape::Box) => Some(box_values(kind, b)),
-        (Some(Locked::Line(outline)), Shape::Box) => crossing_box(outline).map(|b| box_values(kind, &b)),
-        (Some(Locked::Line(points)), Shape::Line) => Some(line_values(points)),
+        (Some(Locked::Box(b)), NodeGeometry::Box) => Some(box_values(kind, b)),
+        (Some(Locked::Line(outline)), NodeGeometry::Box) => {
+            crossing_box(outline).map(|b| box_values(kind, &b))
+        }
+        (Some(Locked::Line(points)), NodeGeometry::Line) => Some(line_values(points)),
         _ => None,
     };
     let sound = values.filter(|v| v.iter().all(|v| v.is_finite() && v.abs() < 1e3));
@@ -234,7 +236,7 @@ pub fn node_input(node: &Node) -> NodeInput {
         state,
         size,
         shape,
-        locked: sound.is_some() || shape == Shape::None,
+        locked: sound.is_some() || shape == NodeGeometry::None,
         values: sound.unwrap_or([0.0; VALUES]),
     }
 }

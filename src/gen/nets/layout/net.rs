@@ -6,11 +6,11 @@ use std::sync::{Arc, OnceLock};
 
 use serde::Deserialize;
 
-use super::input::{KINDS, LayoutInput, MAP_CHANNELS, MAP_SIDE, NodeInput, Shape, VALUES};
+use super::input::{KINDS, LayoutInput, MAP_CHANNELS, MAP_SIDE, NodeGeometry, NodeInput, VALUES};
 use crate::occ_dit::timestep_embedding;
 use crate::{ModelError, check_finite, check_length};
-use nn::map::Map;
-use nn::ops::{Edge, MessageParts, NodeBlockParts, OpsError};
+use nn::map::FeatureMap;
+use nn::ops::{MessageEdge, MessageParts, NodeBlockParts, OpsError};
 use nn::weights::{self, WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 use scene::graph::RelationKind;
@@ -81,7 +81,7 @@ impl LayoutConfig {
 }
 
 /// A block of the denoiser, with its attention to the map and its biases by edges.
-struct Block<B: Ops> {
+struct DenoiserBlock<B: Ops> {
     block: B::NodeBlock,
     map_kv: B::Linear,
     bias: Vec<f32>, // [2 * relations + 1][heads]
@@ -102,14 +102,14 @@ pub struct LayoutNet<B: Ops = Cpu> {
     place: B::Tensor,
     time: [B::Linear; 2],
     modulation: B::Linear,
-    blocks: Vec<Block<B>>,
+    blocks: Vec<DenoiserBlock<B>>,
     last: B::Linear,
     leave: B::Linear,
     hash: u64,
 }
 
 /// State that stays the same while one layout is sampled. `T` is the backend's tensor.
-pub struct Embedded<'a, T = Map> {
+pub struct Embedded<'a, T = FeatureMap> {
     input: &'a LayoutInput,
     nodes: T,               // [N][width]
     map_kv: Vec<Option<T>>, // per block [TOKENS][2 width]; none without a map
@@ -151,7 +151,7 @@ impl<B: Ops> LayoutNet<B> {
         let (width, w) = (c.width, &mut file);
         let rounds = (0..c.rounds).map(|i| round(&ops, w, &format!("rounds.{i}"), width));
         let rounds = rounds.collect::<Result<_, _>>()?;
-        let blocks = (0..c.depth).map(|i| Block::new(&ops, w, &format!("blocks.{i}"), &c));
+        let blocks = (0..c.depth).map(|i| DenoiserBlock::new(&ops, w, &format!("blocks.{i}"), &c));
         let blocks = blocks.collect::<Result<_, _>>()?;
         let tables = [("kind", KINDS), ("state", STATES), ("size", SIZES)];
         let tables = tables.map(|(name, rows)| w.take(&format!("{name}.weight"), &[rows, width]));
@@ -227,7 +227,7 @@ impl<B: Ops> LayoutNet<B> {
             cells = map.iter().map(|v| (f32::from(*v) - 128.0) / 127.0).collect();
             tokens = Some(self.tokens(&cells)?);
         }
-        let of_map = |b: &Block<B>| {
+        let of_map = |b: &DenoiserBlock<B>| {
             tokens
                 .as_ref()
                 .map(|t| ops.apply(&b.map_kv, t, PIECE))
@@ -243,9 +243,9 @@ impl<B: Ops> LayoutNet<B> {
     }
 
     /// Bias that the edges add to the scores of attention, for each block.
-    fn biases(&self, n: usize, edges: &[Edge]) -> Result<Vec<B::Tensor>, OpsError> {
+    fn biases(&self, n: usize, edges: &[MessageEdge]) -> Result<Vec<B::Tensor>, OpsError> {
         let heads = self.config.heads;
-        let bias = |block: &Block<B>| {
+        let bias = |block: &DenoiserBlock<B>| {
             let mut data = vec![0.0; heads * n * n];
             for edge in edges {
                 // Torch adds the row of (query = from, key = to, relation) and its mirror image; `edges` has both.
@@ -298,7 +298,7 @@ impl<B: Ops> LayoutNet<B> {
             for k in node.shape.channels() {
                 out[k] = if node.locked { node.values[k] } else { x[k] as f32 };
             }
-            if node.shape == Shape::Box && !embedded.cells.is_empty() {
+            if node.shape == NodeGeometry::Box && !embedded.cells.is_empty() {
                 let (out, place) = out.split_at_mut(VALUES);
                 local(&embedded.cells, [out[0], out[1]], place);
             }
@@ -357,7 +357,7 @@ fn round<B: Ops>(
     ops.messages_from(parts).map_err(|e| w.backend_error(e))
 }
 
-impl<B: Ops> Block<B> {
+impl<B: Ops> DenoiserBlock<B> {
     fn new(ops: &B, w: &mut WeightFile<'_>, name: &str, c: &LayoutConfig) -> Result<Self, WeightsError> {
         let width = c.width;
         let shift = w.take(&format!("{name}.shift"), &[6, width])?;
@@ -390,7 +390,7 @@ fn local(cells: &[f32], place: [f32; 2], out: &mut [f32]) {
 }
 
 /// Every edge both ways; relations of the mirrored ones come behind the first 19.
-fn directed(input: &LayoutInput) -> Result<Vec<Edge>, ModelError> {
+fn directed(input: &LayoutInput) -> Result<Vec<MessageEdge>, ModelError> {
     let n = input.nodes.len();
     let mut out = Vec::with_capacity(2 * input.edges.len());
     for mirrored in [false, true] {
@@ -407,13 +407,13 @@ fn directed(input: &LayoutInput) -> Result<Vec<Edge>, ModelError> {
                 _ => [0.0, 0.0],
             };
             out.push(match mirrored {
-                true => Edge {
+                true => MessageEdge {
                     from: to,
                     to: from,
                     relation: relation + RELATIONS,
                     distance,
                 },
-                false => Edge {
+                false => MessageEdge {
                     from,
                     to,
                     relation,

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::neus;
-use super::prior::Cells;
+use super::prior::SampleDensity;
 use super::sites::Volume;
 use nn::vectorised;
 use scene::{Class, Window};
@@ -46,30 +46,30 @@ pub struct SdfHead {
 /// Sixteen numbers of a site that lie in one cache line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
-pub struct Line(pub [f32; HIDDEN]);
+pub struct SiteFeatures(pub [f32; HIDDEN]);
 
 /// Features of a scene by the UNet, ready for rays. After the last site all lists but `keys` and `classes` hold one
 /// more entry of zeros, for the corners where no voxel is.
-pub struct Field {
+pub struct SignedDistanceField {
     /// The voxels in rising order.
     pub keys: Vec<u32>,
     /// Where the voxels are.
     pub volume: Volume,
     /// Cells where samples are worth it.
-    pub cells: Cells,
+    pub cells: SampleDensity,
     /// Label of each site.
     pub classes: Vec<u8>,
     /// Hidden numbers, `[site]`.
-    pub hidden: Vec<Line>,
+    pub hidden: Vec<SiteFeatures>,
     /// Planes, `[site]`: offset in m, slopes in m per voxel.
     pub planes: Vec<[f32; 4]>,
     /// Appearance, `[site]`.
-    pub appearance: Vec<Line>,
+    pub appearance: Vec<SiteFeatures>,
 }
 
 /// Placement of the samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sampling {
+pub enum RaySampling {
     /// Samples where the prior wants them, refined at the surface, until the ray is opaque.
     Prior,
     /// Samples in this number at equal distances on the whole ray.
@@ -78,7 +78,7 @@ pub enum Sampling {
 
 /// Hit of a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Met {
+pub struct SdfHit {
     /// Mean distance of the hit, m; 0 if nothing was met.
     pub mean_m: f32,
     /// Median distance of the hit, m: it lies on one of the surfaces.
@@ -96,16 +96,16 @@ pub struct Met {
 }
 
 /// The eight voxel centres around a point.
-struct Corners {
+struct TrilinearCorners {
     base: usize,
     cell: [usize; 3],
     share: [f32; 3],
     weights: [[f32; 2]; 3],
 }
 
-impl Field {
+impl SignedDistanceField {
     #[inline(always)]
-    fn corners(&self, p: [f32; 3]) -> Option<Corners> {
+    fn corners(&self, p: [f32; 3]) -> Option<TrilinearCorners> {
         const LOWER: [f32; 3] = [-40.0, -40.0, -1.0];
         const PLACES: [i32; 3] = [Window::NX as i32, Window::NY as i32, Window::NZ as i32];
         let (mut share, mut place) = ([0.0; 3], [0usize; 3]);
@@ -120,7 +120,7 @@ impl Field {
             place[axis] = (floor as i32 + 1) as usize;
         }
         let steps = self.volume.steps;
-        Some(Corners {
+        Some(TrilinearCorners {
             base: place[0] * steps[0] + place[1] * steps[1] + place[2],
             cell: place,
             weights: share.map(|s| [1.0 - s, 1.0 - (1.0 - s)]),
@@ -131,7 +131,7 @@ impl Field {
     /// Site (the number of sites where there is none), weight (0 there) and offset from its centre (in voxels) of a
     /// corner.
     #[inline(always)]
-    fn corner(&self, c: &Corners, corner: usize) -> (usize, f32, [f32; 3]) {
+    fn corner(&self, c: &TrilinearCorners, corner: usize) -> (usize, f32, [f32; 3]) {
         let steps = self.volume.steps;
         let bits = [corner >> 2, corner >> 1 & 1, corner & 1];
         let site = self.volume.sites[c.base + bits[0] * steps[0] + bits[1] * steps[1] + bits[2]] as usize;
@@ -230,15 +230,15 @@ impl Field {
         [origin, direction]: [[f32; 3]; 2],
         [t, f, tails]: [&[f32]; 3],
         weights: &mut Vec<f32>,
-    ) -> Met {
+    ) -> SdfHit {
         let log_pass = neus::weights(s, f, tails, weights);
         let total: f32 = weights.iter().sum();
         let at = |i: usize| neus::crossing(t[i], t[i + 1], f[i], f[i + 1]);
-        let mut met = Met {
+        let mut met = SdfHit {
             log_pass,
             class: Class::FREE,
             samples: t.len() as u16,
-            ..Met::default()
+            ..SdfHit::default()
         };
         let (mut sum, mut passed, mut median) = (0.0, 0.0, None);
         for (i, w) in weights.iter().enumerate() {
@@ -268,14 +268,14 @@ impl Field {
     }
 
     #[inline(always)]
-    fn shoot(&self, head: &SdfHead, ray: &Ray, sampling: Sampling, room: &mut Room) -> Met {
+    fn shoot(&self, head: &SdfHead, ray: &LidarRay, sampling: RaySampling, room: &mut Room) -> SdfHit {
         room.t.clear();
         room.f.clear();
         room.tails.clear();
         let line = [ray.origin, ray.direction].map(|v| v.as_vec3().to_array());
         let (mut log_pass, mut reach_m) = (0.0f32, f32::INFINITY);
         match sampling {
-            Sampling::Prior => {
+            RaySampling::Prior => {
                 for position in self.cells.samples(ray.origin, ray.direction, ray.range_m) {
                     if !self.take(head, line, position, &mut log_pass, room) {
                         reach_m = position;
@@ -284,7 +284,7 @@ impl Field {
                 }
                 self.refine(head, line, room);
             }
-            Sampling::Uniform(n) => {
+            RaySampling::Uniform(n) => {
                 let [near, far] = ray.range_m.map(|v| v as f32);
                 for i in 0..n.min(MOST_SAMPLES) {
                     let position = near + (far.min(60.0) - near) * (i as f32 + 0.5) / n as f32;
@@ -348,7 +348,7 @@ impl Field {
 
 /// A ray of the ego frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Ray {
+pub struct LidarRay {
     /// Origin, m.
     pub origin: DVec3,
     /// Unit direction.
@@ -373,7 +373,7 @@ fn along(origin: [f32; 3], direction: [f32; 3], t: f32) -> [f32; 3] {
 
 vectorised! {
     /// Hits of some rays, one after another.
-    pub fn shoot_all(field: &Field, head: &SdfHead, rays: &[Ray], sampling: Sampling, room: &mut Room, out: &mut [Met]) {
+    pub fn shoot_all(field: &SignedDistanceField, head: &SdfHead, rays: &[LidarRay], sampling: RaySampling, room: &mut Room, out: &mut [SdfHit]) {
         for (ray, met) in rays.iter().zip(out) {
             *met = field.shoot(head, ray, sampling, room);
         }

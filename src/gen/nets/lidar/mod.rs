@@ -17,9 +17,10 @@ use rayon::prelude::*;
 use serde::Deserialize;
 
 use self::field::{
-    APPEARANCE, Field, HIDDEN, Line, Met, RAY_INPUTS, Ray, Room, Sampling, SdfHead, shoot_all,
+    APPEARANCE, HIDDEN, LidarRay, RAY_INPUTS, RaySampling, Room, SdfHead, SdfHit, SignedDistanceField,
+    SiteFeatures, shoot_all,
 };
-use self::prior::Cells;
+use self::prior::SampleDensity;
 use self::sites::{CHILDREN, Sites, TAPS, Volume, physical, surface};
 use super::{ModelError, check_finite};
 use nn::ops::OpsError;
@@ -78,7 +79,7 @@ pub struct LidarNet<B: Ops = Cpu> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnedRay {
     /// Hit of the ray.
-    pub met: Met,
+    pub met: SdfHit,
     /// Strength of the echo, 0 to 255.
     pub intensity: f32,
     /// Logit of losing the echo: at 0 or more the network predicts that a real sensor gets none.
@@ -206,23 +207,23 @@ impl<B: Ops> LidarNet<B> {
 
     /// The field of a scene in the vertical convention of labels. It depends on the voxels alone: keep it for other
     /// poses and patterns. Labels beyond the table count as `others`.
-    pub fn field(&self, grid: &VoxelGrid) -> Result<Field, ModelError> {
+    pub fn field(&self, grid: &VoxelGrid) -> Result<SignedDistanceField, ModelError> {
         let (keys, classes) = voxels(grid);
         self.field_of(keys, classes)
     }
 
     /// The field of sorted, unique voxels at their physical height, and their classes.
-    pub fn field_of(&self, keys: Vec<u32>, classes: Vec<u8>) -> Result<Field, ModelError> {
-        let mut field = Field {
-            hidden: vec![Line([0.0; HIDDEN]); keys.len() + 1],
+    pub fn field_of(&self, keys: Vec<u32>, classes: Vec<u8>) -> Result<SignedDistanceField, ModelError> {
+        let mut field = SignedDistanceField {
+            hidden: vec![SiteFeatures([0.0; HIDDEN]); keys.len() + 1],
             planes: vec![[0.0; 4]; keys.len() + 1],
-            appearance: vec![Line([0.0; APPEARANCE]); keys.len() + 1],
-            cells: Cells::new(&keys, &classes),
+            appearance: vec![SiteFeatures([0.0; APPEARANCE]); keys.len() + 1],
+            cells: SampleDensity::new(&keys, &classes),
             volume: Volume::new(SHAPE, &keys),
             keys,
             classes,
         };
-        let Field {
+        let SignedDistanceField {
             keys,
             classes,
             hidden,
@@ -239,7 +240,7 @@ impl<B: Ops> LidarNet<B> {
         &self,
         keys: &[u32],
         classes: &[u8],
-        [hidden, appearance]: [&mut [Line]; 2],
+        [hidden, appearance]: [&mut [SiteFeatures]; 2],
         planes: &mut [[f32; 4]],
     ) -> Result<(), ModelError> {
         if keys.is_empty() {
@@ -299,12 +300,12 @@ impl<B: Ops> LidarNet<B> {
     /// compute.
     pub fn shoot(
         &self,
-        field: &Field,
-        rays: &[Ray],
-        sampling: Sampling,
+        field: &SignedDistanceField,
+        rays: &[LidarRay],
+        sampling: RaySampling,
     ) -> Result<Vec<LearnedRay>, ModelError> {
-        let piece = |rays: &[Ray]| {
-            let mut met = vec![Met::default(); rays.len()];
+        let piece = |rays: &[LidarRay]| {
+            let mut met = vec![SdfHit::default(); rays.len()];
             shoot_all(field, &self.head, rays, sampling, &mut Room::default(), &mut met);
             self.heads(&met)
         };
@@ -314,7 +315,12 @@ impl<B: Ops> LidarNet<B> {
 
     /// Signed distances at positions along a ray and what it meets there; for tests and pictures. Errors if the backend cannot
     /// compute.
-    pub fn probe(&self, field: &Field, ray: &Ray, t: &[f32]) -> Result<(Vec<f32>, LearnedRay), ModelError> {
+    pub fn probe(
+        &self,
+        field: &SignedDistanceField,
+        ray: &LidarRay,
+        t: &[f32],
+    ) -> Result<(Vec<f32>, LearnedRay), ModelError> {
         let [o, d] = [ray.origin, ray.direction].map(|v| v.as_vec3().to_array());
         let f: Vec<f32> = t
             .iter()
@@ -326,7 +332,7 @@ impl<B: Ops> LidarNet<B> {
     }
 
     /// Echo strength and drops of some rays.
-    fn heads(&self, met: &[Met]) -> Result<Vec<LearnedRay>, OpsError> {
+    fn heads(&self, met: &[SdfHit]) -> Result<Vec<LearnedRay>, OpsError> {
         let (ops, rows) = (&self.ops, met.len());
         let inputs = met.iter().flat_map(|m| m.inputs).collect();
         let mut x = ops.sequence(inputs, RAY_INPUTS)?;

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use super::sites::Level;
+use super::sites::SiteLevel;
 use scene::{Class, Window};
 
 /// Cells along each axis: one more than voxels.
@@ -20,7 +20,7 @@ const STILL: f64 = 1e-30;
 
 /// Density of samples by cell.
 #[derive(PartialEq)]
-pub struct Cells {
+pub struct SampleDensity {
     density: Vec<u8>, // [x][y][z]: 0 nothing, 1 ground only, 2 things
 }
 
@@ -133,12 +133,12 @@ impl Segment {
     }
 }
 
-impl Cells {
+impl SampleDensity {
     /// The cells around these voxels of the grid.
     pub fn new(keys: &[u32], classes: &[u8]) -> Self {
         let mut density = vec![0u8; N[0] * N[1] * N[2]];
         for (key, class) in keys.iter().zip(classes) {
-            let [x, y, z] = Level::place([Window::NX, Window::NY, Window::NZ], *key);
+            let [x, y, z] = SiteLevel::place([Window::NX, Window::NY, Window::NZ], *key);
             let kind = if Class::from_id(*class).is_some_and(Class::is_ground) {
                 1
             } else {
@@ -270,13 +270,13 @@ impl Cells {
 mod tests {
     use super::*;
 
-    fn cells(voxels: &[[usize; 3]]) -> Cells {
+    fn cells(voxels: &[[usize; 3]]) -> SampleDensity {
         let mut keys: Vec<u32> = voxels
             .iter()
             .map(|[x, y, z]| ((x * 200 + y) * 16 + z) as u32)
             .collect();
         keys.sort_unstable();
-        Cells::new(&keys, &vec![Class::Car.id(); keys.len()])
+        SampleDensity::new(&keys, &vec![Class::Car.id(); keys.len()])
     }
 
     /// Row 47 of the extremes table: empty, one voxel, full; one sample and ten thousand.

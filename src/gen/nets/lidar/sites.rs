@@ -22,10 +22,10 @@ const PIECE: usize = 1024;
 /// other things the lowest two voxels gone (all but the top, if it has no more).
 pub fn physical(grid: &VoxelGrid) -> Vec<u8> {
     let mut out = vec![Class::FREE; Window::VOXELS];
-    let kinds: [Kind; 256] = std::array::from_fn(|label| match Class::from_id(label as u8) {
-        _ if label == usize::from(Class::FREE) => Kind::Free,
-        Some(class) if class.is_ground() => Kind::Ground,
-        _ => Kind::Thing,
+    let kinds: [SiteKind; 256] = std::array::from_fn(|label| match Class::from_id(label as u8) {
+        _ if label == usize::from(Class::FREE) => SiteKind::Free,
+        Some(class) if class.is_ground() => SiteKind::Ground,
+        _ => SiteKind::Thing,
     });
     out.par_chunks_mut(Window::NY * Window::NZ)
         .enumerate()
@@ -38,28 +38,28 @@ pub fn physical(grid: &VoxelGrid) -> Vec<u8> {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum SiteKind {
     Free,
     Ground,
     Thing,
 }
 
-fn raise(from: &[u8; Window::NZ], to: &mut [u8], kinds: &[Kind; 256]) {
+fn raise(from: &[u8; Window::NZ], to: &mut [u8], kinds: &[SiteKind; 256]) {
     let kind = |z: usize| kinds[usize::from(from[z])];
     let mut below = 0;
     for z in 0..Window::NZ {
-        if kind(z) != Kind::Thing {
+        if kind(z) != SiteKind::Thing {
             below = 0;
             continue;
         }
-        if below >= RAISE || z + 1 == Window::NZ || kind(z + 1) != Kind::Thing {
+        if below >= RAISE || z + 1 == Window::NZ || kind(z + 1) != SiteKind::Thing {
             to[z] = from[z];
         }
         below += 1;
     }
     for (z, &label) in from.iter().enumerate() {
         let raised = (z + RAISE).min(Window::NZ - 1);
-        if kind(z) == Kind::Ground && to[raised] == Class::FREE {
+        if kind(z) == SiteKind::Ground && to[raised] == Class::FREE {
             to[raised] = label;
         }
     }
@@ -101,7 +101,7 @@ pub fn surface(labels: &[u8]) -> Vec<u32> {
 }
 
 /// One level: sites in rising order of their keys, and the rule books of their neighbours.
-pub struct Level {
+pub struct SiteLevel {
     /// Places along each axis.
     pub shape: [usize; 3],
     /// Keys, (x * ny + y) * nz + z.
@@ -116,7 +116,7 @@ pub struct Level {
     pub parent: RuleBook,
 }
 
-impl Level {
+impl SiteLevel {
     fn new(shape: [usize; 3], keys: Vec<u32>) -> Self {
         let volume = Volume::new(shape, &keys);
         let places: Vec<u32> = keys.iter().map(|k| volume.place(*k) as u32).collect();
@@ -173,7 +173,7 @@ impl Volume {
     }
 
     fn place(&self, key: u32) -> usize {
-        let [x, y, z] = Level::place(self.shape, key);
+        let [x, y, z] = SiteLevel::place(self.shape, key);
         (x + 1) * self.steps[0] + (y + 1) * self.steps[1] + z + 1
     }
 }
@@ -187,7 +187,7 @@ impl Volume {
 /// Sites of all levels.
 pub struct Sites {
     /// Finest first; each half as fine as the one before.
-    pub levels: [Level; LEVELS],
+    pub levels: [SiteLevel; LEVELS],
 }
 
 impl Sites {
@@ -197,13 +197,13 @@ impl Sites {
         keys.retain(|k| *k < end);
         keys.sort_unstable();
         keys.dedup();
-        let mut fine = Level::new(shape, keys);
+        let mut fine = SiteLevel::new(shape, keys);
         let levels = std::array::from_fn(|level| {
             if level + 1 < LEVELS {
                 let coarse = coarser(&mut fine);
                 std::mem::replace(&mut fine, coarse)
             } else {
-                std::mem::replace(&mut fine, Level::new([1; 3], Vec::new()))
+                std::mem::replace(&mut fine, SiteLevel::new([1; 3], Vec::new()))
             }
         });
         Self { levels }
@@ -211,10 +211,10 @@ impl Sites {
 }
 
 /// The next level; fills the parents of `fine`.
-fn coarser(fine: &mut Level) -> Level {
+fn coarser(fine: &mut SiteLevel) -> SiteLevel {
     let shape = fine.shape.map(|n| n.div_ceil(2));
     let above = |key: u32| {
-        let [x, y, z] = Level::place(fine.shape, key);
+        let [x, y, z] = SiteLevel::place(fine.shape, key);
         let corner = (x % 2) * 4 + (y % 2) * 2 + z % 2;
         ([x / 2, y / 2, z / 2], corner as u32)
     };
@@ -224,7 +224,7 @@ fn coarser(fine: &mut Level) -> Level {
         there[(x * shape[1] + y) * shape[2] + z] = true;
     }
     let keys = (0..there.len() as u32).filter(|k| there[*k as usize]).collect();
-    let mut coarse = Level::new(shape, keys);
+    let mut coarse = SiteLevel::new(shape, keys);
     let (sites, fine_sites) = (coarse.keys.len(), fine.keys.len());
     let parents: Vec<[u32; 2]> = fine
         .keys
@@ -239,7 +239,7 @@ fn coarser(fine: &mut Level) -> Level {
         if corner == tap as u32 { parent } else { u32::MAX }
     });
     coarse.children = RuleBook::new(sites, CHILDREN, fine_sites, |row, tap| {
-        let [x, y, z] = Level::place(shape, coarse.keys[row]);
+        let [x, y, z] = SiteLevel::place(shape, coarse.keys[row]);
         fine.volume
             .at([2 * x + tap / 4, 2 * y + tap / 2 % 2, 2 * z + tap % 2])
     });

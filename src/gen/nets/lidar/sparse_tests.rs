@@ -2,7 +2,7 @@
 
 use super::sites::{CHILDREN, Sites, TAPS};
 use crate::golden::{Golden, gap};
-use nn::map::Map;
+use nn::map::FeatureMap;
 use nn::rules::RuleBook;
 use nn::{Cpu, Ops};
 
@@ -28,7 +28,7 @@ fn convolution(golden: &Golden, name: &str, [inputs, outputs, taps]: [usize; 3],
 }
 
 fn apply(conv: &Convolution, x: &[f32], inputs: usize, rules: &RuleBook) -> Vec<f32> {
-    let x = Map {
+    let x = FeatureMap {
         data: x.to_vec(),
         rows: x.len() / inputs,
         columns: 1,

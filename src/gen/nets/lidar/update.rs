@@ -1,9 +1,9 @@
 //! The field after an edit: only voxels within the network's sight of a changed one are computed again, from the voxels
 //! within sight of those; all others keep their numbers. The result equals the field of a fresh run, bit for bit.
 
-use super::field::{Field, HIDDEN, Line};
-use super::prior::Cells;
-use super::sites::{Level, Volume};
+use super::field::{HIDDEN, SignedDistanceField, SiteFeatures};
+use super::prior::SampleDensity;
+use super::sites::{SiteLevel, Volume};
 use super::{LidarNet, SHAPE, voxels};
 use crate::ModelError;
 use nn::Ops;
@@ -39,7 +39,7 @@ pub enum Changed {
 
 impl Region {
     fn holds(&self, key: u32) -> bool {
-        let [x, y, _] = Level::place(SHAPE, key);
+        let [x, y, _] = SiteLevel::place(SHAPE, key);
         (self.low[0]..self.high[0]).contains(&x) && (self.low[1]..self.high[1]).contains(&y)
     }
 
@@ -78,7 +78,7 @@ impl Region {
 
 impl<B: Ops> LidarNet<B> {
     /// Updates a field to a grid, see [`LidarNet::field`].
-    pub fn update(&self, field: &mut Field, grid: &VoxelGrid) -> Result<Changed, ModelError> {
+    pub fn update(&self, field: &mut SignedDistanceField, grid: &VoxelGrid) -> Result<Changed, ModelError> {
         let (keys, classes) = voxels(grid);
         let changed = changed([&field.keys, &keys], [&field.classes, &classes]);
         if changed.is_empty() {
@@ -100,7 +100,7 @@ impl<B: Ops> LidarNet<B> {
             let sites: Vec<usize> = (0..next.keys.len()).filter(near).collect();
             let keys: Vec<u32> = sites.iter().map(|s| next.keys[*s]).collect();
             let classes: Vec<u8> = sites.iter().map(|s| next.classes[*s]).collect();
-            let mut lines = [keys.len(); 2].map(|n| vec![Line([0.0; HIDDEN]); n]);
+            let mut lines = [keys.len(); 2].map(|n| vec![SiteFeatures([0.0; HIDDEN]); n]);
             let mut planes = vec![[0.0; 4]; keys.len()];
             let [hidden, appearance] = &mut lines;
             self.fill(&keys, &classes, [hidden, appearance], &mut planes)?;
@@ -122,7 +122,7 @@ fn changed([old, new]: [&[u32]; 2], [old_classes, new_classes]: [&[u8]; 2]) -> V
     let squares = [SHAPE[0].div_ceil(SQUARE), SHAPE[1].div_ceil(SQUARE)];
     let mut found: Vec<Option<Region>> = vec![None; squares[0] * squares[1]];
     let mut differs = |key: u32| {
-        let [x, y, _] = Level::place(SHAPE, key);
+        let [x, y, _] = SiteLevel::place(SHAPE, key);
         let one = Region {
             low: [x, y],
             high: [x + 1, y + 1],
@@ -170,7 +170,7 @@ fn cheaper(regions: &[Region]) -> Option<(usize, usize, Region)> {
 }
 
 /// The new voxels with the numbers of those that were there before, zeros for the others.
-fn kept(old: &Field, keys: Vec<u32>, classes: Vec<u8>) -> Field {
+fn kept(old: &SignedDistanceField, keys: Vec<u32>, classes: Vec<u8>) -> SignedDistanceField {
     let n = keys.len() + 1;
     let (mut hidden, mut planes, mut appearance) = (
         Vec::with_capacity(n),
@@ -203,8 +203,8 @@ fn kept(old: &Field, keys: Vec<u32>, classes: Vec<u8>) -> Field {
     }
     copy(run);
     copy(nothing..nothing + 1);
-    Field {
-        cells: Cells::new(&keys, &classes),
+    SignedDistanceField {
+        cells: SampleDensity::new(&keys, &classes),
         volume: Volume::new(SHAPE, &keys),
         hidden,
         planes,
@@ -221,7 +221,7 @@ mod tests {
     use world::World;
     use world::voxelize::{Vertical, complete};
 
-    fn same(a: &Field, b: &Field) -> bool {
+    fn same(a: &SignedDistanceField, b: &SignedDistanceField) -> bool {
         a.keys == b.keys
             && a.classes == b.classes
             && a.hidden == b.hidden
@@ -290,7 +290,7 @@ mod tests {
                     continue;
                 };
                 if before.hidden[old] != after.hidden[site] || before.planes[old] != after.planes[site] {
-                    let [kx, ky, _] = Level::place(SHAPE, *key);
+                    let [kx, ky, _] = SiteLevel::place(SHAPE, *key);
                     farthest = farthest.max(kx.abs_diff(x)).max(ky.abs_diff(y));
                 }
             }

@@ -9,8 +9,8 @@ mod time;
 mod tokens;
 
 use super::{CHANNELS, LATENT, ModelError, check_finite, check_length};
-use nn::map::Map;
-use nn::ops::{Ops, Values};
+use nn::map::FeatureMap;
+use nn::ops::{BackendTensor, Ops};
 use nn::transformer::piece_of;
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Precision};
@@ -26,7 +26,7 @@ pub use tokens::{TOKENS, tokens_of};
 
 /// Parts of a condition that depend on neither state nor time, for some of the tokens. `T` is the backend's tensor.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Prepared<T = Map> {
+pub struct Prepared<T = FeatureMap> {
     /// Tokens that are computed, in rising order.
     tokens: Vec<usize>,
     /// Embedded condition, `[token][width]`.
@@ -49,7 +49,7 @@ impl<T> Prepared<T> {
 /// Keys and values of every token in every block at one state: tokens that are computed attend by them to those that
 /// are not. `T` is the backend's tensor.
 #[derive(Clone, Debug, PartialEq)]
-pub struct KeysValues<T = Map>(Vec<T>); // [block], each [token][keys | values]
+pub struct KeysValues<T = FeatureMap>(Vec<T>); // [block], each [token][keys | values]
 
 impl<T> Default for KeysValues<T> {
     fn default() -> Self {
@@ -57,7 +57,7 @@ impl<T> Default for KeysValues<T> {
     }
 }
 
-impl<T: Values> KeysValues<T> {
+impl<T: BackendTensor> KeysValues<T> {
     /// Bytes of memory.
     pub fn bytes(&self) -> usize {
         self.0.iter().map(|block| 4 * block.numbers()).sum()
@@ -66,7 +66,7 @@ impl<T: Values> KeysValues<T> {
 
 /// Handling of the blocks between the first and the last: their contribution to the tokens changes slowly from one step
 /// to the next (Delta-DiT, 2406.01125).
-pub enum Middle<'a> {
+pub enum BlockReuse<'a> {
     /// They are computed.
     Computed,
     /// They are computed, and their contribution is kept here.
@@ -198,7 +198,7 @@ impl<B: Ops> OccDit<B> {
         condition: &Prepared<B::Tensor>,
         keys_values: &mut KeysValues<B::Tensor>,
     ) -> Result<Vec<f32>, ModelError> {
-        self.forward_in(x, t, condition, keys_values, Precision::F32, Middle::Computed)
+        self.forward_in(x, t, condition, keys_values, Precision::F32, BlockReuse::Computed)
     }
 
     /// v as [`Self::forward_some`] gives it, with the precision asked for in the blocks' products, and the middle
@@ -210,7 +210,7 @@ impl<B: Ops> OccDit<B> {
         condition: &Prepared<B::Tensor>,
         keys_values: &mut KeysValues<B::Tensor>,
         precision: Precision,
-        middle: Middle<'_>,
+        middle: BlockReuse<'_>,
     ) -> Result<Vec<f32>, ModelError> {
         check_length("state", x.len(), LATENT)?;
         check_finite("state", x)?;
@@ -292,7 +292,7 @@ impl<B: Ops> OccDit<B> {
         places: &[usize],
         keys_values: &mut KeysValues<B::Tensor>,
         precision: Precision,
-        mut middle: Middle<'_>,
+        mut middle: BlockReuse<'_>,
     ) -> Result<B::Tensor, ModelError> {
         let ops = &self.ops;
         let layers: Vec<&B::Linear> = self.blocks.iter().map(B::ada).collect();
@@ -301,14 +301,14 @@ impl<B: Ops> OccDit<B> {
         let mut before = None;
         let each = self.blocks.iter().zip(&modulations).zip(&mut keys_values.0);
         for (i, ((block, ada), keys_values)) in each.enumerate() {
-            let skips = matches!(&middle, Middle::Reused(added) if added.len() == tokens.numbers());
+            let skips = matches!(&middle, BlockReuse::Reused(added) if added.len() == tokens.numbers());
             match &mut middle {
-                Middle::Reused(added) if skips && i == 1 && last > 1 => {
+                BlockReuse::Reused(added) if skips && i == 1 && last > 1 => {
                     let added = ops.sequence(added.to_vec(), tokens.width())?;
                     tokens = ops.add(tokens, &added)?;
                 }
-                Middle::Kept(_) if i == 1 => before = Some(tokens.clone()),
-                Middle::Kept(added) if i == last && last > 1 => {
+                BlockReuse::Kept(_) if i == 1 => before = Some(tokens.clone()),
+                BlockReuse::Kept(added) if i == last && last > 1 => {
                     if let Some(before) = &before {
                         **added = ops.download(ops.subtract(&tokens, before)?)?.data;
                     }

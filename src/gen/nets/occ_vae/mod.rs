@@ -6,10 +6,10 @@
 mod config;
 mod decoder_input;
 
-use super::encoder::{Encoder, HEIGHT, Level, PIECE, levels, steps};
+use super::encoder::{EncoderLevel, HEIGHT, OccupancyEncoder, PIECE, levels, steps};
 use super::{ModelError, check_finite, check_length};
 use crate::pieces::pieces;
-use nn::map::{CellRect, Map};
+use nn::map::{CellRect, FeatureMap};
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 use numeric::philox::{self, Stream};
@@ -29,10 +29,10 @@ const LOG_VARIANCE: [f32; 2] = [-30.0, 20.0];
 pub struct OccVae<B: Ops = Cpu> {
     ops: B,
     config: VaeConfig,
-    encoder: Encoder<B>,
+    encoder: OccupancyEncoder<B>,
     encoder_head: B::Linear,
     decoder_stem: B::Linear,
-    decoder: Vec<Level<B>>, // coarsest first
+    decoder: Vec<EncoderLevel<B>>, // coarsest first
     up: Vec<B::Linear>,
     input: Option<InputEmbedding<B>>,
     decoder_norm: B::Norm,
@@ -61,7 +61,7 @@ impl<B: Ops> OccVae<B> {
         let upwards: Vec<usize> = widths.iter().rev().copied().collect();
         let w = &mut file;
         let vae = Self {
-            encoder: Encoder::new(&ops, w, &widths, &config.encoder_kernels)?,
+            encoder: OccupancyEncoder::new(&ops, w, &widths, &config.encoder_kernels)?,
             encoder_head: ops.linear(w, "encoder_head", [coarse, 2 * latent], &[1, 1])?,
             decoder_stem: ops.linear(w, "decoder_stem", [latent, coarse], &[1, 1])?,
             decoder: levels(&ops, w, "decoder", &upwards, &config.decoder_kernels)?,
@@ -306,7 +306,7 @@ impl<B: Ops> OccVae<B> {
                     .map(|((v, std), mean)| v * std + mean),
             );
         }
-        let scaled = ops.upload(Map {
+        let scaled = ops.upload(FeatureMap {
             data: scaled,
             rows: window.rows,
             columns: window.columns,

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::detection::{Detection, Group};
+use super::detection::{Detection, DetectionGroup};
 use scene::{BoxId, Extent, LidarSweep, Pose, SceneBox};
 
 /// Centres nearer than this belong together, m.
@@ -76,7 +76,7 @@ pub fn against<'a>(
         let at = map_from_vehicle.apply(detection.center_m.map(f64::from).into());
         let far = |b: &SceneBox| DVec2::distance(b.center_m.truncate(), at.truncate());
         let free = boxes.iter().zip(&mut besides).filter(|(b, beside)| {
-            beside.found.is_none() && Group::of(b.class) == Some(detection.group) && far(b) < NEAR_M
+            beside.found.is_none() && DetectionGroup::of(b.class) == Some(detection.group) && far(b) < NEAR_M
         });
         match free.min_by(|a, b| far(a.0).total_cmp(&far(b.0))) {
             Some((_, beside)) => beside.found = Some(i),

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use nn::map::Map;
+use nn::map::FeatureMap;
 use scene::{BoxId, BoxLabel, Class, Extent, SceneBox};
 
 /// Numbers of a box: offset of its centre from the middle of the cell along x and y (cells), height of the centre (m), logs of length,
@@ -17,7 +17,7 @@ const LOG_SIZES: [f32; 2] = [-3.0, 4.0];
 
 /// Kinds of things for which boxes are predicted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Group {
+pub enum DetectionGroup {
     /// A car.
     Car,
     /// A truck, bus, trailer or construction vehicle.
@@ -30,7 +30,7 @@ pub enum Group {
     Barrier,
 }
 
-impl Group {
+impl DetectionGroup {
     /// All, in the order of the network's outputs.
     pub const ALL: [Self; 5] = [Self::Car, Self::Large, Self::Person, Self::Cycle, Self::Barrier];
 
@@ -83,7 +83,7 @@ impl Group {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detection {
     /// Predicted group.
-    pub group: Group,
+    pub group: DetectionGroup,
     /// Score, 0 to 1.
     pub score: f32,
     /// Centre in the frame of the returns, m.
@@ -111,11 +111,11 @@ impl Detection {
 
 /// Boxes of a map `[x][y][15]` (see [`super::Said`]) whose score is `least` or more, the surest first. They come from
 /// cells of which no neighbour is surer of the same group; boxes too near a surer one are left out.
-pub fn decode(map: &Map, least: f32) -> Vec<Detection> {
+pub fn decode(map: &FeatureMap, least: f32) -> Vec<Detection> {
     let (rows, columns) = (map.rows, map.columns);
     let heat = |group: usize, x: usize, y: usize| map.data[(x * columns + y) * map.width + group];
     let mut found = Vec::new();
-    for (g, group) in Group::ALL.into_iter().enumerate() {
+    for (g, group) in DetectionGroup::ALL.into_iter().enumerate() {
         for at in 0..rows * columns {
             let (x, y) = (at / columns, at % columns);
             let score = 1.0 / (1.0 + (-heat(g, x, y)).exp());
@@ -125,7 +125,7 @@ pub fn decode(map: &Map, least: f32) -> Vec<Detection> {
             let mut around = (x.saturating_sub(1)..(x + 2).min(rows))
                 .flat_map(|i| (y.saturating_sub(1)..(y + 2).min(columns)).map(move |j| (i, j)));
             if around.all(|(i, j)| heat(g, i, j) <= heat(g, x, y)) {
-                let from = at * map.width + Group::ALL.len();
+                let from = at * map.width + DetectionGroup::ALL.len();
                 let numbers = &map.data[from..from + BOX];
                 found.push(of_cell(group, score, [x, y], [rows, columns], numbers));
             }
@@ -145,7 +145,13 @@ pub fn decode(map: &Map, least: f32) -> Vec<Detection> {
     kept
 }
 
-fn of_cell(group: Group, score: f32, cell: [usize; 2], sides: [usize; 2], numbers: &[f32]) -> Detection {
+fn of_cell(
+    group: DetectionGroup,
+    score: f32,
+    cell: [usize; 2],
+    sides: [usize; 2],
+    numbers: &[f32],
+) -> Detection {
     let place =
         |axis: usize| (cell[axis] as f32 + 0.5 + numbers[axis]) * CELL_M - CELL_M * sides[axis] as f32 / 2.0;
     let size = |i: usize| numbers[3 + i].clamp(LOG_SIZES[0], LOG_SIZES[1]).exp();

@@ -15,12 +15,12 @@ use std::sync::{Arc, OnceLock};
 use glam::Vec3;
 use serde::Deserialize;
 
-use crate::encoder::{Level, PIECE};
+use crate::encoder::{EncoderLevel, PIECE};
 use crate::picture::check_kind;
 use crate::unet::UNet;
 use crate::{ModelError, check_finite};
-use detection::{BOX, Detection, Group, decode};
-use nn::map::Map;
+use detection::{BOX, Detection, DetectionGroup, decode};
+use nn::map::FeatureMap;
 use nn::weights::{self, WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 use pillars::{PILLAR, pillars};
@@ -32,7 +32,7 @@ pub const FILE: &str = "lidar_perceiver.safetensors";
 /// Score from which on a box counts as detected: the window and its lists show these boxes.
 pub const SCORE: f32 = 0.3;
 /// Numbers of a cell of the map of boxes: a logit of each group's centre, then those of a box.
-const CELL: usize = Group::ALL.len() + BOX;
+const CELL: usize = DetectionGroup::ALL.len() + BOX;
 
 /// Sizes of the network, as its weight file names them.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -58,12 +58,12 @@ impl PerceiverConfig {
 
 /// Output of the network for a map of pillars.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Said {
+pub struct PerceiverOutput {
     /// Logits of what stands in each column, `[x][y][9]` in the order of [`Stands::ALL`].
-    pub stands: Map,
+    pub stands: FeatureMap,
     /// Numbers of each cell of 2 x 2 columns, `[x][y][15]`: logits of centres in the order of [`Group::ALL`], then the
     /// numbers of a box.
-    pub boxes: Map,
+    pub boxes: FeatureMap,
 }
 
 /// Predictions for a sweep.
@@ -81,7 +81,7 @@ pub struct LidarPerceiver<B: Ops = Cpu> {
     net: UNet<B>,
     norm: B::Norm,
     head: B::Linear,
-    boxes: Level<B>,
+    boxes: EncoderLevel<B>,
     box_norm: B::Norm,
     box_head: B::Linear,
 }
@@ -119,7 +119,7 @@ impl<B: Ops> LidarPerceiver<B> {
             net: UNet::new(&ops, w, PILLAR, config.widths, &config.kernels)?,
             norm: ops.load_norm(w, "norm", fine)?,
             head: ops.linear(w, "head", [fine, 4 * Stands::ALL.len()], point)?,
-            boxes: Level::new(&ops, w, "boxes", fine, &[3])?,
+            boxes: EncoderLevel::new(&ops, w, "boxes", fine, &[3])?,
             box_norm: ops.load_norm(w, "box_norm", fine)?,
             box_head: ops.linear(w, "box_head", [fine, CELL], point)?,
             ops,
@@ -130,7 +130,7 @@ impl<B: Ops> LidarPerceiver<B> {
 
     /// Output of the network for a map of pillars. Errors if its sides are not multiples of 8 columns, it has not 19
     /// numbers a column, or a number is not finite.
-    pub fn forward(&self, pillars: Map) -> Result<Said, ModelError> {
+    pub fn forward(&self, pillars: FeatureMap) -> Result<PerceiverOutput, ModelError> {
         for (what, side) in [("rows", pillars.rows), ("columns", pillars.columns)] {
             if side == 0 || side % 8 != 0 || side > 4096 {
                 return Err(ModelError::OutOfRange {
@@ -148,7 +148,7 @@ impl<B: Ops> LidarPerceiver<B> {
         let stands = ops.apply(&self.head, &ops.norm(&self.norm, map.clone())?, PIECE)?;
         let near = self.boxes.apply(ops, map)?;
         let boxes = ops.apply(&self.box_head, &ops.norm(&self.box_norm, near)?, PIECE)?;
-        let said = Said {
+        let said = PerceiverOutput {
             stands: ops.download(ops.unfold(&stands)?)?,
             boxes: ops.download(boxes)?,
         };

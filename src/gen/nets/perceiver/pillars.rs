@@ -1,6 +1,6 @@
 //! Returns of a LiDAR as a map of columns: the input of the perceiver.
 
-use nn::map::Map;
+use nn::map::FeatureMap;
 use scene::{Extent, Window};
 
 /// Bins of height.
@@ -18,7 +18,7 @@ const COLUMN_M: f32 = Extent::VOXEL_M as f32;
 
 /// Sums over the returns of a column.
 #[derive(Clone, Copy)]
-struct Column {
+struct PillarSums {
     bins: [u32; BINS],
     count: u32,
     heights_m: [f32; 2],
@@ -26,7 +26,7 @@ struct Column {
     offset: [f32; 2],
 }
 
-const EMPTY: Column = Column {
+const EMPTY: PillarSums = PillarSums {
     bins: [0; BINS],
     count: 0,
     heights_m: [f32::INFINITY, f32::NEG_INFINITY],
@@ -38,7 +38,7 @@ const EMPTY: Column = Column {
 /// bins of 0.4 m from 1.2 m below the frame's origin on (lower and higher ones go to the last), then highest and lowest (3 m), mean
 /// strength (255), log count, mean place in the column (-0.5 to 0.5), and how far away the column is (40 m): the only one that an empty
 /// one has. Returns that are not finite or outside the window are left out.
-pub fn pillars(returns: impl IntoIterator<Item = [f32; 4]>) -> Map {
+pub fn pillars(returns: impl IntoIterator<Item = [f32; 4]>) -> FeatureMap {
     let mut columns = vec![EMPTY; Window::COLUMNS];
     for point @ [x, y, z, strength] in returns {
         let at = [x, y].map(|v| (v + HALF_M) / COLUMN_M);
@@ -63,7 +63,7 @@ pub fn pillars(returns: impl IntoIterator<Item = [f32; 4]>) -> Map {
     for (i, column) in columns.iter().enumerate() {
         column.describe([i / Window::NY, i % Window::NY], &mut data);
     }
-    Map {
+    FeatureMap {
         data,
         rows: Window::NX,
         columns: Window::NY,
@@ -71,7 +71,7 @@ pub fn pillars(returns: impl IntoIterator<Item = [f32; 4]>) -> Map {
     }
 }
 
-impl Column {
+impl PillarSums {
     fn describe(&self, place: [usize; 2], into: &mut Vec<f32>) {
         let log = |count: u32| (count as f32).ln_1p() / 4.0;
         into.extend(self.bins.map(log));

@@ -10,8 +10,8 @@ use scene::{BoxId, Class, LidarPoint, Pose, SceneBox, Window};
 
 const TWIN: Twin = Twin("perception");
 
-fn square(side: usize, width: usize, stream: u64) -> Map {
-    Map {
+fn square(side: usize, width: usize, stream: u64) -> FeatureMap {
+    FeatureMap {
         data: uniform(side * side * width, stream),
         rows: side,
         columns: side,
@@ -48,8 +48,8 @@ fn networks_say_what_the_twin_says() {
 #[test]
 fn boxes_are_those_of_the_twin() {
     let found = decode(&square(16, CELL, 3), 0.6);
-    let group = |g: Group| {
-        Group::ALL
+    let group = |g: DetectionGroup| {
+        DetectionGroup::ALL
             .iter()
             .position(|other| *other == g)
             .expect("one of them")
@@ -78,7 +78,7 @@ fn an_empty_sweep_shows_nothing() {
 
 #[test]
 fn bad_maps_are_refused_in_one_line() {
-    let refusal = |map: Map| shipped().forward(map).expect_err("refused").to_string();
+    let refusal = |map: FeatureMap| shipped().forward(map).expect_err("refused").to_string();
     let mut short = square(32, PILLAR, 2);
     short.data.pop();
     assert_eq!(refusal(short), "pillars has 19455 values, expected 19456");
@@ -160,7 +160,7 @@ fn threads_do_not_change_what_is_seen() {
             said
         })
     };
-    let bits = |map: &Map| map.data.iter().map(|v| v.to_bits()).collect::<Vec<u32>>();
+    let bits = |map: &FeatureMap| map.data.iter().map(|v| v.to_bits()).collect::<Vec<u32>>();
     let (one, two) = (run(1), run(2));
     assert_eq!(bits(&one.stands), bits(&two.stands));
     assert_eq!(bits(&one.boxes), bits(&two.boxes));
@@ -206,7 +206,7 @@ fn misses_and_ghosts_are_told_apart() {
         ..Default::default()
     };
     let seen = |x: f32| Detection {
-        group: Group::Car,
+        group: DetectionGroup::Car,
         score: 0.9,
         center_m: [x, 0.3, 0.8],
         size_m: [4.5, 1.9, 1.6],

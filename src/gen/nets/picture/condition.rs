@@ -1,11 +1,11 @@
 //! Condition of the transformer for a frame: classes, depths and facings of every pixel, light and weather, cameras.
 
 use super::RingSize;
-use crate::encoder::{Level, PIECE, levels, steps};
+use crate::encoder::{EncoderLevel, PIECE, levels, steps};
 use crate::picture::PictureDitConfig;
 use crate::{ModelError, check_finite, check_length};
 use nn::Ops;
-use nn::map::Map;
+use nn::map::FeatureMap;
 use nn::weights::{WeightFile, WeightsError};
 
 /// Number of render ids: 0 nothing, 1 to 16 classes, 17 to 19 paint.
@@ -80,7 +80,7 @@ impl Condition {
 
 /// Encoded condition: depends on neither noise nor step, so it is made once per frame. `T` is the backend's tensor.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Told<T = Map> {
+pub struct EncodedCondition<T = FeatureMap> {
     /// Cameras and the size of their pictures.
     pub size: RingSize,
     /// Encoded pixels of every view, one place per cell.
@@ -93,7 +93,7 @@ pub struct Told<T = Map> {
 
 impl<B: Ops> super::PictureDit<B> {
     /// Encodes a condition. Errors if its sizes do not fit, an id is unknown or a number is not finite.
-    pub fn tell(&self, condition: &Condition) -> Result<Told<B::Tensor>, ModelError> {
+    pub fn tell(&self, condition: &Condition) -> Result<EncodedCondition<B::Tensor>, ModelError> {
         condition.check()?;
         let (ops, size) = (&self.ops, condition.size);
         let part = |view: usize| view * size.view_pixels()..(view + 1) * size.view_pixels();
@@ -103,7 +103,7 @@ impl<B: Ops> super::PictureDit<B> {
                 .cells(ops, classes, &condition.depth_m[part(view)], facings, size)
         })?;
         let light = self.light.of(ops, condition)?;
-        Ok(Told {
+        Ok(EncodedCondition {
             size,
             cells,
             light,
@@ -112,14 +112,17 @@ impl<B: Ops> super::PictureDit<B> {
     }
 
     /// The encoded condition without classes, depths and facings, for guidance; time of day, weather and cameras stay.
-    pub fn silent(&self, told: &Told<B::Tensor>) -> Result<Told<B::Tensor>, ModelError> {
+    pub fn silent(
+        &self,
+        told: &EncodedCondition<B::Tensor>,
+    ) -> Result<EncodedCondition<B::Tensor>, ModelError> {
         let (size, pixels) = (told.size, told.size.view_pixels());
         let (nothing, no_depth) = (vec![0; pixels], vec![0.0; pixels]);
         // All views get the same.
         let cells = self
             .teller
             .cells(&self.ops, &nothing, &no_depth, &nothing, size)?;
-        Ok(Told {
+        Ok(EncodedCondition {
             cells: vec![cells; size.views()],
             ..told.clone()
         })
@@ -131,7 +134,7 @@ pub(super) struct Teller<B: Ops> {
     table: B::Table, // classes, then facings, then the edge
     depth: B::Linear,
     down: Vec<B::Linear>,
-    levels: Vec<Level<B>>,
+    levels: Vec<EncoderLevel<B>>,
 }
 
 impl<B: Ops> Teller<B> {
@@ -174,7 +177,7 @@ impl<B: Ops> Teller<B> {
         size: RingSize,
     ) -> Result<B::Tensor, ModelError> {
         let [rows, columns] = size.pixels();
-        let depths = ops.upload(Map {
+        let depths = ops.upload(FeatureMap {
             data: depth_m.iter().flat_map(|d| depth_numbers(*d)).collect(),
             rows,
             columns,

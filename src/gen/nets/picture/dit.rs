@@ -7,11 +7,11 @@ use rayon::prelude::*;
 
 use super::condition::{Light, Teller};
 use super::warp::BEFORE;
-use super::{Before, PictureDitConfig, RingSize, TOKEN, Told, check_kind};
-use crate::encoder::{Level, PIECE};
+use super::{EncodedCondition, PictureDitConfig, RingSize, TOKEN, WarpedLatents, check_kind};
+use crate::encoder::{EncoderLevel, PIECE};
 use crate::occ_dit::{positions, timestep_embedding};
 use crate::{ModelError, check_finite, check_length};
-use nn::map::Map;
+use nn::map::FeatureMap;
 use nn::ring::{AcrossParts, RingBlockParts};
 use nn::weights::{self, WeightFile, WeightsError};
 use nn::{Cpu, Ops};
@@ -31,11 +31,11 @@ pub struct PictureDit<B: Ops = Cpu> {
     time2: B::Linear,
     ada: B::Linear,
     tell: [B::Linear; 2],
-    enter: Level<B>,
+    enter: EncoderLevel<B>,
     down: B::Linear,
     blocks: Vec<B::RingBlock>,
     up: B::Linear,
-    leave: Level<B>,
+    leave: EncoderLevel<B>,
     norm: B::Norm,
     head: B::Linear,
 }
@@ -80,11 +80,11 @@ impl<B: Ops> PictureDit<B> {
                 ops.linear(w, "tell.0", [width, cells], &[])?,
                 ops.linear(w, "tell.1", [width, cells], &[])?,
             ],
-            enter: Level::new(&ops, w, "enter", cells, &config.kernels)?,
+            enter: EncoderLevel::new(&ops, w, "enter", cells, &config.kernels)?,
             down: ops.linear(w, "down", [4 * cells, width], point)?,
             blocks,
             up: ops.linear(w, "up", [width, 4 * cells], point)?,
-            leave: Level::new(&ops, w, "leave", cells, &config.kernels)?,
+            leave: EncoderLevel::new(&ops, w, "leave", cells, &config.kernels)?,
             norm: ops.load_norm(w, "norm", cells)?,
             head: ops.linear(w, "head", [cells, latent], point)?,
             config,
@@ -106,8 +106,8 @@ impl<B: Ops> PictureDit<B> {
         &self,
         x: &[f32],
         t: f32,
-        told: &Told<B::Tensor>,
-        before: Option<&Before>,
+        told: &EncodedCondition<B::Tensor>,
+        before: Option<&WarpedLatents>,
     ) -> Result<Vec<f32>, ModelError> {
         let (ops, size) = (&self.ops, told.size);
         let numbers = size.view_cells() * self.config.latent;
@@ -161,7 +161,7 @@ impl<B: Ops> PictureDit<B> {
         let ops = &self.ops;
         let [rows, columns] = size.cells();
         let map = |data: &[f32]| {
-            ops.upload(Map {
+            ops.upload(FeatureMap {
                 data: data.to_vec(),
                 rows,
                 columns,
@@ -188,7 +188,7 @@ impl<B: Ops> PictureDit<B> {
     /// Positions of the tokens of a view.
     pub(super) fn positions(&self, size: RingSize) -> Result<B::Tensor, ModelError> {
         let [rows, columns] = size.cells().map(|n| n / TOKEN);
-        Ok(self.ops.upload(Map {
+        Ok(self.ops.upload(FeatureMap {
             data: positions([rows, columns], self.config.width, POSITION_BASE),
             rows,
             columns,

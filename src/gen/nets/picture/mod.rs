@@ -18,13 +18,13 @@ use std::sync::{Arc, OnceLock};
 use crate::ModelError;
 use nn::weights::{self, WeightFile, WeightsError};
 
-pub use condition::{CAMERA_NUMBERS, Condition, EDGE, TIMES, Told, WEATHERS};
+pub use condition::{CAMERA_NUMBERS, Condition, EDGE, EncodedCondition, TIMES, WEATHERS};
 pub use config::{PictureDitConfig, PictureSegmenterConfig, PictureVaeConfig};
 pub use dit::PictureDit;
-pub use sample::Sampling;
+pub use sample::PictureSampling;
 pub use segmenter::{PictureSegmenter, SHOWN};
 pub use vae::PictureVae;
-pub use warp::{Before, Motion, warp};
+pub use warp::{Motion, WarpedLatents, warp};
 
 /// File names of both networks in a folder of weights, as `training/train_pictures.py` leaves it.
 pub const FILES: [&str; 2] = ["vae.safetensors", "dit.safetensors"];

@@ -2,23 +2,23 @@
 
 use std::ops::ControlFlow;
 
-use super::{Before, PictureDit, Told};
+use super::{EncodedCondition, PictureDit, WarpedLatents};
 use crate::ModelError;
 use diffusion::inversion::Trajectory;
 use diffusion::replay;
 use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind, StepView};
 use nn::Ops;
-use nn::map::Map;
+use nn::map::FeatureMap;
 
 /// Input of a run of the sampler. `T` is the backend's tensor.
-pub struct Sampling<'a, T = Map> {
+pub struct PictureSampling<'a, T = FeatureMap> {
     /// Condition of the pictures.
-    pub told: &'a Told<T>,
+    pub told: &'a EncodedCondition<T>,
     /// Condition without classes, depths and facings, made by [`PictureDit::silent`]. Needed by guidance other than 1;
     /// made where it is needed and not given.
-    pub silent: Option<&'a Told<T>>,
+    pub silent: Option<&'a EncodedCondition<T>>,
     /// The frame before, if there is one.
-    pub before: Option<&'a Before>,
+    pub before: Option<&'a WarpedLatents>,
     /// Steps, 1 to 1000.
     pub steps: usize,
     /// Guidance: how far to go from the prediction for `silent` to that for `told`. 1 takes that for `told`, 2 was
@@ -26,7 +26,7 @@ pub struct Sampling<'a, T = Map> {
     pub guidance: f64,
 }
 
-impl<T> Sampling<'_, T> {
+impl<T> PictureSampling<'_, T> {
     fn sampler(&self) -> Result<Sampler, ModelError> {
         let guidance = Guidance {
             weight: self.guidance,
@@ -37,14 +37,14 @@ impl<T> Sampling<'_, T> {
 }
 
 /// The network as the solver sees it.
-struct Asked<'a, B: Ops> {
+struct PictureDenoiser<'a, B: Ops> {
     dit: &'a PictureDit<B>,
-    told: &'a Told<B::Tensor>,
-    silent: Option<&'a Told<B::Tensor>>,
-    before: Option<&'a Before>,
+    told: &'a EncodedCondition<B::Tensor>,
+    silent: Option<&'a EncodedCondition<B::Tensor>>,
+    before: Option<&'a WarpedLatents>,
 }
 
-impl<B: Ops> Denoiser for Asked<'_, B> {
+impl<B: Ops> Denoiser for PictureDenoiser<'_, B> {
     type Error = ModelError;
 
     fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, ModelError> {
@@ -66,7 +66,7 @@ impl<B: Ops> PictureDit<B> {
     pub fn sample(
         &self,
         noise: &[f32],
-        sampling: &Sampling<'_, B::Tensor>,
+        sampling: &PictureSampling<'_, B::Tensor>,
         mut on_step: impl FnMut(StepView<'_>) -> ControlFlow<()>,
     ) -> Result<Trajectory, ModelError> {
         let sampler = sampling.sampler()?;
@@ -87,7 +87,7 @@ impl<B: Ops> PictureDit<B> {
         &self,
         source: &Trajectory,
         mask: &[bool],
-        sampling: &Sampling<'_, B::Tensor>,
+        sampling: &PictureSampling<'_, B::Tensor>,
         mut on_step: impl FnMut(StepView<'_>) -> ControlFlow<()>,
     ) -> Result<Trajectory, ModelError> {
         let (sampler, latent) = (sampling.sampler()?, self.config().latent);
@@ -102,14 +102,14 @@ impl<B: Ops> PictureDit<B> {
     /// Gives the network as the solver sees it to `run`.
     fn asked<R>(
         &self,
-        sampling: &Sampling<'_, B::Tensor>,
-        run: impl FnOnce(&mut Asked<'_, B>) -> Result<R, ModelError>,
+        sampling: &PictureSampling<'_, B::Tensor>,
+        run: impl FnOnce(&mut PictureDenoiser<'_, B>) -> Result<R, ModelError>,
     ) -> Result<R, ModelError> {
         let made = match sampling.silent {
             None if sampling.guidance != 1.0 => Some(self.silent(sampling.told)?),
             _ => None,
         };
-        run(&mut Asked {
+        run(&mut PictureDenoiser {
             dit: self,
             told: sampling.told,
             silent: sampling.silent.or(made.as_ref()),

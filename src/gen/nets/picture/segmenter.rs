@@ -8,7 +8,7 @@ use super::{CELL, PictureSegmenterConfig, check_kind, check_sides};
 use crate::encoder::PIECE;
 use crate::unet::UNet;
 use crate::{ModelError, check_finite, check_length};
-use nn::map::Map;
+use nn::map::FeatureMap;
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 
@@ -78,7 +78,7 @@ impl<B: Ops> PictureSegmenter<B> {
         )?;
         check_finite("picture", pictures)?;
         let each = pictures.par_chunks(size).map(|picture| {
-            let logits = self.of_one(Map {
+            let logits = self.of_one(FeatureMap {
                 data: picture.to_vec(),
                 rows: height,
                 columns: width,
@@ -110,7 +110,7 @@ impl<B: Ops> PictureSegmenter<B> {
         check_sides(sides, CELL, "a multiple of 8 px up to 8192")?;
         check_length("picture", picture.len(), height * width * COLOURS)?;
         check_finite("picture", picture)?;
-        let picture = Map {
+        let picture = FeatureMap {
             data: picture.to_vec(),
             rows: height,
             columns: width,
@@ -137,7 +137,7 @@ impl<B: Ops> PictureSegmenter<B> {
         Ok(windows.map(mean).collect())
     }
 
-    fn of_one(&self, picture: Map) -> Result<Vec<f32>, ModelError> {
+    fn of_one(&self, picture: FeatureMap) -> Result<Vec<f32>, ModelError> {
         let ops = &self.ops;
         let map = self.net.apply(ops, picture)?;
         let logits = ops.apply(&self.head, &ops.norm(&self.norm, map)?, PIECE)?;

@@ -57,7 +57,7 @@ fn motion() -> Motion {
     }
 }
 
-fn before(size: RingSize, depth_m: &[f32]) -> Before {
+fn before(size: RingSize, depth_m: &[f32]) -> WarpedLatents {
     let [_, width] = size.pixels();
     let mirrored = depth_m.chunks_exact(width).flat_map(|row| row.iter().rev());
     let mirrored: Vec<f32> = mirrored.copied().collect();
@@ -131,7 +131,7 @@ fn transformer_against_the_twin() {
     let silent = dit.silent(&told).expect("finite");
     TWIN.compare("v_silent", &dit.v(&x, 437.5, &silent, None).expect("finite"));
 
-    let mut sampling = Sampling {
+    let mut sampling = PictureSampling {
         told: &told,
         silent: None,
         before: Some(&before),
@@ -162,7 +162,7 @@ fn some_cells_are_painted_again() {
     let (mut condition, dit) = (condition(size), &nets.dit);
     let x = uniform(VIEWS * size.view_cells() * 8, 1);
     let told = dit.tell(&condition).expect("a condition");
-    let sampling = |told| Sampling {
+    let sampling = |told| PictureSampling {
         told,
         silent: None,
         before: None,
@@ -202,7 +202,7 @@ fn neighbours_and_the_frame_before_are_heard() {
     let dit = &nets.dit;
     let mut told = dit.tell(&condition(size)).expect("a condition");
     let x = uniform(VIEWS * size.view_cells() * 8, 1);
-    let gap = |told: &Told| {
+    let gap = |told: &EncodedCondition| {
         let v = dit.v(&x, 437.5, told, None).expect("finite");
         let all = TWIN.numbers("v_alone");
         crate::golden::gap(&v, &all[v.len()..2 * v.len()])
@@ -249,7 +249,7 @@ fn seconds_of_a_frame() {
         timed("one call", start);
         assert_eq!(v.len(), noise.len());
         let start = Instant::now();
-        let sampling = Sampling {
+        let sampling = PictureSampling {
             told: &told,
             silent: None,
             before: Some(&before),

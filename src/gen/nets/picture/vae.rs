@@ -5,9 +5,9 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::{CELL, PictureVaeConfig, check_kind, check_sides};
-use crate::encoder::{Level, PIECE, levels, steps};
+use crate::encoder::{EncoderLevel, PIECE, levels, steps};
 use crate::{ModelError, check_finite, check_length};
-use nn::map::Map;
+use nn::map::FeatureMap;
 use nn::weights::{self, WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 
@@ -21,12 +21,12 @@ pub struct PictureVae<B: Ops = Cpu> {
     ops: B,
     config: PictureVaeConfig,
     stem: B::Linear,
-    encoder: Vec<Level<B>>, // finest first
+    encoder: Vec<EncoderLevel<B>>, // finest first
     down: Vec<B::Linear>,
     encoder_norm: B::Norm,
     encoder_head: B::Linear, // mean, then log variance
     decoder_stem: B::Linear,
-    decoder: Vec<Level<B>>, // coarsest first
+    decoder: Vec<EncoderLevel<B>>, // coarsest first
     up: Vec<B::Linear>,
     decoder_norm: B::Norm,
     decoder_head: B::Linear,
@@ -106,7 +106,7 @@ impl<B: Ops> PictureVae<B> {
         check_finite("picture", pictures)?;
         let latent = self.config.latent;
         let each = pictures.par_chunks(size).map(|picture| {
-            let mut moments = self.moments(Map {
+            let mut moments = self.moments(FeatureMap {
                 data: picture.to_vec(),
                 rows: height,
                 columns: width,
@@ -126,7 +126,7 @@ impl<B: Ops> PictureVae<B> {
     }
 
     /// Mean and log variance of every cell of a picture.
-    fn moments(&self, picture: Map) -> Result<Vec<f32>, ModelError> {
+    fn moments(&self, picture: FeatureMap) -> Result<Vec<f32>, ModelError> {
         let ops = &self.ops;
         let squares = ops.fold(&ops.upload(picture)?)?;
         let mut map = self.encoder[0].apply(ops, ops.apply(&self.stem, &squares, PIECE)?)?;
@@ -157,7 +157,7 @@ impl<B: Ops> PictureVae<B> {
                 let of = cell.iter().zip(&self.latent_std).zip(&self.latent_mean);
                 of.map(|((value, std), mean)| value * std + mean)
             });
-            self.draw(Map {
+            self.draw(FeatureMap {
                 data: scaled.collect(),
                 rows,
                 columns,
@@ -168,7 +168,7 @@ impl<B: Ops> PictureVae<B> {
     }
 
     /// The picture of a latent that is not normalised.
-    fn draw(&self, latent: Map) -> Result<Vec<f32>, ModelError> {
+    fn draw(&self, latent: FeatureMap) -> Result<Vec<f32>, ModelError> {
         let ops = &self.ops;
         let cells = ops.upload(latent)?;
         let mut map = self.decoder[0].apply(ops, ops.apply(&self.decoder_stem, &cells, PIECE)?)?;

@@ -29,9 +29,9 @@ pub struct Motion {
 /// their surface was seen (row by row), how far the place is between them (row, column; 0 to 1), and 1; all 0 where the
 /// surface was outside of the picture or hidden.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Before(Vec<f32>);
+pub struct WarpedLatents(Vec<f32>);
 
-impl Before {
+impl WarpedLatents {
     /// All numbers.
     pub fn numbers(&self) -> &[f32] {
         &self.0
@@ -52,7 +52,7 @@ pub fn warp(
     latents_before: &[f32],
     [depth_m, depth_before_m]: [&[f32]; 2],
     motions: &[Motion],
-) -> Result<Before, ModelError> {
+) -> Result<WarpedLatents, ModelError> {
     let (views, pixels) = (size.views(), size.view_pixels());
     let numbers = latents_before.len() / (views * size.view_cells());
     let expected = views * size.view_cells() * numbers.max(1);
@@ -78,12 +78,12 @@ pub fn warp(
             let (now, then) = (cell_depths(now, size), cell_depths(then, size));
             for (cell, (out, deep)) in out.chunks_exact_mut(wide).zip(now).enumerate() {
                 let at = [cell / size.columns, cell % size.columns];
-                if let Some(seen) = Seen::of(at, deep, &then, motion, size) {
+                if let Some(seen) = WarpSource::of(at, deep, &then, motion, size) {
                     seen.write(latents, size, out);
                 }
             }
         });
-    Ok(Before(out))
+    Ok(WarpedLatents(out))
 }
 
 /// Depth of each cell of a view: that of the pixel right below its middle; far away where there is none.
@@ -96,14 +96,14 @@ fn cell_depths(depth_m: &[f32], size: RingSize) -> Vec<f32> {
 }
 
 /// Place where a cell's surface was seen in the frame before.
-struct Seen {
+struct WarpSource {
     /// The cell above and left of the place; may be one outside.
     low: [f32; 2],
     /// Offset from there to the place, 0 to 1.
     part: [f32; 2],
 }
 
-impl Seen {
+impl WarpSource {
     /// The place where a cell's surface was seen; `None` if it was outside or hidden. `depths_then_m` are of cells. All
     /// in 32 bits and in the order of the twin, since a rounding may decide.
     fn of(

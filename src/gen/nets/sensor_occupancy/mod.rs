@@ -16,7 +16,7 @@ use crate::perceiver::pillars::{PILLAR, pillars};
 use crate::picture::{SHOWN, check_kind};
 use crate::unet::UNet;
 use crate::{ModelError, check_finite, check_length};
-use nn::map::Map;
+use nn::map::FeatureMap;
 use nn::weights::{self, WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 use scene::{Class, VoxelGrid, Window};
@@ -113,7 +113,7 @@ impl<B: Ops> SensorOccupancy<B> {
 
     /// Logits `[x][y][16][18]` of each voxel's label for a map of columns as `columns` makes them. Errors if the sides
     /// are not multiples of 8 columns, the numbers of a column do not fit, or one is not finite.
-    pub fn forward(&self, columns: Map) -> Result<Map, ModelError> {
+    pub fn forward(&self, columns: FeatureMap) -> Result<FeatureMap, ModelError> {
         for (what, side) in [("rows", columns.rows), ("columns", columns.columns)] {
             if side == 0 || side % 8 != 0 || side > 4096 {
                 return Err(ModelError::OutOfRange {
@@ -136,7 +136,7 @@ impl<B: Ops> SensorOccupancy<B> {
 
     /// Input of the network: for each column its pillar of returns, its direction from the vehicle, and the classes
     /// painted on its voxels. `painted` is `[x][y][16]`, classes as `scene::truth` counts them, or [`UNSEEN`].
-    fn columns(&self, pillars: &Map, painted: &[u8]) -> Map {
+    fn columns(&self, pillars: &FeatureMap, painted: &[u8]) -> FeatureMap {
         let (inputs, paint) = (self.inputs(), self.paint.len() / (SHOWN + 1));
         let middle = |i: usize| (i as f32 + 0.5) * Window::VOXEL_M as f32 + Window::MIN_M[0] as f32;
         let mut data = vec![0.0; Window::COLUMNS * inputs];
@@ -155,7 +155,7 @@ impl<B: Ops> SensorOccupancy<B> {
                 out.copy_from_slice(&self.paint[class * paint..][..paint]);
             }
         });
-        Map {
+        FeatureMap {
             data,
             rows: Window::NX,
             columns: Window::NY,

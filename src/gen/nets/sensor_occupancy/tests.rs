@@ -16,8 +16,8 @@ fn shipped() -> Arc<SensorOccupancy> {
     SensorOccupancy::bundled().expect("the shipped weights")
 }
 
-fn square(side: usize, width: usize) -> Map {
-    Map {
+fn square(side: usize, width: usize) -> FeatureMap {
+    FeatureMap {
         data: uniform(side * side * width, 2),
         rows: side,
         columns: side,
@@ -43,7 +43,7 @@ fn networks_say_what_the_twin_says() {
 #[test]
 fn bad_input_is_refused_in_one_line() {
     let net = shipped();
-    let refusal = |map: Map| net.forward(map).expect_err("refused").to_string();
+    let refusal = |map: FeatureMap| net.forward(map).expect_err("refused").to_string();
     let width = net.inputs();
     let mut short = square(16, width);
     short.data.pop();

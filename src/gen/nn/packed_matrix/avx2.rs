@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::{__m256, _mm256_broadcast_ss, _mm256_fmadd_ps, _mm256_loadu_ps, _mm256_storeu_ps};
 
-use super::{LANES, Sizes, Start};
+use super::{InitialSum, LANES, Sizes};
 
 /// Rows that are computed together: 6 x 2 accumulators leave room in 16 registers.
 const ROWS: usize = 6;
@@ -14,7 +14,7 @@ const HALF: usize = LANES / 2;
 /// # Safety
 /// AVX2 and FMA; m rows of a and out, k of b (to a whole number of sixteens) and n of the bias must be valid.
 #[target_feature(enable = "avx2,fma")]
-pub unsafe fn rows(m: usize, s: &Sizes, a: *const f32, b: *const f32, start: Start<'_>, out: *mut f32) {
+pub unsafe fn rows(m: usize, s: &Sizes, a: *const f32, b: *const f32, start: InitialSum<'_>, out: *mut f32) {
     for row in (0..m).step_by(ROWS) {
         let at = |r: usize| [row + r, row + r];
         // SAFETY: handed on, for these rows.
@@ -31,7 +31,7 @@ pub unsafe fn pairs(pairs: &[[u32; 2]], s: &Sizes, a: *const f32, b: *const f32,
     for pairs in pairs.chunks(ROWS) {
         let at = |r: usize| pairs[r].map(|row| row as usize);
         // SAFETY: handed on, for these rows.
-        unsafe { some(pairs.len(), at, s, a, b, Start::Add, out) };
+        unsafe { some(pairs.len(), at, s, a, b, InitialSum::Add, out) };
     }
 }
 
@@ -44,7 +44,7 @@ unsafe fn some(
     s: &Sizes,
     a: *const f32,
     b: *const f32,
-    start: Start<'_>,
+    start: InitialSum<'_>,
     out: *mut f32,
 ) {
     macro_rules! of {
@@ -74,7 +74,7 @@ unsafe fn tile<const R: usize>(
     s: &Sizes,
     from: [*const f32; R],
     b: *const f32,
-    start: Start<'_>,
+    start: InitialSum<'_>,
     to: [*mut f32; R],
 ) {
     for first in (0..s.n).step_by(LANES) {
@@ -85,9 +85,9 @@ unsafe fn tile<const R: usize>(
         unsafe {
             for (row, to) in rows.iter_mut().zip(&to) {
                 let held = match start {
-                    Start::Zero => continue,
-                    Start::Bias(bias) => bias.as_ptr().add(first),
-                    Start::Add => to.add(first).cast_const(),
+                    InitialSum::Zero => continue,
+                    InitialSum::Bias(bias) => bias.as_ptr().add(first),
+                    InitialSum::Add => to.add(first).cast_const(),
                 };
                 row.as_mut_ptr().copy_from_nonoverlapping(held, columns);
             }

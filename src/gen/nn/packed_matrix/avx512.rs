@@ -5,7 +5,7 @@ use std::arch::x86_64::{
     _mm512_setzero_ps,
 };
 
-use super::{LANES, Sizes, Start};
+use super::{InitialSum, LANES, Sizes};
 
 /// Rows that are computed together: 8 x 3 accumulators leave room in 32 registers.
 const ROWS: usize = 8;
@@ -15,7 +15,7 @@ const ROWS: usize = 8;
 /// # Safety
 /// AVX-512F; m rows of a and out, k of b (to a whole number of sixteens) and n of the bias must be valid.
 #[target_feature(enable = "avx512f")]
-pub unsafe fn rows(m: usize, s: &Sizes, a: *const f32, b: *const f32, start: Start<'_>, out: *mut f32) {
+pub unsafe fn rows(m: usize, s: &Sizes, a: *const f32, b: *const f32, start: InitialSum<'_>, out: *mut f32) {
     for row in (0..m).step_by(ROWS) {
         // SAFETY: handed on, for these rows.
         unsafe {
@@ -30,7 +30,7 @@ pub unsafe fn rows(m: usize, s: &Sizes, a: *const f32, b: *const f32, start: Sta
 /// # Safety
 /// As for [`rows`].
 #[target_feature(enable = "avx512f")]
-unsafe fn tile(rows: usize, s: &Sizes, a: *const f32, b: *const f32, start: Start<'_>, out: *mut f32) {
+unsafe fn tile(rows: usize, s: &Sizes, a: *const f32, b: *const f32, start: InitialSum<'_>, out: *mut f32) {
     macro_rules! of {
         ($vectors:literal) => {
             match rows {
@@ -134,7 +134,7 @@ unsafe fn tile_of<const R: usize, const V: usize>(
     s: &Sizes,
     a: *const f32,
     b: *const f32,
-    start: Start<'_>,
+    start: InitialSum<'_>,
     out: *mut f32,
 ) {
     // Lanes of vector v that belong to the product.
@@ -145,11 +145,11 @@ unsafe fn tile_of<const R: usize, const V: usize>(
         for (r, sums) in sums.iter_mut().enumerate() {
             for (v, sum) in sums.iter_mut().enumerate() {
                 match start {
-                    Start::Zero => {}
-                    Start::Bias(bias) => {
+                    InitialSum::Zero => {}
+                    InitialSum::Bias(bias) => {
                         *sum = _mm512_maskz_loadu_ps(mask(v), bias.as_ptr().add(v * LANES));
                     }
-                    Start::Add => {
+                    InitialSum::Add => {
                         let held = out.add(r * s.out_stride + v * LANES);
                         *sum = _mm512_maskz_loadu_ps(mask(v), held);
                     }

@@ -12,7 +12,7 @@ mod plain;
 use bytemuck::{Pod, Zeroable};
 
 use super::int8::Int8Matrix;
-use super::view::View;
+use super::view::MatrixView;
 
 /// Columns of a panel: three vectors of sixteen.
 pub(super) const PANEL: usize = 3 * LANES;
@@ -21,11 +21,11 @@ pub(super) const LANES: usize = 16;
 /// A cache line: a vector that begins within one is read at once.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, align(64))]
-struct Line([f32; LANES]);
+struct CacheLine([f32; LANES]);
 
 /// Start value of a product's sums.
 #[derive(Clone, Copy)]
-pub enum Start<'a> {
+pub enum InitialSum<'a> {
     /// Zero.
     Zero,
     /// One number per column.
@@ -37,15 +37,15 @@ pub enum Start<'a> {
 /// A matrix `[k][n]`; panel p holds k rows of its 48 columns, the last one of as many sixteens as it needs.
 #[derive(Clone)]
 pub struct PackedMatrix {
-    data: Vec<Line>,
+    data: Vec<CacheLine>,
     k: usize,
     n: usize,
 }
 
 impl PackedMatrix {
     /// Packs the first `k` rows and `n` columns of `matrix`.
-    pub fn new(matrix: View<'_>, k: usize, n: usize) -> Self {
-        let mut lines = vec![Line([0.0; LANES]); k * n.div_ceil(LANES)];
+    pub fn new(matrix: MatrixView<'_>, k: usize, n: usize) -> Self {
+        let mut lines = vec![CacheLine([0.0; LANES]); k * n.div_ceil(LANES)];
         let data: &mut [f32] = bytemuck::cast_slice_mut(&mut lines);
         for first in (0..n).step_by(PANEL) {
             let wide = width(n, first);
@@ -64,7 +64,7 @@ impl PackedMatrix {
         let rows: Vec<f32> = (0..self.k)
             .flat_map(|row| (0..self.n).map(move |column| self.at(row, column)))
             .collect();
-        Int8Matrix::new(View::rows(&rows, self.n), self.k, self.n)
+        Int8Matrix::new(MatrixView::rows(&rows, self.n), self.k, self.n)
     }
 
     fn values(&self) -> &[f32] {
@@ -95,7 +95,7 @@ impl PackedMatrix {
         a: &[f32],
         a_stride: usize,
         [m, from_k, k]: [usize; 3],
-        start: Start<'_>,
+        start: InitialSum<'_>,
         out: &mut [f32],
         out_stride: usize,
     ) {
@@ -107,7 +107,7 @@ impl PackedMatrix {
             let wide = width(self.n, first);
             let b = &self.values()[first * self.k + from_k * wide..][..k * wide];
             let start = match start {
-                Start::Bias(bias) => Start::Bias(&bias[first..]),
+                InitialSum::Bias(bias) => InitialSum::Bias(&bias[first..]),
                 other => other,
             };
             let columns = PANEL.min(self.n - first);
@@ -175,14 +175,14 @@ pub fn product(
     b: &[f32],
     b_stride: usize,
     [m, n, k]: [usize; 3],
-    start: Start<'_>,
+    start: InitialSum<'_>,
     out: &mut [f32],
     out_stride: usize,
 ) {
     assert!(m > 0 && k > 0 && (1..=PANEL).contains(&n) && out_stride >= n);
     assert!((m - 1) * a_stride + k <= a.len() && (m - 1) * out_stride + n <= out.len());
     assert!((k - 1) * b_stride + n.next_multiple_of(LANES) <= b.len());
-    if let Start::Bias(bias) = start {
+    if let InitialSum::Bias(bias) = start {
         assert!(bias.len() >= n);
     }
     let sizes = Sizes {
@@ -241,7 +241,15 @@ impl Kernel {
     /// # Safety
     /// The machine has the kernel's instructions; m rows of `a` and `out`, k of `b` (to a whole number of sixteens) and n
     /// values of the bias are valid.
-    unsafe fn rows(self, m: usize, s: &Sizes, a: *const f32, b: *const f32, start: Start<'_>, out: *mut f32) {
+    unsafe fn rows(
+        self,
+        m: usize,
+        s: &Sizes,
+        a: *const f32,
+        b: *const f32,
+        start: InitialSum<'_>,
+        out: *mut f32,
+    ) {
         // SAFETY: handed on.
         unsafe {
             match self {
@@ -297,12 +305,12 @@ mod tests {
                 *v *= [1e18, 1e-18, 1.0, 1e-40][i % 4];
             }
             let bias = wave(n, 0.11);
-            let packed = PackedMatrix::new(View::rows(&b, n), k, n);
+            let packed = PackedMatrix::new(MatrixView::rows(&b, n), k, n);
             assert!((0..k * n).all(|i| packed.at(i / n, i % n) == b[i]));
             let mut out = vec![f32::NAN; m * n];
-            packed.multiply(&a, k, [m, 0, k], Start::Bias(&bias), &mut out, n);
+            packed.multiply(&a, k, [m, 0, k], InitialSum::Bias(&bias), &mut out, n);
             let mut twice = out.clone();
-            packed.multiply(&a, k, [m, 0, k], Start::Add, &mut twice, n);
+            packed.multiply(&a, k, [m, 0, k], InitialSum::Add, &mut twice, n);
             let plain = by(Kernel::Plain, &packed, &a, m, &bias);
             for (at, found) in out.iter().enumerate() {
                 let terms = (0..k).map(|i| f64::from(a[at / n * k + i]) * f64::from(b[i * n + at % n]));
@@ -322,12 +330,26 @@ mod tests {
             }
             // A row alone is bit for bit the row among others; a product in two parts of k the whole.
             let mut alone = vec![f32::NAN; n];
-            packed.multiply(&a[(m - 1) * k..], k, [1, 0, k], Start::Bias(&bias), &mut alone, n);
+            packed.multiply(
+                &a[(m - 1) * k..],
+                k,
+                [1, 0, k],
+                InitialSum::Bias(&bias),
+                &mut alone,
+                n,
+            );
             assert_eq!(alone, out[(m - 1) * n..]);
             if k > 1 {
                 let mut parts = vec![f32::NAN; m * n];
-                packed.multiply(&a, k, [m, 0, k / 2], Start::Bias(&bias), &mut parts, n);
-                packed.multiply(&a[k / 2..], k, [m, k / 2, k - k / 2], Start::Add, &mut parts, n);
+                packed.multiply(&a, k, [m, 0, k / 2], InitialSum::Bias(&bias), &mut parts, n);
+                packed.multiply(
+                    &a[k / 2..],
+                    k,
+                    [m, k / 2, k - k / 2],
+                    InitialSum::Add,
+                    &mut parts,
+                    n,
+                );
                 assert_eq!(parts, out);
             }
             assert_eq!(
@@ -350,7 +372,7 @@ mod tests {
     fn row_17_pairs() {
         let (rows, k, n) = (23, 40, 70);
         let (a, b, before) = (wave(rows * k, 0.37), wave(k * n, 0.73), wave(rows * n, 0.21));
-        let packed = PackedMatrix::new(View::rows(&b, n), k, n);
+        let packed = PackedMatrix::new(MatrixView::rows(&b, n), k, n);
         let pairs: Vec<[u32; 2]> = (0..rows as u32 - 2)
             .map(|i| [i, (i * 7 + 3) % rows as u32])
             .collect();
@@ -362,7 +384,7 @@ mod tests {
                 &a[from * k..],
                 k,
                 [1, 0, k],
-                Start::Add,
+                InitialSum::Add,
                 &mut expected[to * n..],
                 n,
             );
@@ -413,7 +435,7 @@ mod tests {
         let mut out = vec![f32::NAN; m * n];
         assert!(a.len() >= m * k && bias.len() >= n);
         for first in (0..n).step_by(PANEL) {
-            let (b, start) = (&packed.values()[first * k..], Start::Bias(&bias[first..]));
+            let (b, start) = (&packed.values()[first * k..], InitialSum::Bias(&bias[first..]));
             let sizes = Sizes {
                 a_stride: k,
                 b_stride: width(n, first),

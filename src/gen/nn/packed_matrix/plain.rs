@@ -1,12 +1,12 @@
 //! The kernel for all other machines: as the compiler makes it.
 
-use super::{PANEL, Sizes, Start};
+use super::{InitialSum, PANEL, Sizes};
 
 /// `m` rows of a product.
 ///
 /// # Safety
 /// m rows of `a` and `out`, k of `b` and n values of the bias are valid.
-pub unsafe fn rows(m: usize, s: &Sizes, a: *const f32, b: *const f32, start: Start<'_>, out: *mut f32) {
+pub unsafe fn rows(m: usize, s: &Sizes, a: *const f32, b: *const f32, start: InitialSum<'_>, out: *mut f32) {
     for row in 0..m {
         // SAFETY: the caller's promise, for this row.
         let (a, out) = unsafe {
@@ -18,9 +18,9 @@ pub unsafe fn rows(m: usize, s: &Sizes, a: *const f32, b: *const f32, start: Sta
         };
         let mut sums = [0.0; PANEL];
         match start {
-            Start::Zero => {}
-            Start::Bias(bias) => sums[..s.n].copy_from_slice(&bias[..s.n]),
-            Start::Add => sums[..s.n].copy_from_slice(out),
+            InitialSum::Zero => {}
+            InitialSum::Bias(bias) => sums[..s.n].copy_from_slice(&bias[..s.n]),
+            InitialSum::Add => sums[..s.n].copy_from_slice(out),
         }
         for (k, value) in a.iter().enumerate() {
             // SAFETY: row k of b.
@@ -44,7 +44,7 @@ pub unsafe fn pairs(pairs: &[[u32; 2]], s: &Sizes, a: *const f32, b: *const f32,
                 s,
                 a.add(from * s.a_stride),
                 b,
-                Start::Add,
+                InitialSum::Add,
                 out.add(to * s.out_stride),
             )
         };

@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 use super::noise::{floor, value3};
 use build::{raise, spread, trunks, weights};
 use owners::Owners;
-use scene::appearance::{AppearanceData, BLOCK, FieldShape, LEAVES, NZ, SURFACE, Section};
+use scene::appearance::{AppearanceData, AppearanceSection, BLOCK, FieldShape, LEAVES, NZ, SURFACE};
 use scene::{Class, VoxelGrid};
 #[cfg(test)]
 pub(super) use structures::FARTHEST_M;
@@ -38,7 +38,7 @@ pub struct Structure {
 }
 
 /// Occupancy as a field.
-pub struct Field {
+pub struct OccupancyField {
     shape: FieldShape,
     cells: [usize; 2],   // between the middles of voxels
     end: Vec3,           // the same along all axes
@@ -61,7 +61,7 @@ pub struct FieldHit {
     pub label: u8,
 }
 
-impl Field {
+impl OccupancyField {
     /// Builds the field from the voxels that stand on the ground (physical heights) and the things that own some of
     /// them.
     pub fn new(grid: &VoxelGrid, owners: &Owners, seed: u32) -> Self {
@@ -130,16 +130,19 @@ impl Field {
     /// Packs the field for the graphics card.
     pub fn pack(&self, out: &mut AppearanceData) {
         let halves = |v: &u64| [*v as u32, (*v >> 32) as u32];
-        out.push_bytes(Section::Weight, &self.weight);
-        out.push_bytes(Section::Label, &self.label);
-        out.push(Section::Mask, self.mask.iter().flat_map(halves));
-        out.push(Section::Blocks, self.blocks.iter().flat_map(halves));
-        out.push(Section::StructureOf, self.structure.iter().map(|i| u32::from(*i)));
+        out.push_bytes(AppearanceSection::Weight, &self.weight);
+        out.push_bytes(AppearanceSection::Label, &self.label);
+        out.push(AppearanceSection::Mask, self.mask.iter().flat_map(halves));
+        out.push(AppearanceSection::Blocks, self.blocks.iter().flat_map(halves));
+        out.push(
+            AppearanceSection::StructureOf,
+            self.structure.iter().map(|i| u32::from(*i)),
+        );
         let structures = self.structures.iter().flat_map(|s| {
             let [x, y, height] = [s.axis.x, s.axis.y, s.height_m].map(f32::to_bits);
             [x, y, s.columns, height, s.id, u32::from(s.thin), 0, 0]
         });
-        out.push(Section::Structures, structures);
+        out.push(AppearanceSection::Structures, structures);
     }
 
     /// Height above which there is nothing, m.

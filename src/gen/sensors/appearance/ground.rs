@@ -6,15 +6,15 @@ use std::collections::VecDeque;
 use glam::{Vec2, Vec3};
 
 use super::noise::{floor, ramp, value2};
-use crate::march::ground::Ground as Columns;
-use scene::appearance::{AppearanceData, HIGHEST_M, KERB_M, Section};
+use crate::march::ground::GroundHeightField as Columns;
+use scene::appearance::{AppearanceData, AppearanceSection, HIGHEST_M, KERB_M};
 use scene::{BevLayer, BevLayout, Class, Extent};
 
 /// Width of the blur's kernel in columns: its standard deviation is about 1.2.
 const BLURS: usize = 3;
 
 /// Shares of road, sidewalk, other flat ground and terrain, `[x][y]`, each 0..1, adding up to 1.
-pub struct Ground {
+pub struct SmoothGround {
     /// Lower corner, m.
     low: Vec2,
     /// Columns along x and along y, and the same as numbers.
@@ -47,7 +47,7 @@ fn slot(class: u8) -> usize {
     }
 }
 
-impl Ground {
+impl SmoothGround {
     /// Builds the ground from its labels. A column without one takes the layout's kind of ground, or that of the
     /// nearest column.
     pub fn new(columns: &Columns, layout: &BevLayout) -> Self {
@@ -112,10 +112,10 @@ impl Ground {
     /// Packs the ground for the graphics card.
     pub fn pack(&self, out: &mut AppearanceData) {
         out.push(
-            Section::Share,
+            AppearanceSection::Share,
             self.share.as_flattened().iter().map(|v| v.to_bits()),
         );
-        out.push(Section::Level, self.level.iter().map(|l| u32::from(*l)));
+        out.push(AppearanceSection::Level, self.level.iter().map(|l| u32::from(*l)));
     }
 
     /// True if there is nothing but level road within a metre of a point.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, Vec3};
 
 use super::field::FARTHEST_M;
-use super::prepared::{Hit, What};
+use super::prepared::{SurfaceHit, SurfaceKind};
 use super::*;
 use scene::{Background, BevLayer, Class, Extent, Frame, SensorRig, VoxelGrid};
 use world::World;
@@ -27,11 +27,11 @@ fn looks(frame: &Frame, background: &Background) -> BTreeMap<[usize; 3], Look> {
     let made = frame.occupancy.iter_set().filter(|v| v.3 == Class::Manmade.id());
     let look = |(x, y, z, label): (usize, usize, usize, u8)| {
         let p = frame.extent().center(x, y, z).as_vec3() + Vec3::new(0.03, 0.05, 0.07);
-        let hit = Hit {
+        let hit = SurfaceHit {
             t: 9.0,
             p,
             normal: Vec3::ZERO,
-            what: What::Voxel(label),
+            what: SurfaceKind::Voxel(label),
             after_s: 0.0,
         };
         let s = appearance.surface(&hit, Vec3::X, 0.02);

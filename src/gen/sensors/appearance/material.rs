@@ -8,13 +8,13 @@ mod thing;
 use glam::Vec3;
 
 use super::noise::{ramp, value3};
-use super::prepared::{Appearance, Hit, What};
+use super::prepared::{Appearance, SurfaceHit, SurfaceKind};
 use super::things::rgb;
 use scene::Class;
 
 /// A surface to be lit.
 #[derive(Clone, Copy, Debug)]
-pub struct Surface {
+pub struct LitSurface {
     /// Share of light given back in all directions.
     pub albedo: Vec3,
     /// Share mirrored when seen straight on.
@@ -29,7 +29,7 @@ pub struct Surface {
     pub through: f32,
 }
 
-impl Surface {
+impl LitSurface {
     fn matt(albedo: Vec3, normal: Vec3) -> Self {
         Self {
             albedo,
@@ -66,12 +66,12 @@ const TAIL: Vec3 = Vec3::new(1.0, 0.035, 0.02);
 
 impl Appearance {
     /// The surface at a hit; `footprint` is the width of a pixel on it in m.
-    pub(super) fn surface(&self, hit: &Hit, dir: Vec3, footprint: f32) -> Surface {
+    pub(super) fn surface(&self, hit: &SurfaceHit, dir: Vec3, footprint: f32) -> LitSurface {
         let normal = self.normal(hit);
         match hit.what {
-            What::Ground => self.ground_surface(hit.p, normal, footprint),
-            What::Voxel(label) => self.voxel_surface(hit, label, normal, footprint),
-            What::Thing(i, local, material) => {
+            SurfaceKind::Ground => self.ground_surface(hit.p, normal, footprint),
+            SurfaceKind::Voxel(label) => self.voxel_surface(hit, label, normal, footprint),
+            SurfaceKind::Thing(i, local, material) => {
                 let thing = &self.things[i as usize];
                 let n = thing.turn(hit.normal);
                 let mut s = self.thing_surface(thing, local, n, material, footprint);
@@ -88,7 +88,7 @@ impl Appearance {
     }
 
     /// Snow, dust and water on a surface; `hold` is how much of them stays.
-    fn cover(&self, s: &mut Surface, p: Vec3, hold: f32) {
+    fn cover(&self, s: &mut LitSurface, p: Vec3, hold: f32) {
         let a = self.anchor(p);
         if self.air.snow > 0.0 {
             let n = s.normal.z + 0.35 * (value3(a * 3.0, 31) - 0.5) + 0.15 * (value3(a * 11.0, 32) - 0.5);

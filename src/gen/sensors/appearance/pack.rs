@@ -2,10 +2,10 @@
 
 use super::Appearance;
 use super::prepared::Beam;
-use super::things::{Material, Part, Thing, rgb};
+use super::things::{DrawnObject, ObjectPart, PartMaterial, rgb};
 use glam::Vec3;
 use scene::Class;
-use scene::appearance::{AppearanceData, PART_WORDS, Section, THING_WORDS};
+use scene::appearance::{AppearanceData, AppearanceSection, PART_WORDS, THING_WORDS};
 
 impl Appearance {
     /// All data that the picture of a camera depends on.
@@ -48,13 +48,13 @@ impl Appearance {
                 at[0], at[1], at[2], range, axis[0], axis[1], axis[2], kind, color[0], color[1], color[2], 0,
             ]
         });
-        out.push(Section::Lamps, lamps);
-        out.at[Section::LampCount as usize] = self.lamps.len() as u32;
+        out.push(AppearanceSection::Lamps, lamps);
+        out.at[AppearanceSection::LampCount as usize] = self.lamps.len() as u32;
         let calm = (0..=Class::FREE).flat_map(|label| {
             let class = Class::from_id(label).unwrap_or(Class::Others);
             super::material::calm(class).to_array().map(f32::to_bits)
         });
-        out.push(Section::Calm, calm);
+        out.push(AppearanceSection::Calm, calm);
         out
     }
 
@@ -67,12 +67,18 @@ impl Appearance {
             }
             pack_thing(t, first, &mut things);
         }
-        out.push(Section::Things, things);
-        out.push(Section::Parts, parts);
-        out.push(Section::Planes, planes);
+        out.push(AppearanceSection::Things, things);
+        out.push(AppearanceSection::Parts, parts);
+        out.push(AppearanceSection::Planes, planes);
         let lists: Vec<&[u16]> = self.lists().collect();
-        out.push(Section::ListStarts, starts(lists.iter().map(|l| l.len())));
-        out.push(Section::Lists, lists.concat().into_iter().map(u32::from));
+        out.push(
+            AppearanceSection::ListStarts,
+            starts(lists.iter().map(|l| l.len())),
+        );
+        out.push(
+            AppearanceSection::Lists,
+            lists.concat().into_iter().map(u32::from),
+        );
     }
 }
 
@@ -87,7 +93,7 @@ pub fn starts(lengths: impl Iterator<Item = usize>) -> Vec<u32> {
     out
 }
 
-fn pack_thing(t: &Thing, first: u32, out: &mut Vec<u32>) {
+fn pack_thing(t: &DrawnObject, first: u32, out: &mut Vec<u32>) {
     let end = out.len() + THING_WORDS;
     out.extend([
         u32::from(t.class.id()),
@@ -108,19 +114,19 @@ fn pack_thing(t: &Thing, first: u32, out: &mut Vec<u32>) {
     out.resize(end, 0);
 }
 
-fn pack_part(part: &Part, material: Material, out: &mut Vec<u32>, planes: &mut Vec<u32>) {
+fn pack_part(part: &ObjectPart, material: PartMaterial, out: &mut Vec<u32>, planes: &mut Vec<u32>) {
     let end = out.len() + PART_WORDS;
     let (code, color) = match material {
-        Material::Body => (0, Vec3::ZERO),
-        Material::Cabin => (1, Vec3::ZERO),
-        Material::Coach => (2, Vec3::ZERO),
-        Material::Cargo => (3, Vec3::ZERO),
-        Material::Wheel => (4, Vec3::ZERO),
-        Material::Dark => (5, Vec3::ZERO),
-        Material::Plain(c) => (6, c),
-        Material::Cloth(c) => (7, c),
-        Material::Skin => (8, rgb(224, 172, 136)),
-        Material::Bands(c) => (9, c),
+        PartMaterial::Body => (0, Vec3::ZERO),
+        PartMaterial::Cabin => (1, Vec3::ZERO),
+        PartMaterial::Coach => (2, Vec3::ZERO),
+        PartMaterial::Cargo => (3, Vec3::ZERO),
+        PartMaterial::Wheel => (4, Vec3::ZERO),
+        PartMaterial::Dark => (5, Vec3::ZERO),
+        PartMaterial::Plain(c) => (6, c),
+        PartMaterial::Cloth(c) => (7, c),
+        PartMaterial::Skin => (8, rgb(224, 172, 136)),
+        PartMaterial::Bands(c) => (9, c),
     };
     let mut put = |kind: u32, numbers: &[u32]| {
         out.extend([kind, code]);
@@ -130,12 +136,12 @@ fn pack_part(part: &Part, material: Material, out: &mut Vec<u32>, planes: &mut V
     };
     let bits = |v: &[f32]| -> Vec<u32> { v.iter().map(|v| v.to_bits()).collect() };
     match part {
-        Part::Convex(all) => {
+        ObjectPart::Convex(all) => {
             put(0, &[(planes.len() / 4) as u32, all.len() as u32]);
             planes.extend(all.iter().flat_map(|p| p.to_array().map(f32::to_bits)));
         }
-        Part::Wheel(c, radius, half) => put(1, &bits(&[c.x, c.y, c.z, *radius, *half])),
-        Part::Round(c, r) => put(2, &bits(&[c.x, c.y, c.z, r.x, r.y, r.z])),
-        Part::Cone(f, height, bottom, top) => put(3, &bits(&[f.x, f.y, f.z, *height, *bottom, *top])),
+        ObjectPart::Wheel(c, radius, half) => put(1, &bits(&[c.x, c.y, c.z, *radius, *half])),
+        ObjectPart::Round(c, r) => put(2, &bits(&[c.x, c.y, c.z, r.x, r.y, r.z])),
+        ObjectPart::Cone(f, height, bottom, top) => put(3, &bits(&[f.x, f.y, f.z, *height, *bottom, *top])),
     }
 }

@@ -2,14 +2,14 @@
 
 use glam::{Quat, Vec2, Vec3};
 
-use super::field::Field;
+use super::field::OccupancyField;
 use super::field::owners::Owners;
-use super::ground::Ground;
+use super::ground::SmoothGround;
 use super::sky::Air;
-use super::things::{Material, Thing};
-use crate::march::paint::Paint;
+use super::things::{DrawnObject, PartMaterial};
+use crate::march::paint::RoadMarkings;
 use crate::march::{GroundHeight, ground, remove_voxels};
-use crate::rays::Ray;
+use crate::rays::CameraRay;
 use scene::appearance::{BLOCK_M, FAR_M, FieldShape};
 use scene::{Background, Conditions, Extent, Frame, Pose, SceneBox, SensorRig};
 
@@ -48,18 +48,18 @@ pub enum Beam {
 
 /// Kind of surface that a ray met.
 #[derive(Clone, Copy, Debug)]
-pub enum What {
+pub enum SurfaceKind {
     /// Ground.
     Ground,
     /// Voxels of a class.
     Voxel(u8),
     /// A part of a thing; local point and material.
-    Thing(u32, Vec3, Material),
+    Thing(u32, Vec3, PartMaterial),
 }
 
 /// Where a ray met something.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit {
+pub struct SurfaceHit {
     /// Distance, m.
     pub t: f32,
     /// Place, ego frame, m.
@@ -67,20 +67,20 @@ pub struct Hit {
     /// Normal, ego frame; for the ground and voxels filled in by [`Appearance::normal`].
     pub normal: Vec3,
     /// Kind of surface.
-    pub what: What,
+    pub what: SurfaceKind,
     /// Time at which it is seen, s after the moment of the picture: a rolling shutter reads row by row.
     pub after_s: f32,
 }
 
 /// A frame under certain conditions, ready for any camera.
 pub struct Appearance {
-    pub(super) field: Field,
-    pub(super) ground: Ground,
-    pub(super) things: Vec<Thing>,
+    pub(super) field: OccupancyField,
+    pub(super) ground: SmoothGround,
+    pub(super) things: Vec<DrawnObject>,
     /// Things near each block. A thing is listed in a rectangle of blocks, so the blocks on a ray that list it follow
     /// one another: a thing that the block before lists too has been tested already.
     lists: Vec<Vec<u16>>,
-    pub(super) paint: Paint,
+    pub(super) paint: RoadMarkings,
     pub(super) lamps: Vec<Lamp>,
     pub(super) air: Air,
     pub(super) seed: u32,
@@ -116,11 +116,11 @@ impl Appearance {
             remove_voxels(&mut grid, &mut columns, b, GroundHeight::Physical, STRAY_M);
         }
         let owners = Owners::new(background, &layout, &FieldShape::of(extent));
-        let field = Field::new(&grid, &owners, seed);
-        let ground = Ground::new(&columns, &layout);
-        let mut things: Vec<Thing> = boxes
+        let field = OccupancyField::new(&grid, &owners, seed);
+        let ground = SmoothGround::new(&columns, &layout);
+        let mut things: Vec<DrawnObject> = boxes
             .iter()
-            .filter_map(|b| Thing::of(b, frame.own_shapes.get(&b.id), seed))
+            .filter_map(|b| DrawnObject::of(b, frame.own_shapes.get(&b.id), seed))
             .take(60_000)
             .collect();
         let ([blocks_x, blocks_y], from) = (field.shape().blocks, field.shape().blocks_from_m);
@@ -153,7 +153,7 @@ impl Appearance {
             ground,
             things,
             lists,
-            paint: Paint::new(&layout),
+            paint: RoadMarkings::new(&layout),
             lamps,
             air,
             seed,
@@ -210,14 +210,20 @@ impl Appearance {
     /// The first surface along a ray whose direction is a unit vector, `after_s` after the moment of the frame: boxes that move
     /// are where they are by then. The normal of voxels and ground is left for
     /// [`Self::normal`].
-    pub(super) fn trace(&self, (o, d): (Vec3, Vec3), after_s: f32, limit: f32, coarse: bool) -> Option<Hit> {
+    pub(super) fn trace(
+        &self,
+        (o, d): (Vec3, Vec3),
+        after_s: f32,
+        limit: f32,
+        coarse: bool,
+    ) -> Option<SurfaceHit> {
         if !(o.is_finite() && d.is_finite()) {
             return None;
         }
         let anchor = |p: Vec3| self.anchor(p);
         let ground = self.ground.cast(o, d, limit, &anchor);
         let mut best = ground.unwrap_or(limit);
-        let mut hit = ground.map(|t| (Vec3::Z, What::Ground, t));
+        let mut hit = ground.map(|t| (Vec3::Z, SurfaceKind::Ground, t));
         let mut before: &[u16] = &[];
         self.walk(o, d, best, |index, t_in, t_out| {
             let listed = std::mem::replace(&mut before, &self.lists[index]);
@@ -229,7 +235,7 @@ impl Appearance {
                 }
                 if let Some(h) = thing.cast(from, d, best) {
                     best = h.t;
-                    let what = What::Thing(u32::from(i), h.local, h.material);
+                    let what = SurfaceKind::Thing(u32::from(i), h.local, h.material);
                     hit = Some((thing.turn_back(h.normal), what, h.t));
                 }
             }
@@ -247,12 +253,12 @@ impl Appearance {
                     && h.t < best
                 {
                     best = h.t;
-                    hit = Some((Vec3::ZERO, What::Voxel(h.label), h.t));
+                    hit = Some((Vec3::ZERO, SurfaceKind::Voxel(h.label), h.t));
                 }
             }
             best <= t_out
         });
-        hit.map(|(normal, what, t)| Hit {
+        hit.map(|(normal, what, t)| SurfaceHit {
             t,
             p: o + d * t,
             normal,
@@ -337,18 +343,18 @@ impl Appearance {
 
     /// The outward normal of the first surface along a ray of the ego frame, a unit vector of that frame. `None` for
     /// the sky, for a zero direction and for numbers that are not finite.
-    pub fn surface_normal(&self, ray: &Ray) -> Option<Vec3> {
+    pub fn surface_normal(&self, ray: &CameraRay) -> Option<Vec3> {
         let d = ray.direction.as_vec3().try_normalize()?;
         let hit = self.trace((ray.origin.as_vec3(), d), ray.after_s as f32, FAR_M, false)?;
         Some(self.normal(&hit)).filter(|n| n.is_finite())
     }
 
     /// The normal at a hit.
-    pub(super) fn normal(&self, hit: &Hit) -> Vec3 {
+    pub(super) fn normal(&self, hit: &SurfaceHit) -> Vec3 {
         let anchor = |p: Vec3| self.anchor(p);
         match hit.what {
-            What::Ground if hit.t < 60.0 => self.ground.normal(hit.p, &anchor),
-            What::Voxel(label) => self.field.normal(hit.p, label, &anchor),
+            SurfaceKind::Ground if hit.t < 60.0 => self.ground.normal(hit.p, &anchor),
+            SurfaceKind::Voxel(label) => self.field.normal(hit.p, label, &anchor),
             _ => hit.normal,
         }
     }
@@ -374,7 +380,7 @@ fn in_sight(map: Extent, vehicle: &Pose) -> Extent {
     seen.unwrap_or(map)
 }
 
-fn lamps(air: &Air, field: &Field, things: &[Thing], rig: &SensorRig) -> Vec<Lamp> {
+fn lamps(air: &Air, field: &OccupancyField, things: &[DrawnObject], rig: &SensorRig) -> Vec<Lamp> {
     let mut out = Vec::new();
     if air.lamps <= 0.0 {
         return out;

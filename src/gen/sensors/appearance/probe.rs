@@ -3,9 +3,9 @@
 use glam::Vec3;
 
 use super::prepared::Appearance;
-use super::shade::Seen;
+use super::shade::VisibleSurface;
 use super::truth::usable;
-use crate::rays::Ray;
+use crate::rays::CameraRay;
 use scene::truth::{self, TruthClass};
 
 /// Result of a single ray.
@@ -31,7 +31,7 @@ pub(crate) struct Probe {
 
 impl Appearance {
     /// Traces a ray; `pixel_rad` is the angle between neighbouring pixels. `None` where the lens sees nothing.
-    pub(crate) fn probe(&self, ray: &Ray, pixel_rad: f32) -> Option<Probe> {
+    pub(crate) fn probe(&self, ray: &CameraRay, pixel_rad: f32) -> Option<Probe> {
         let (from, way) = usable(ray)?;
         let (sample, seen) = self.light_along((from, way), ray.after_s as f32, pixel_rad);
         Some(self.told((from, way), sample.color, seen))
@@ -49,7 +49,7 @@ impl Appearance {
         if color.is_finite() { color } else { Vec3::ZERO }
     }
 
-    fn told(&self, (from, way): (Vec3, Vec3), light: Vec3, seen: Seen) -> Probe {
+    fn told(&self, (from, way): (Vec3, Vec3), light: Vec3, seen: VisibleSurface) -> Probe {
         let color = self.shown(light, 1.0);
         let probe = Probe {
             color: if color.is_finite() { color } else { Vec3::ZERO },
@@ -62,14 +62,14 @@ impl Appearance {
             is_skyline: false,
         };
         match seen {
-            Seen::Sky => probe,
-            Seen::Skyline(class, t) => Probe {
+            VisibleSurface::Sky => probe,
+            VisibleSurface::Skyline(class, t) => Probe {
                 t,
                 class: truth::of_class(class),
                 is_skyline: true,
                 ..probe
             },
-            Seen::Surface(hit, footprint) => {
+            VisibleSurface::Surface(hit, footprint) => {
                 let (class, instance) = self.label(&hit, footprint);
                 let normal = self.normal(&hit);
                 Probe {

@@ -8,10 +8,10 @@ use rayon::prelude::*;
 
 use super::noise::{hash3, ramp, unit, unit3};
 use super::prepared::Appearance;
-use super::shade::{Sample, Seen};
+use super::shade::{ShadedSample, VisibleSurface};
 use super::truth::{NextMoment, Teller, usable};
 use super::{CameraImage, Quality};
-use crate::rays::{CameraRays, Ray};
+use crate::rays::{CameraRay, CameraRays};
 use scene::appearance::CONTRAST;
 use scene::{BoxId, Camera, CameraTruth, SceneBox, TruthPixel};
 
@@ -84,8 +84,8 @@ impl Appearance {
         };
         let (teller, told) = truth.unzip();
         let told = told.unwrap_or_default();
-        let mut samples = vec![Sample::default(); w * h];
-        let row_of = |y: usize, row: &mut [Sample], mut told: Option<&mut [TruthPixel]>| {
+        let mut samples = vec![ShadedSample::default(); w * h];
+        let row_of = |y: usize, row: &mut [ShadedSample], mut told: Option<&mut [TruthPixel]>| {
             for (x, out) in row.iter_mut().enumerate() {
                 let uv = (x as f64 + 0.5, y as f64 + 0.5);
                 let Some((sample, seen, ray)) = at(uv.0, uv.1) else {
@@ -129,7 +129,7 @@ impl Appearance {
                     // Four places turned against the pixel's sides.
                     let places = [(0.375, 0.125), (0.875, 0.375), (0.625, 0.875), (0.125, 0.625)];
                     let four = places.map(|(u, v)| at(x as f64 + u, y as f64 + v));
-                    let color = |s: &Option<(Sample, Seen, Ray)>| {
+                    let color = |s: &Option<(ShadedSample, VisibleSurface, CameraRay)>| {
                         s.as_ref().map_or(Vec3::ZERO, |s| s.0.color.min(limit))
                     };
                     *out = four.iter().map(color).sum::<Vec3>() / 4.0;
@@ -295,7 +295,7 @@ fn each_row<T: Send>(
 
 /// Index of the sample that labels a pixel: the nearest of those that show what most samples show. On a tie the nearest
 /// sample wins.
-fn foremost(samples: &[Option<(Sample, Seen, Ray)>; 4]) -> Option<usize> {
+fn foremost(samples: &[Option<(ShadedSample, VisibleSurface, CameraRay)>; 4]) -> Option<usize> {
     let thing = |i: usize| samples[i].as_ref().map(|(sample, ..)| sample.key >> 8);
     let like = |i: usize| (0..4).filter(|j| thing(*j) == thing(i)).count();
     let rank = |i: &usize| {

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use super::material::Surface;
+use super::material::LitSurface;
 use super::noise::ramp;
-use super::prepared::{Appearance, Beam, Hit, What};
+use super::prepared::{Appearance, Beam, SurfaceHit, SurfaceKind};
 use scene::Class;
 use scene::appearance::{
     FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, MIRROR_M, SHADOW_M, SKYLINE_M,
@@ -12,7 +12,7 @@ use scene::appearance::{
 
 /// A sample of a picture: its light and what was seen, to find edges.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Sample {
+pub struct ShadedSample {
     /// Linear light.
     pub color: Vec3,
     /// Distance of the surface on the map, m; infinite if there is none.
@@ -23,23 +23,23 @@ pub struct Sample {
 
 /// Surface that a sample shows: the one that made its light.
 #[derive(Clone, Copy, Debug, Default)]
-pub enum Seen {
+pub enum VisibleSurface {
     /// Sky: the ray met nothing.
     #[default]
     Sky,
     /// A class of the skyline that stands around the map, and its distance, m.
     Skyline(Class, f32),
     /// A surface, and the width of a pixel on it, m.
-    Surface(Hit, f32),
+    Surface(SurfaceHit, f32),
 }
 
 /// Least distance of a skyline, m.
 const SKYLINE_FROM_M: f32 = 55.0;
 
 /// Width of a pixel on a surface, m.
-fn footprint(hit: &Hit, d: Vec3, pixel: f32) -> f32 {
+fn footprint(hit: &SurfaceHit, d: Vec3, pixel: f32) -> f32 {
     let slant = match hit.what {
-        What::Ground => (-d.z).max(0.03),
+        SurfaceKind::Ground => (-d.z).max(0.03),
         _ => 0.6,
     };
     hit.t * pixel / slant.sqrt()
@@ -56,9 +56,14 @@ struct Beyond {
 
 impl Appearance {
     /// Light along a ray; `pixel` is the angle between neighbouring pixels.
-    pub(super) fn light_along(&self, (o, d): (Vec3, Vec3), after_s: f32, pixel: f32) -> (Sample, Seen) {
+    pub(super) fn light_along(
+        &self,
+        (o, d): (Vec3, Vec3),
+        after_s: f32,
+        pixel: f32,
+    ) -> (ShadedSample, VisibleSurface) {
         let Some(hit) = self.trace((o, d), after_s, FAR_M, false) else {
-            let sample = |color| Sample {
+            let sample = |color| ShadedSample {
                 color,
                 t: f32::INFINITY,
                 key: 0,
@@ -69,48 +74,48 @@ impl Appearance {
         if hit.t > SKYLINE_FROM_M
             && let Some(b) = self.beyond(o, d, hit.t)
         {
-            let sample = Sample {
+            let sample = ShadedSample {
                 color: b.color,
                 t: hit.t,
                 key: 1,
             };
-            return (sample, Seen::Skyline(b.class, b.t));
+            return (sample, VisibleSurface::Skyline(b.class, b.t));
         }
         let footprint = footprint(&hit, d, pixel);
         let s = self.surface(&hit, d, footprint);
         let color = self.lit(&hit, &s, d, true);
         let key = match hit.what {
-            What::Ground => 2,
-            What::Voxel(l) => 8 + u32::from(l),
-            What::Thing(i, ..) => 64 + i,
+            SurfaceKind::Ground => 2,
+            SurfaceKind::Voxel(l) => 8 + u32::from(l),
+            SurfaceKind::Thing(i, ..) => 64 + i,
         };
-        let sample = Sample {
+        let sample = ShadedSample {
             color: self.air.through(color, hit.t, self.anchor_dir(d)),
             t: hit.t,
             key: key << 8 | ((s.normal * 3.0 + 4.0).as_uvec3().dot(glam::UVec3::new(1, 8, 32)) & 0xff),
         };
-        (sample, Seen::Surface(hit, footprint))
+        (sample, VisibleSurface::Surface(hit, footprint))
     }
 
     /// Light of the skyline or the sky along a ray, whatever is on the map.
-    pub(super) fn light_behind(&self, (o, d): (Vec3, Vec3)) -> (Vec3, Seen) {
+    pub(super) fn light_behind(&self, (o, d): (Vec3, Vec3)) -> (Vec3, VisibleSurface) {
         match self.beyond(o, d, f32::INFINITY) {
-            Some(b) => (b.color, Seen::Skyline(b.class, b.t)),
-            None => (self.air.sky(self.anchor_dir(d)), Seen::Sky),
+            Some(b) => (b.color, VisibleSurface::Skyline(b.class, b.t)),
+            None => (self.air.sky(self.anchor_dir(d)), VisibleSurface::Sky),
         }
     }
 
     /// Surface that [`Self::light_along`] shows along a ray, without computing its light.
-    pub(super) fn seen_along(&self, (o, d): (Vec3, Vec3), after_s: f32, pixel: f32) -> Seen {
+    pub(super) fn seen_along(&self, (o, d): (Vec3, Vec3), after_s: f32, pixel: f32) -> VisibleSurface {
         let hit = self.trace((o, d), after_s, FAR_M, false);
         let limit = hit.map_or(f32::INFINITY, |hit| hit.t);
         let beyond = (limit > SKYLINE_FROM_M)
             .then(|| self.beyond(o, d, limit))
             .flatten();
         match (beyond, hit) {
-            (Some(b), _) => Seen::Skyline(b.class, b.t),
-            (None, Some(hit)) => Seen::Surface(hit, footprint(&hit, d, pixel)),
-            (None, None) => Seen::Sky,
+            (Some(b), _) => VisibleSurface::Skyline(b.class, b.t),
+            (None, Some(hit)) => VisibleSurface::Surface(hit, footprint(&hit, d, pixel)),
+            (None, None) => VisibleSurface::Sky,
         }
     }
 
@@ -155,7 +160,7 @@ impl Appearance {
     }
 
     /// Light that a surface sends back along a ray. Mirrored surroundings are followed once.
-    fn lit(&self, hit: &Hit, s: &Surface, d: Vec3, follow: bool) -> Vec3 {
+    fn lit(&self, hit: &SurfaceHit, s: &LitSurface, d: Vec3, follow: bool) -> Vec3 {
         let (air, n) = (&self.air, s.normal);
         let view = -d;
         let lift = hit.p + self.geometric(hit, n) * (0.012 + hit.t * 2e-4);
@@ -213,13 +218,13 @@ impl Appearance {
         out
     }
 
-    fn geometric(&self, hit: &Hit, n: Vec3) -> Vec3 {
+    fn geometric(&self, hit: &SurfaceHit, n: Vec3) -> Vec3 {
         match hit.what {
-            What::Thing(..) => hit.normal,
-            What::Ground => Vec3::Z,
+            SurfaceKind::Thing(..) => hit.normal,
+            SurfaceKind::Ground => Vec3::Z,
             // Past the steps of a wall.
-            What::Voxel(15) => n * 12.0,
-            What::Voxel(_) => n,
+            SurfaceKind::Voxel(15) => n * 12.0,
+            SurfaceKind::Voxel(_) => n,
         }
     }
 
@@ -237,10 +242,10 @@ impl Appearance {
     }
 
     /// Share of the sky's light that reaches a point, from the field around and the things near.
-    fn openness(&self, hit: &Hit, n: Vec3) -> f32 {
+    fn openness(&self, hit: &SurfaceHit, n: Vec3) -> f32 {
         let p = hit.p;
         let f = |d: Vec3| self.field.dense(p + d);
-        let is_plant = matches!(hit.what, What::Voxel(16));
+        let is_plant = matches!(hit.what, SurfaceKind::Voxel(16));
         let near = f(n * 0.45 + Vec3::Z * 0.1);
         let mid = f(n * 1.0 + Vec3::Z * 0.35);
         let mut closed = 0.34 * near + 0.26 * mid;
@@ -259,11 +264,13 @@ impl Appearance {
                 let out = (q.truncate().abs() - thing.size.truncate() / 2.0).max(glam::Vec2::ZERO);
                 let over = (q.z / thing.size.z).clamp(0.0, 1.0);
                 match hit.what {
-                    What::Ground => {
+                    SurfaceKind::Ground => {
                         let small = (thing.size.x.min(thing.size.y) / 1.6).min(1.0);
                         open *= 1.0 - 0.80 * small * ramp(0.55 * thing.size.z.min(1.6), 0.0, out.length());
                     }
-                    What::Thing(k, ..) if k == u32::from(i) => open *= 0.62 + 0.38 * ramp(0.0, 0.35, over),
+                    SurfaceKind::Thing(k, ..) if k == u32::from(i) => {
+                        open *= 0.62 + 0.38 * ramp(0.0, 0.35, over)
+                    }
                     _ => {}
                 }
             }
@@ -273,7 +280,7 @@ impl Appearance {
 
     /// Light of the lamps on a surface. `lift` is a point a little above the surface, from which shadow rays start if
     /// `shadows` is true.
-    fn lamp_light(&self, hit: &Hit, lift: Vec3, view: Vec3, s: &Surface, shadows: bool) -> Vec3 {
+    fn lamp_light(&self, hit: &SurfaceHit, lift: Vec3, view: Vec3, s: &LitSurface, shadows: bool) -> Vec3 {
         let (p, n) = (hit.p, s.normal);
         let mut out = Vec3::ZERO;
         for lamp in &self.lamps {

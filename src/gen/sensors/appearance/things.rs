@@ -8,10 +8,10 @@ mod voxel_shape;
 
 use glam::{Vec2, Vec3};
 
-pub use part::Part;
+pub use part::ObjectPart;
 
 use super::noise::hash1;
-use build::Builder;
+use build::ObjectBuilder;
 use part::rounded;
 use scene::clip::OwnShape;
 use scene::{BoxId, Class, Extent, Paint, SceneBox};
@@ -20,7 +20,7 @@ use voxel_shape::voxel_shape;
 
 /// Material of a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Material {
+pub enum PartMaterial {
     /// A car's lower body; lamps, grille and arches are found by position.
     Body,
     /// A car's cabin: glass with pillars and a roof.
@@ -45,7 +45,7 @@ pub enum Material {
 
 /// An object ready to be traced.
 #[derive(Clone, Debug)]
-pub struct Thing {
+pub struct DrawnObject {
     /// Class of its box.
     pub class: Class,
     /// Middle of the bottom in the ego frame, m.
@@ -67,7 +67,7 @@ pub struct Thing {
     /// Square of the radius of a circle on the ground that holds the thing, m^2.
     circle_m2: f32,
     /// Parts with materials.
-    pub parts: Vec<(Part, Material)>,
+    pub parts: Vec<(ObjectPart, PartMaterial)>,
 }
 
 /// Where a ray meets a thing.
@@ -80,7 +80,7 @@ pub struct ThingHit {
     /// Normal in box coordinates.
     pub normal: Vec3,
     /// Material of the part.
-    pub material: Material,
+    pub material: PartMaterial,
 }
 
 /// sRGB to linear.
@@ -120,7 +120,7 @@ fn usual_paint(name: &str) -> Option<Paint> {
     }
 }
 
-impl Thing {
+impl DrawnObject {
     /// A box as a thing to be drawn, by the shape of its class or by its own; `None` if the box has a problem.
     pub fn of(b: &SceneBox, own: Option<&OwnShape>, seed: u32) -> Option<Self> {
         if b.problem().is_some() {
@@ -128,7 +128,7 @@ impl Thing {
         }
         let id = hash1(b.id.0, seed);
         let size = b.size_m.as_vec3();
-        let mut build = Builder {
+        let mut build = ObjectBuilder {
             parts: Vec::new(),
             s: size,
         };
@@ -158,7 +158,7 @@ impl Thing {
             Some(_) if b.size_m.truncate().min_element() < 3.0 * Extent::VOXEL_M => {
                 shape(&mut build, b.class, id)
             }
-            Some(own) => voxel_shape(&mut build, b, own, Material::Plain(paint)),
+            Some(own) => voxel_shape(&mut build, b, own, PartMaterial::Plain(paint)),
         }
         let bottom = b.center_m.z - b.size_m.z / 2.0;
         Some(Self {
@@ -241,7 +241,7 @@ impl Thing {
         if near > far || far < 0.0 || near > limit {
             return None;
         }
-        let mut best: Option<(ThingHit, &Part)> = None;
+        let mut best: Option<(ThingHit, &ObjectPart)> = None;
         for (part, material) in &self.parts {
             let limit = best.map_or(limit, |(b, _)| b.t);
             if let Some((t, normal)) = part.cast(o, d, limit) {
@@ -255,7 +255,7 @@ impl Thing {
             }
         }
         best.map(|(mut hit, part)| {
-            if let Part::Convex(planes) = part {
+            if let ObjectPart::Convex(planes) = part {
                 hit.normal = rounded(
                     planes,
                     hit.local,

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::prepared::{Appearance, Hit, What};
-use super::shade::Seen;
-use super::things::Thing;
-use crate::rays::{CameraRays, Ray};
+use super::prepared::{Appearance, SurfaceHit, SurfaceKind};
+use super::shade::VisibleSurface;
+use super::things::DrawnObject;
+use crate::rays::{CameraRay, CameraRays};
 use scene::truth::{self, CameraTruth, SeenBox, TruthClass, TruthPixel};
 use scene::{BoxId, Camera, Class, SceneBox};
 
@@ -61,7 +61,7 @@ impl<'a> Teller<'a> {
     }
 
     /// Ground truth of a pixel with its middle at (u, v) that shows `seen`.
-    pub fn pixel(&self, seen: &Seen, ray: &Ray, (u, v): (f64, f64)) -> TruthPixel {
+    pub fn pixel(&self, seen: &VisibleSurface, ray: &CameraRay, (u, v): (f64, f64)) -> TruthPixel {
         let unit = ray.direction.normalize_or_zero();
         let depth = |t: f32| (f64::from(t) / ray.direction.length()) as f32;
         let flow = |p: Option<DVec2>| match p {
@@ -70,7 +70,7 @@ impl<'a> Teller<'a> {
         };
         let far = |next: &Next, p: DVec3| next.rays.seen_at(p, DVec3::ZERO);
         match seen {
-            Seen::Sky => TruthPixel {
+            VisibleSurface::Sky => TruthPixel {
                 class: truth::SKY,
                 // The sky moves with the camera.
                 flow_px: flow(
@@ -80,7 +80,7 @@ impl<'a> Teller<'a> {
                 ),
                 ..TruthPixel::default()
             },
-            Seen::Skyline(class, t) => TruthPixel {
+            VisibleSurface::Skyline(class, t) => TruthPixel {
                 class: truth::of_class(*class),
                 depth_m: depth(*t),
                 flow_px: flow(
@@ -90,7 +90,7 @@ impl<'a> Teller<'a> {
                 ),
                 ..TruthPixel::default()
             },
-            Seen::Surface(hit, footprint) => {
+            VisibleSurface::Surface(hit, footprint) => {
                 let (class, instance) = self.appearance.label(hit, *footprint);
                 TruthPixel {
                     class,
@@ -109,7 +109,7 @@ impl<'a> Teller<'a> {
 }
 
 /// Foot and heading of a thing at another moment; `None` if it is gone.
-fn moved(thing: &Thing, boxes: &BTreeMap<BoxId, SceneBox>) -> Option<(Vec3, glam::Vec2)> {
+fn moved(thing: &DrawnObject, boxes: &BTreeMap<BoxId, SceneBox>) -> Option<(Vec3, glam::Vec2)> {
     let b = boxes.get(&thing.box_id)?;
     // It stands on the same ground as now: its foot is as high as now, or at the bottom of its box if that is higher.
     let foot = b.center_m.truncate().as_vec2().extend(thing.foot.z);
@@ -119,9 +119,9 @@ fn moved(thing: &Thing, boxes: &BTreeMap<BoxId, SceneBox>) -> Option<(Vec3, glam
 
 impl Next {
     /// Place of a hit at the next moment; NaN if its thing is gone.
-    fn place(&self, appearance: &Appearance, hit: &Hit) -> DVec3 {
+    fn place(&self, appearance: &Appearance, hit: &SurfaceHit) -> DVec3 {
         let still = hit.p.as_dvec3();
-        let What::Thing(i, ..) = hit.what else {
+        let SurfaceKind::Thing(i, ..) = hit.what else {
             return still;
         };
         let thing = &appearance.things[i as usize];
@@ -140,11 +140,11 @@ impl Next {
 
 impl Appearance {
     /// Class and instance of a surface as the picture shows it; `footprint` is the width of a pixel on it, m.
-    pub(super) fn label(&self, hit: &Hit, footprint: f32) -> (TruthClass, u32) {
+    pub(super) fn label(&self, hit: &SurfaceHit, footprint: f32) -> (TruthClass, u32) {
         match hit.what {
-            What::Ground => (self.ground_label(hit.p, footprint), 0),
-            What::Voxel(label) => (truth::of_class(Class::from_id(label).unwrap_or(Class::Others)), 0),
-            What::Thing(i, ..) => {
+            SurfaceKind::Ground => (self.ground_label(hit.p, footprint), 0),
+            SurfaceKind::Voxel(label) => (truth::of_class(Class::from_id(label).unwrap_or(Class::Others)), 0),
+            SurfaceKind::Thing(i, ..) => {
                 let thing = &self.things[i as usize];
                 (truth::of_class(thing.class), thing.box_id.0)
             }
@@ -161,7 +161,7 @@ impl Appearance {
     ) -> Vec<SeenBox> {
         let visible = visible(width, pixels);
         let camera_from_ego = camera.ego_from_camera().inverse();
-        let one = |thing: &Thing| -> Option<SeenBox> {
+        let one = |thing: &DrawnObject| -> Option<SeenBox> {
             let of = *boxes.get(&thing.box_id)?;
             let seen = visible.get(&thing.box_id.0).copied();
             // A thing finer than the spacing of the pixels may still be shown by one.
@@ -246,7 +246,7 @@ impl Appearance {
 }
 
 /// Origin and unit direction of a ray that can be traced.
-pub(super) fn usable(ray: &Ray) -> Option<(Vec3, Vec3)> {
+pub(super) fn usable(ray: &CameraRay) -> Option<(Vec3, Vec3)> {
     let (o, d) = (ray.origin.as_vec3(), ray.direction.as_vec3().normalize_or_zero());
     (d != Vec3::ZERO && d.is_finite() && o.is_finite()).then_some((o, d))
 }
@@ -283,7 +283,7 @@ impl Whole {
     /// `None` if the thing is outside the picture, or lies between the middles of all pixels. For large things only
     /// every second, third, … pixel is tested.
     fn of(
-        thing: &Thing,
+        thing: &DrawnObject,
         rays: &CameraRays,
         (width, height, pixels): (usize, usize, &[TruthPixel]),
     ) -> Option<Self> {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::shade::Seen;
+use super::shade::VisibleSurface;
 use super::truth::usable;
 use super::*;
 use crate::rays::CameraRays;
@@ -100,7 +100,7 @@ fn labels_are_of_what_made_the_colour() {
                 let is_sky = sample.color == appearance.air.sky(appearance.anchor_dir(d));
                 wrong += usize::from(is_sky != (pixel.class == SKY));
                 wrong += usize::from((pixel.depth_m < 0.0) != is_sky);
-                wrong += usize::from(matches!(seen, Seen::Sky) != is_sky);
+                wrong += usize::from(matches!(seen, VisibleSurface::Sky) != is_sky);
                 sky += usize::from(is_sky);
             }
             assert!(

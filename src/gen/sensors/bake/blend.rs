@@ -1,22 +1,22 @@
 //! Blends coloured splats front to back into one tile of a picture, and goes backwards through the same sum for the
 //! gradient with each splat.
 
-use crate::tile::{Limits, Splat, SplatPixels, TILE, exp};
+use crate::tile::{BlendThresholds, Splat, SplatPixels, TILE, exp};
 
-type Row = [f32; TILE];
+type BlendRow = [f32; TILE];
 
 /// First pixel of a tile, and how many of its pixels lie inside the picture.
-type Place = ([usize; 2], [usize; 2]);
+type TileBounds = ([usize; 2], [usize; 2]);
 
 /// Light of a tile's pixels, `[row][column]`.
 pub(super) struct Light {
-    transmittance: [Row; TILE],
-    color: [[Row; 3]; TILE],
+    transmittance: [BlendRow; TILE],
+    color: [[BlendRow; 3]; TILE],
 }
 
 /// Values of a tile's pixels in three channels; 0 outside the picture.
 pub(super) struct Sums {
-    values: [[Row; 3]; TILE],
+    values: [[BlendRow; 3]; TILE],
 }
 
 impl Sums {
@@ -62,16 +62,16 @@ impl Light {
         splats: &[SplatPixels],
         colors: &[[f32; 3]],
         list: &[u32],
-        place: Place,
-        limits: Limits,
+        place: TileBounds,
+        limits: BlendThresholds,
     ) {
         struct Blend<'a>(
             &'a mut Light,
             &'a [SplatPixels],
             &'a [[f32; 3]],
             &'a [u32],
-            Place,
-            Limits,
+            TileBounds,
+            BlendThresholds,
         );
         impl pulp::WithSimd for Blend<'_> {
             type Output = ();
@@ -106,8 +106,8 @@ impl Light {
         &mut self,
         splats: &[SplatPixels],
         (list, of): (&[u32], &[u32]),
-        place: Place,
-        limits: Limits,
+        place: TileBounds,
+        limits: BlendThresholds,
         tile: &Sums,
         sums: &mut [[f32; 4]],
     ) {
@@ -115,8 +115,8 @@ impl Light {
             &'a mut Light,
             &'a [SplatPixels],
             (&'a [u32], &'a [u32]),
-            Place,
-            Limits,
+            TileBounds,
+            BlendThresholds,
             &'a Sums,
             &'a mut [[f32; 4]],
         );
@@ -166,16 +166,16 @@ impl Light {
     pub fn backward(
         &mut self,
         lists: (&[SplatPixels], &[[f32; 3]], &[u32]),
-        place: Place,
-        limits: Limits,
+        place: TileBounds,
+        limits: BlendThresholds,
         (slope, picture): (&Sums, &Sums),
         out: &mut [Slopes],
     ) {
         struct Backward<'a>(
             &'a mut Light,
             (&'a [SplatPixels], &'a [[f32; 3]], &'a [u32]),
-            Place,
-            Limits,
+            TileBounds,
+            BlendThresholds,
             (&'a Sums, &'a Sums),
             &'a mut [Slopes],
         );
@@ -224,9 +224,9 @@ impl Light {
     fn walk(
         &mut self,
         (splats, list): (&[SplatPixels], &[u32]),
-        (origin_px, size): Place,
-        limits: Limits,
-        mut row_of: impl FnMut(At<'_>, &mut Row, &mut [Row; 3]),
+        (origin_px, size): TileBounds,
+        limits: BlendThresholds,
+        mut row_of: impl FnMut(At<'_>, &mut BlendRow, &mut [BlendRow; 3]),
         mut done: impl FnMut(usize),
     ) {
         self.transmittance = [[0.0; TILE]; TILE];
@@ -292,7 +292,7 @@ struct At<'a> {
 
 /// Weights of a splat over a row of pixels; takes the splat's light from `transmittance`.
 #[inline(always)]
-fn weigh(at: &At<'_>, limits: Limits, transmittance: &mut Row) -> Row {
+fn weigh(at: &At<'_>, limits: BlendThresholds, transmittance: &mut BlendRow) -> BlendRow {
     let mut weights = [0.0; TILE];
     for i in 0..TILE {
         let u = at.u + i as f32;
@@ -312,11 +312,11 @@ fn weigh(at: &At<'_>, limits: Limits, transmittance: &mut Row) -> Row {
 fn slope_row(
     at: &At<'_>,
     own: &[f32; 3],
-    limits: Limits,
-    (slope, picture): (&[Row; 3], &[Row; 3]),
-    transmittance: &mut Row,
-    color: &mut [Row; 3],
-    lanes: &mut [Row; 9],
+    limits: BlendThresholds,
+    (slope, picture): (&[BlendRow; 3], &[BlendRow; 3]),
+    transmittance: &mut BlendRow,
+    color: &mut [BlendRow; 3],
+    lanes: &mut [BlendRow; 9],
 ) {
     for i in 0..TILE {
         let u = at.u + i as f32;

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 
-use super::samples::Sample;
+use super::samples::SurfaceSample;
 use super::tree::Leaf;
 
 /// Standard deviation of a Gaussian over that of its samples: neighbours overlap and leave no gaps.
@@ -23,7 +23,7 @@ pub(super) struct Disc {
 }
 
 /// The disc of a leaf.
-pub(super) fn disc(samples: &[Sample], leaf: &Leaf) -> Disc {
+pub(super) fn disc(samples: &[SurfaceSample], leaf: &Leaf) -> Disc {
     let n = samples.len().max(1) as f64;
     let mean = samples.iter().map(|s| s.at.as_dvec3()).sum::<DVec3>() / n;
     let normal = samples.iter().map(|s| Vec3::from(s.normal.map(f32::from)));
@@ -126,8 +126,8 @@ mod tests {
             to: 64,
             size_m: 0.4,
         };
-        let samples: Vec<Sample> = (0..64)
-            .map(|i| Sample {
+        let samples: Vec<SurfaceSample> = (0..64)
+            .map(|i| SurfaceSample {
                 at: Vec3::new(5.0, 0.05 * (i % 8) as f32, 0.05 * (i / 8) as f32),
                 width_m: 0.02,
                 area_m2: 0.0025,

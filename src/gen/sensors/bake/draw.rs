@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use super::blend::{Light, Slopes, Sums};
 use crate::order::depth_order;
-use crate::project::View;
+use crate::project::SplatCamera;
 use crate::splat::{Bins, placed};
-use crate::tile::{Limits, SplatPixels, TILE};
+use crate::tile::{BlendThresholds, SplatPixels, TILE};
 use scene::splats::SplatOptions;
 use scene::{Camera, SceneGaussian};
 
@@ -25,7 +25,7 @@ pub const OPTIONS: SplatOptions = SplatOptions {
     min_coverage: 0.0,
 };
 
-const LIMITS: Limits = Limits {
+const LIMITS: BlendThresholds = BlendThresholds {
     alpha_min: OPTIONS.alpha_min,
     alpha_max: OPTIONS.alpha_max,
     t_stop: OPTIONS.t_stop,
@@ -64,8 +64,8 @@ pub(super) struct Projected {
 
 impl Projected {
     pub fn new(ellipsoids: &[Ellipsoid], camera: &Camera, [width, height]: [u32; 2]) -> Self {
-        let view = View::new(camera, width, height, OPTIONS.jacobian_clamp);
-        let sight = Sight::of(camera, [width, height]);
+        let view = SplatCamera::new(camera, width, height, OPTIONS.jacobian_clamp);
+        let sight = ViewCone::of(camera, [width, height]);
         let one = |(i, e): (usize, &Ellipsoid)| -> Option<(SplatPixels, u32)> {
             if !sight.may_show(e) {
                 return None;
@@ -185,14 +185,14 @@ impl Projected {
 }
 
 /// A cone around the picture, to leave out early the Gaussians outside it.
-struct Sight {
+struct ViewCone {
     eye: Vec3,
     ahead: Vec3,
     /// Sine and cosine of the angle from the optical axis to a corner; `None` for wide lenses.
     corner: Option<(f32, f32)>,
 }
 
-impl Sight {
+impl ViewCone {
     fn of(camera: &Camera, [width, height]: [u32; 2]) -> Self {
         let rays = crate::rays::CameraRays::new(camera, width, height);
         let pose = camera.ego_from_camera();
@@ -224,12 +224,12 @@ impl Sight {
 }
 
 /// Gaussians made ready to be drawn from many places.
-pub struct Ready {
+pub struct PreparedGaussians {
     ellipsoids: Vec<Ellipsoid>,
     colors: Vec<[f32; 3]>,
 }
 
-impl Ready {
+impl PreparedGaussians {
     /// Prepares the Gaussians; takes some 60 bytes for each.
     pub fn new(gaussians: &[SceneGaussian]) -> Self {
         Self {
@@ -247,5 +247,5 @@ impl Ready {
 
 /// See [`Ready::render`].
 pub fn render(gaussians: &[SceneGaussian], camera: &Camera, size: [u32; 2]) -> Vec<[f32; 3]> {
-    Ready::new(gaussians).render(camera, size)
+    PreparedGaussians::new(gaussians).render(camera, size)
 }

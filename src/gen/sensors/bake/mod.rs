@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use crate::appearance::Appearance;
 use draw::Ellipsoid;
 pub use of_scene::{bake_scene, between, places};
-use samples::{Sample, Sampled};
+use samples::{Sampled, SurfaceSample};
 use scene::{Background, Baking, Conditions, Frame, GaussianScene, Pose, SceneGaussian, SensorRig};
 use tree::Leaf;
 
@@ -176,7 +176,7 @@ fn surfaces(sampled: &mut Sampled, eyes: &[Vec3], most: usize) -> (Vec<SceneGaus
     (leaves.par_iter().map(one).collect(), keep)
 }
 
-fn mean_color(samples: &[Sample]) -> [f32; 3] {
+fn mean_color(samples: &[SurfaceSample]) -> [f32; 3] {
     let mut sum = [0u32; 3];
     for s in samples {
         for (sum, v) in sum.iter_mut().zip(s.rgb) {

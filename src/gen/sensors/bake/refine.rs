@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::draw::{Ellipsoid, Projected};
-use super::samples::Taken;
+use super::samples::CapturedPicture;
 
 /// Views are shared out to as many sums, which are added in order: the result is the same on any number of threads.
 const PARTS: usize = 8;
@@ -14,7 +14,7 @@ type Colors = Vec<[f32; 3]>;
 /// Stops early once it was cancelled.
 pub(super) fn fit(
     ellipsoids: &[Ellipsoid],
-    taken: &[Taken],
+    taken: &[CapturedPicture],
     size: [u32; 2],
     (colors, keep): (&mut Colors, &[f32]),
     rounds: usize,

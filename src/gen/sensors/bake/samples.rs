@@ -12,7 +12,7 @@ use scene::truth::{self, TruthClass};
 
 /// A place that a ray met.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
+pub(super) struct SurfaceSample {
     pub at: Vec3,
     /// Width of a pixel there across the ray, m.
     pub width_m: f32,
@@ -30,7 +30,7 @@ pub(super) struct Sample {
 
 /// Surface that a group of samples shows; the samples of one group may become one Gaussian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Group {
+pub(super) struct SampleGroup {
     /// Instance of the box; 0 for none.
     pub instance: u32,
     pub class: TruthClass,
@@ -39,7 +39,7 @@ pub(super) struct Group {
 }
 
 /// A picture that was taken.
-pub(super) struct Taken {
+pub(super) struct CapturedPicture {
     pub camera: Camera,
     /// sRGB-coded, row-major.
     pub rgb: Vec<[u8; 3]>,
@@ -47,10 +47,10 @@ pub(super) struct Taken {
 
 /// Samples and pictures of all cameras.
 pub(super) struct Sampled {
-    pub samples: Vec<Sample>,
+    pub samples: Vec<SurfaceSample>,
     /// Groups in rising order.
-    pub groups: Vec<Group>,
-    pub taken: Vec<Taken>,
+    pub groups: Vec<SampleGroup>,
+    pub taken: Vec<CapturedPicture>,
 }
 
 /// Angle between the rays that sample skyline and sky, rad.
@@ -82,7 +82,7 @@ pub(super) fn look(
 ) -> Option<Sampled> {
     let (w, h) = (width as usize, height as usize);
     let mut samples = Vec::with_capacity(cameras.len() * w * h);
-    let mut numbers = Numbers::default();
+    let mut numbers = GroupNumbering::default();
     let mut taken = Vec::with_capacity(cameras.len());
     for camera in cameras {
         if cancelled() {
@@ -107,7 +107,7 @@ pub(super) fn look(
             }
         }
         let rgb = |p: &Option<Probe>| p.map_or([0; 3], |p| coded(p.color));
-        taken.push(Taken {
+        taken.push(CapturedPicture {
             camera: camera.clone(),
             rgb: probes.iter().map(rgb).collect(),
         });
@@ -120,8 +120,8 @@ pub(super) fn look(
     })
 }
 
-fn group_of(probe: &Probe) -> Group {
-    Group {
+fn group_of(probe: &Probe) -> SampleGroup {
+    SampleGroup {
         instance: probe.instance,
         class: probe.class,
         is_skyline: probe.is_skyline,
@@ -137,11 +137,11 @@ const GROUPS: usize = 1 << 14;
 
 /// Numbers of groups in the order of their first sample.
 #[derive(Default)]
-struct Numbers(BTreeMap<Group, u16>);
+struct GroupNumbering(BTreeMap<SampleGroup, u16>);
 
-impl Numbers {
+impl GroupNumbering {
     /// Sample of the surface that a ray met; `None` for the sky.
-    fn sample(&mut self, probe: &Probe, pixel_rad: f32, is_edge: bool) -> Option<Sample> {
+    fn sample(&mut self, probe: &Probe, pixel_rad: f32, is_edge: bool) -> Option<SurfaceSample> {
         if probe.class == truth::SKY {
             return None;
         }
@@ -149,7 +149,7 @@ impl Numbers {
         let group = *self.0.entry(group_of(probe)).or_insert(next);
         let width_m = probe.t * pixel_rad;
         let facing = probe.normal.dot(probe.way).abs().max(0.1);
-        Some(Sample {
+        Some(SurfaceSample {
             at: probe.from + probe.way * probe.t,
             width_m,
             area_m2: width_m * width_m / facing,
@@ -164,9 +164,9 @@ impl Numbers {
     }
 
     /// Sorts the groups, whatever was seen first, and numbers the samples by that order.
-    fn in_order(self, samples: &mut [Sample]) -> Vec<Group> {
+    fn in_order(self, samples: &mut [SurfaceSample]) -> Vec<SampleGroup> {
         let mut new = vec![0u16; self.0.len().min(GROUPS)];
-        let mut groups: Vec<Group> = Vec::with_capacity(new.len());
+        let mut groups: Vec<SampleGroup> = Vec::with_capacity(new.len());
         for (group, number) in self.0 {
             // Groups that share the last number are represented by one of them.
             if groups.len() < new.len() {

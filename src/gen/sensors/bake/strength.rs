@@ -2,11 +2,11 @@
 
 use glam::Vec3;
 
-use super::samples::Group;
-use crate::material::{Materials, Met};
+use super::samples::SampleGroup;
+use crate::material::{Materials, PulseHit};
 use scene::Class;
 use scene::truth::{self, TruthClass};
-use world::Surface;
+use world::SurfacePoint;
 
 /// Echo of paint on the road, as in [`Materials::of`].
 const PAINT: f32 = 34.0;
@@ -24,19 +24,19 @@ impl Strengths {
     }
 
     /// Strength of the echo at normal incidence from 10 m, 0 to 255; 0 for sky and skyline.
-    pub fn of(&self, group: &Group, at: Vec3, normal: Vec3) -> f32 {
+    pub fn of(&self, group: &SampleGroup, at: Vec3, normal: Vec3) -> f32 {
         if group.is_skyline {
             return 0.0;
         }
         let Some(class) = class_of(group.class) else {
             return PAINT;
         };
-        let surface = Surface {
+        let surface = SurfacePoint {
             normal: normal.as_dvec3(),
             instance: group.instance,
             part: 0,
         };
-        let met = Met {
+        let met = PulseHit {
             class,
             surface: &surface,
             solid: None,

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use super::blend::Slopes;
 use super::draw::{Ellipsoid, OPTIONS, Projected};
-use super::samples::Taken;
-use crate::project::View;
+use super::samples::CapturedPicture;
+use crate::project::SplatCamera;
 use scene::SceneGaussian;
 
 /// Views of one step.
@@ -43,7 +43,7 @@ struct Moments {
 /// Fits in `steps` steps of a few views each, which follow one another in a fixed order. Stops early once it was cancelled.
 pub(super) fn fit(
     gaussians: &mut [SceneGaussian],
-    taken: &[Taken],
+    taken: &[CapturedPicture],
     size: [u32; 2],
     steps: usize,
     cancelled: &(dyn Fn() -> bool + Sync),
@@ -55,7 +55,7 @@ pub(super) fn fit(
     let mut colors: Vec<[f32; 3]> = gaussians.iter().map(|g| g.color).collect();
     let start: Vec<[f32; 3]> = gaussians.iter().map(|g| g.std_m).collect();
     let mut moments = vec![Moments::default(); gaussians.len()];
-    let mut order = Order::new(taken.len());
+    let mut order = ViewOrder::new(taken.len());
     for step in 0..steps {
         if cancelled() {
             return;
@@ -91,13 +91,13 @@ pub(super) fn fit(
 }
 
 /// Views in an order that brings each once before any comes again, neighbours far apart.
-struct Order {
+struct ViewOrder {
     count: usize,
     stride: usize,
     at: usize,
 }
 
-impl Order {
+impl ViewOrder {
     fn new(count: usize) -> Self {
         let divides = |a: usize| (2..=a).any(|d| a.is_multiple_of(d) && count.is_multiple_of(d));
         let wanted = (count as f64 * 0.618) as usize;
@@ -115,7 +115,7 @@ impl Order {
 fn gradients(
     ellipsoids: &[Ellipsoid],
     colors: &[[f32; 3]],
-    taken: &Taken,
+    taken: &CapturedPicture,
     size: [u32; 2],
 ) -> Vec<(u32, Gradient)> {
     let projected = Projected::new(ellipsoids, &taken.camera, size);
@@ -126,7 +126,7 @@ fn gradients(
         .map(|(p, rgb)| [0, 1, 2].map(|c| p[c] - f32::from(rgb[c]) / 255.0))
         .collect();
     let slopes = projected.backward(colors, &picture, &slope);
-    let view = View::new(&taken.camera, size[0], size[1], OPTIONS.jacobian_clamp);
+    let view = SplatCamera::new(&taken.camera, size[0], size[1], OPTIONS.jacobian_clamp);
     let splats = projected.of.iter().zip(&slopes);
     splats
         .filter(|(_, slopes)| slopes.iter().any(|s| *s != 0.0))
@@ -136,7 +136,7 @@ fn gradients(
 
 /// Converts the gradient with a splat in the picture to that with the Gaussian itself. The change of the projection's
 /// derivative with the place is left out: Gaussians are small.
-fn chain(view: &View, e: &Ellipsoid, s: &Slopes) -> Option<Gradient> {
+fn chain(view: &SplatCamera, e: &Ellipsoid, s: &Slopes) -> Option<Gradient> {
     let around = view.around(e.position_m.as_dvec3(), [OPTIONS.near_m, OPTIONS.far_m])?;
     let axes = e.axes_m.map(|a| a.as_dvec3());
     let [xx, b, yy] = around.footprint(axes)?.covariance_px2;

@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::samples::{Group, Sample};
+use super::samples::{SampleGroup, SurfaceSample};
 use scene::Class;
 
 /// Edge of the smallest cell on the map, m.
@@ -38,7 +38,7 @@ pub(super) struct Leaf {
 }
 
 /// Edge of a group's smallest cell, m.
-fn finest_m(group: &Group) -> f32 {
+fn finest_m(group: &SampleGroup) -> f32 {
     match group.is_skyline {
         false => FINEST_M,
         true => 4.0 * FINEST_M,
@@ -49,7 +49,7 @@ fn finest_m(group: &Group) -> f32 {
 const DEEP: f32 = 4.0;
 
 /// The axis along which a surface faces most; 3 for leaves, which face everywhere.
-fn facing(s: &Sample, group: &Group) -> usize {
+fn facing(s: &SurfaceSample, group: &SampleGroup) -> usize {
     let n = s.normal.map(|v| i32::from(v).abs());
     if group.class == Class::Vegetation.id() && !group.is_skyline {
         3
@@ -61,7 +61,7 @@ fn facing(s: &Sample, group: &Group) -> usize {
 }
 
 /// The code of a sample: its group, the axis that it faces along, then its place, bits of x, y and z in turn.
-fn code(s: &Sample, groups: &[Group]) -> u64 {
+fn code(s: &SurfaceSample, groups: &[SampleGroup]) -> u64 {
     let group = &groups[usize::from(s.group)];
     let (cell, facing) = (finest_m(group), facing(s, group));
     let half = (1u32 << (BITS - 1)) as f32;
@@ -83,7 +83,7 @@ fn spread(v: u64) -> u64 {
 }
 
 /// A cell that may be divided.
-struct Open {
+struct DivisibleCell {
     from: u32,
     to: u32,
     /// Its edge is 2^level of the finest.
@@ -91,21 +91,21 @@ struct Open {
     gain: f32,
 }
 
-impl PartialEq for Open {
+impl PartialEq for DivisibleCell {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Open {}
+impl Eq for DivisibleCell {}
 
-impl PartialOrd for Open {
+impl PartialOrd for DivisibleCell {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Open {
+impl Ord for DivisibleCell {
     /// Orders by gain; on a tie the first cell counts as larger.
     fn cmp(&self, other: &Self) -> Ordering {
         let by_gain = self.gain.total_cmp(&other.gain);
@@ -118,18 +118,18 @@ impl Ord for Open {
 /// Sorts samples by their codes and chooses the leaves, in the same order. There may be more than `most` leaves if
 /// every group needs its share.
 pub(super) fn leaves(
-    samples: Vec<Sample>,
-    groups: &[Group],
+    samples: Vec<SurfaceSample>,
+    groups: &[SampleGroup],
     eyes: &[Vec3],
     most: usize,
-) -> (Vec<Sample>, Vec<Leaf>) {
+) -> (Vec<SurfaceSample>, Vec<Leaf>) {
     let mut keys: Vec<(u64, u32)> = samples
         .par_iter()
         .enumerate()
         .map(|(i, s)| (code(s, groups), i as u32))
         .collect();
     keys.par_sort_unstable();
-    let sorted: Vec<Sample> = keys.par_iter().map(|(_, i)| samples[*i as usize]).collect();
+    let sorted: Vec<SurfaceSample> = keys.par_iter().map(|(_, i)| samples[*i as usize]).collect();
     drop(samples);
     let codes: Vec<u64> = keys.into_iter().map(|(code, _)| code).collect();
     let tree = Tree {
@@ -143,7 +143,7 @@ pub(super) fn leaves(
         roots.push((from, to))
     });
     let mut done: Vec<(u32, u32, u32)> = Vec::new();
-    let opened: Vec<Open> = roots
+    let opened: Vec<DivisibleCell> = roots
         .par_iter()
         .map(|(from, to)| tree.open(*from, *to, LARGEST))
         .collect();
@@ -175,9 +175,9 @@ pub(super) fn leaves(
 }
 
 struct Tree<'a> {
-    samples: &'a [Sample],
+    samples: &'a [SurfaceSample],
     codes: &'a [u64],
-    groups: &'a [Group],
+    groups: &'a [SampleGroup],
     /// Places that cameras look from.
     eyes: &'a [Vec3],
 }
@@ -194,7 +194,7 @@ impl Tree<'_> {
         }
     }
 
-    fn open(&self, from: u32, to: u32, level: u32) -> Open {
+    fn open(&self, from: u32, to: u32, level: u32) -> DivisibleCell {
         let mut gain = 0.0;
         if level > 0 && to - from > 1 && self.is_too_large(from, to, level) {
             gain = f32::INFINITY;
@@ -216,7 +216,7 @@ impl Tree<'_> {
                 _ => (whole - parts) / (count - 1) as f32,
             };
         }
-        Open {
+        DivisibleCell {
             from,
             to,
             level,

@@ -1,15 +1,15 @@
 //! Boxes and lanes in perspective, hidden or not.
 
 use super::{
-    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
-    RenderOptions, SourceId, View, ViewId,
+    CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
+    PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
 use crate::march::GroundHeight;
 use crate::perspective;
 use scene::{Camera, Frame};
 
 /// The view of boxes and lanes.
-pub const VIEW: View = View::new(
+pub const VIEW: SourceView = SourceView::new(
     ViewId::new("perspective"),
     "Boxes, lanes",
     "in perspective, hidden or not",
@@ -22,8 +22,8 @@ const ID: SourceId = SourceId::new("layout");
 pub struct LayoutMaps;
 
 impl CameraSource for LayoutMaps {
-    fn about(&self) -> &'static About {
-        &About {
+    fn about(&self) -> &'static CameraSourceDescription {
+        &CameraSourceDescription {
             id: ID,
             title: "Layout",
             hint: "boxes and lanes as image models take them",
@@ -41,13 +41,13 @@ impl CameraSource for LayoutMaps {
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
-        Box::new(Ready(input.frame))
+        Box::new(PreparedLayoutMaps(input.frame))
     }
 }
 
-struct Ready<'a>(&'a Frame);
+struct PreparedLayoutMaps<'a>(&'a Frame);
 
-impl PreparedCameras for Ready<'_> {
+impl PreparedCameras for PreparedLayoutMaps<'_> {
     fn draw(
         &self,
         camera: &Camera,

@@ -7,8 +7,8 @@ use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 
 use super::{
-    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
-    RenderOptions, SourceId, View, ViewId,
+    CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
+    PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
 use crate::appearance::CameraImage;
 use crate::march::GroundHeight;
@@ -16,7 +16,7 @@ use crate::painter::{PaintError, PaintInput, PaintModel, PaintOptions, PaintWith
 use scene::{Camera, SensorRig};
 
 /// The view of the learned picture.
-pub const VIEW: View = View::new(
+pub const VIEW: SourceView = SourceView::new(
     ViewId::new("learned"),
     "Learned",
     "what the picture network makes of the voxels",
@@ -29,8 +29,8 @@ pub const ID: SourceId = SourceId::new("learned");
 pub struct Learned;
 
 impl CameraSource for Learned {
-    fn about(&self) -> &'static About {
-        &About {
+    fn about(&self) -> &'static CameraSourceDescription {
+        &CameraSourceDescription {
             id: ID,
             title: "Learned",
             hint: "drawn by a network that learned from the pictures, or by the weights chosen in the settings",
@@ -50,14 +50,14 @@ impl CameraSource for Learned {
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
-        Box::new(Ready {
+        Box::new(PreparedPaintings {
             input: *input,
             images: painted(input),
         })
     }
 }
 
-struct Ready<'a> {
+struct PreparedPaintings<'a> {
     input: CameraInput<'a>,
     /// Pictures in the order of the rig.
     images: Result<Vec<Arc<CameraImage>>, CameraError>,
@@ -91,7 +91,7 @@ impl From<PaintError> for CameraError {
     }
 }
 
-impl PreparedCameras for Ready<'_> {
+impl PreparedCameras for PreparedPaintings<'_> {
     fn draw(
         &self,
         camera: &Camera,

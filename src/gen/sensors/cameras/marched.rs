@@ -27,9 +27,9 @@ pub fn march_scene(frame: &Frame, shapes: bool, seed: u64) -> MarchScene {
 }
 
 /// A frame made ready for rays.
-pub(super) struct Ready(pub MarchScene);
+pub(super) struct PreparedMarch(pub MarchScene);
 
-impl PreparedCameras for Ready {
+impl PreparedCameras for PreparedMarch {
     fn draw(
         &self,
         camera: &Camera,

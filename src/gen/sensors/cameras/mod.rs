@@ -20,7 +20,7 @@ pub mod voxels;
 pub use bounds::CameraError;
 pub use marched::march_scene;
 pub use picture::{CameraPicture, DEPTH_M};
-pub use view::{Knob, SourceId, View, ViewId};
+pub use view::{Knob, SourceId, SourceView, ViewId};
 
 use rayon::prelude::*;
 
@@ -35,10 +35,10 @@ use scene::{Background, Camera, CameraMaps, Frame, SensorRig};
 pub fn all() -> &'static [&'static dyn CameraSource] {
     &[
         &splats::Splats,
-        &voxels::Voxels,
-        &shapes::Shapes,
-        &told::Told,
-        &pictures::Pictures,
+        &voxels::VoxelCameraSource,
+        &shapes::ShapeMaps,
+        &told::TruthCameraSource,
+        &pictures::PictureSource,
         &learned::Learned,
         &perceived::PerceivedClasses,
         &planes::PlaneStacks,
@@ -48,8 +48,8 @@ pub fn all() -> &'static [&'static dyn CameraSource] {
 }
 
 /// Every view, in the order of menus.
-pub fn views() -> Vec<View> {
-    let mut views: Vec<View> = Vec::new();
+pub fn views() -> Vec<SourceView> {
+    let mut views: Vec<SourceView> = Vec::new();
     for view in all().iter().flat_map(|s| s.views()) {
         if views.iter().all(|v| v.id != view.id) {
             views.push(*view);
@@ -68,7 +68,7 @@ pub fn sources_of(view: ViewId) -> Vec<&'static dyn CameraSource> {
 pub fn source_of(view: ViewId, preferred: SourceId) -> &'static dyn CameraSource {
     let sources = sources_of(view);
     let chosen = sources.iter().find(|s| s.id() == preferred).or(sources.first());
-    chosen.copied().unwrap_or(&shapes::Shapes)
+    chosen.copied().unwrap_or(&shapes::ShapeMaps)
 }
 
 /// The source of that name.
@@ -176,7 +176,7 @@ impl RenderContext<'_> {
 
 /// Description of a source and its needs.
 #[derive(Debug)]
-pub struct About {
+pub struct CameraSourceDescription {
     /// Its name, unique in the table.
     pub id: SourceId,
     /// Name on a button.
@@ -184,7 +184,7 @@ pub struct About {
     /// Description for the tip of the button.
     pub hint: &'static str,
     /// The views that one rendering gives, at least one.
-    pub views: &'static [View],
+    pub views: &'static [SourceView],
     /// Parts of the scene that decide its pictures.
     pub needs: Needs,
     /// Height at which its pictures show the ground.
@@ -200,7 +200,7 @@ pub struct About {
 /// One way to make camera pictures of a scene.
 pub trait CameraSource: Sync {
     /// Description of the source and its needs.
-    fn about(&self) -> &'static About;
+    fn about(&self) -> &'static CameraSourceDescription;
 
     /// Its name, unique in the table.
     fn id(&self) -> SourceId {
@@ -208,7 +208,7 @@ pub trait CameraSource: Sync {
     }
 
     /// The views that one rendering gives, at least one.
-    fn views(&self) -> &'static [View] {
+    fn views(&self) -> &'static [SourceView] {
         self.about().views
     }
 
@@ -239,12 +239,12 @@ pub trait PreparedCameras: Sync {
 }
 
 /// A source with a scene made ready, which renders pictures.
-pub struct Ready<'a> {
+pub struct PreparedSource<'a> {
     source: &'static dyn CameraSource,
     scene: Box<dyn PreparedCameras + 'a>,
 }
 
-impl<'a> Ready<'a> {
+impl<'a> PreparedSource<'a> {
     /// Makes a scene ready.
     pub fn new(source: &'static dyn CameraSource, input: &CameraInput<'a>) -> Self {
         Self {

@@ -7,8 +7,8 @@ use glam::{DQuat, Vec3};
 use rayon::prelude::*;
 
 use super::{
-    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
-    RenderOptions, SourceId, View, ViewId,
+    CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
+    PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
 use crate::appearance::{Appearance, CameraImage};
 use crate::march::GroundHeight;
@@ -17,7 +17,7 @@ use scene::Camera;
 use scene::Conditions;
 
 /// The view of normals.
-pub const VIEW: View = View::new(
+pub const VIEW: SourceView = SourceView::new(
     ViewId::new("normals"),
     "Normals",
     "which way surfaces face: right red, up green, towards the camera blue",
@@ -33,8 +33,8 @@ const ID: SourceId = SourceId::new("normals");
 pub struct Normals;
 
 impl CameraSource for Normals {
-    fn about(&self) -> &'static About {
-        &About {
+    fn about(&self) -> &'static CameraSourceDescription {
+        &CameraSourceDescription {
             id: ID,
             title: "Normals",
             hint: "the surfaces of the pictures, without light",
@@ -59,7 +59,7 @@ impl CameraSource for Normals {
             seed: input.conditions.seed,
             ..Conditions::default()
         };
-        Box::new(Ready(Appearance::with_things(
+        Box::new(PreparedNormals(Appearance::with_things(
             input.frame,
             input.background,
             input.rig,
@@ -75,9 +75,9 @@ fn color(ego_from_camera: DQuat, normal: Vec3) -> [u8; 3] {
     [n.x, -n.y, -n.z].map(|v| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
-struct Ready(Appearance);
+struct PreparedNormals(Appearance);
 
-impl PreparedCameras for Ready {
+impl PreparedCameras for PreparedNormals {
     fn draw(
         &self,
         camera: &Camera,

@@ -3,8 +3,8 @@
 
 use super::learned::sized;
 use super::{
-    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
-    RenderOptions, SourceId, View, ViewId,
+    CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
+    PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
 use crate::appearance::Appearance;
 use crate::march::GroundHeight;
@@ -12,7 +12,7 @@ use crate::perceived::Perceived;
 use scene::{Camera, Frame};
 
 /// The view of predicted classes.
-pub const VIEW: View = View::new(
+pub const VIEW: SourceView = SourceView::new(
     ViewId::new("perceived"),
     "Perceived",
     "what a small network sees in the pictures: red where it misses a thing, yellow where it sees one that is none",
@@ -25,8 +25,8 @@ pub const ID: SourceId = SourceId::new("perceived");
 pub struct PerceivedClasses;
 
 impl CameraSource for PerceivedClasses {
-    fn about(&self) -> &'static About {
-        &About {
+    fn about(&self) -> &'static CameraSourceDescription {
+        &CameraSourceDescription {
             id: ID,
             title: "Perceived",
             hint: "a segmenter that learned from the pictures, at 256 x 144",
@@ -46,19 +46,19 @@ impl CameraSource for PerceivedClasses {
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
-        Box::new(Ready {
+        Box::new(PreparedPerception {
             appearance: Appearance::with_things(input.frame, input.background, input.rig, &input.conditions),
             frame: input.frame,
         })
     }
 }
 
-struct Ready<'a> {
+struct PreparedPerception<'a> {
     appearance: Appearance,
     frame: &'a Frame,
 }
 
-impl PreparedCameras for Ready<'_> {
+impl PreparedCameras for PreparedPerception<'_> {
     fn draw(
         &self,
         camera: &Camera,

@@ -1,25 +1,25 @@
 //! Pictures that a camera would take, by day or night and in any weather: the analytic renderer.
 
 use super::{
-    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
-    RenderOptions, SourceId, View, ViewId,
+    CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
+    PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
 use crate::appearance::Appearance;
 use crate::march::GroundHeight;
 use scene::Camera;
 
 /// The view of the picture.
-pub const VIEW: View = View::new(ViewId::new("appearance"), "Picture", "what a camera would see");
+pub const VIEW: SourceView = SourceView::new(ViewId::new("appearance"), "Picture", "what a camera would see");
 
 /// Name of the source.
 pub const ID: SourceId = SourceId::new("pictures");
 
 /// The source.
-pub struct Pictures;
+pub struct PictureSource;
 
-impl CameraSource for Pictures {
-    fn about(&self) -> &'static About {
-        &About {
+impl CameraSource for PictureSource {
+    fn about(&self) -> &'static CameraSourceDescription {
+        &CameraSourceDescription {
             id: ID,
             title: "Pictures",
             hint: "materials, light and weather, ray marched",
@@ -39,7 +39,7 @@ impl CameraSource for Pictures {
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
-        Box::new(Ready(Appearance::with_things(
+        Box::new(PreparedPictures(Appearance::with_things(
             input.frame,
             input.background,
             input.rig,
@@ -48,9 +48,9 @@ impl CameraSource for Pictures {
     }
 }
 
-struct Ready(Appearance);
+struct PreparedPictures(Appearance);
 
-impl PreparedCameras for Ready {
+impl PreparedCameras for PreparedPictures {
     fn suits_card(&self) -> bool {
         true
     }

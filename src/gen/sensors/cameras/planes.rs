@@ -1,18 +1,18 @@
 //! Semantic multi-plane images.
 
 use super::{
-    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Knob, Needs, PreparedCameras,
-    RenderOptions, SourceId, View, ViewId,
+    CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Knob, Needs,
+    PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
 use crate::march::GroundHeight;
 use crate::mpi::{self, RenderIds};
 use scene::Camera;
-use scene::sensor_data::Planes;
+use scene::sensor_data::PlaneDepths;
 
 /// The view of one plane.
-pub const VIEW: View = View {
+pub const VIEW: SourceView = SourceView {
     knob: Some(Knob::PlaneDepth),
-    ..View::new(ViewId::new("mpi"), "Planes", "one plane of the multi-plane image")
+    ..SourceView::new(ViewId::new("mpi"), "Planes", "one plane of the multi-plane image")
 };
 
 /// Name of the source.
@@ -22,8 +22,8 @@ const ID: SourceId = SourceId::new("planes");
 pub struct PlaneStacks;
 
 impl CameraSource for PlaneStacks {
-    fn about(&self) -> &'static About {
-        &About {
+    fn about(&self) -> &'static CameraSourceDescription {
+        &CameraSourceDescription {
             id: ID,
             title: "Planes",
             hint: "classes of the voxels at fixed depths",
@@ -42,13 +42,16 @@ impl CameraSource for PlaneStacks {
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
         let frame = input.frame;
-        Box::new(Ready(RenderIds::new(&frame.occupancy, frame.layout.cells())))
+        Box::new(PreparedPlanes(RenderIds::new(
+            &frame.occupancy,
+            frame.layout.cells(),
+        )))
     }
 }
 
-struct Ready(RenderIds);
+struct PreparedPlanes(RenderIds);
 
-impl PreparedCameras for Ready {
+impl PreparedCameras for PreparedPlanes {
     fn draw(
         &self,
         camera: &Camera,
@@ -61,7 +64,7 @@ impl PreparedCameras for Ready {
             camera,
             width,
             height,
-            Planes::default(),
+            PlaneDepths::default(),
         )))
     }
 }

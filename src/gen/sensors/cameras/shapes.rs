@@ -1,18 +1,18 @@
 //! Classes and depths by exact rays to the voxels, boxes as the shapes that they stand for.
 
 use super::view::MAP_VIEWS;
-use super::{About, CameraInput, CameraSource, Needs, PreparedCameras, SourceId, marched};
+use super::{CameraInput, CameraSource, CameraSourceDescription, Needs, PreparedCameras, SourceId, marched};
 use crate::march::GroundHeight;
 
 /// Name of the source.
 pub const ID: SourceId = SourceId::new("shapes");
 
 /// The source.
-pub struct Shapes;
+pub struct ShapeMaps;
 
-impl CameraSource for Shapes {
-    fn about(&self) -> &'static About {
-        &About {
+impl CameraSource for ShapeMaps {
+    fn about(&self) -> &'static CameraSourceDescription {
+        &CameraSourceDescription {
             id: ID,
             title: "Shapes",
             hint: "exact rays; boxes as the shapes they stand for",
@@ -32,6 +32,6 @@ impl CameraSource for Shapes {
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
         let scene = marched::march_scene(input.frame, true, input.conditions.seed);
-        Box::new(marched::Ready(scene))
+        Box::new(marched::PreparedMarch(scene))
     }
 }

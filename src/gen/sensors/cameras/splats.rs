@@ -2,8 +2,8 @@
 
 use super::view::MAP_VIEWS;
 use super::{
-    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Detail, Needs, PreparedCameras,
-    RenderOptions, SourceId,
+    CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Detail, Needs,
+    PreparedCameras, RenderOptions, SourceId,
 };
 use crate::cloud::GaussianCloud;
 use crate::march::GroundHeight;
@@ -20,8 +20,8 @@ const SHELL_LAYERS: usize = 2;
 pub struct Splats;
 
 impl CameraSource for Splats {
-    fn about(&self) -> &'static About {
-        &About {
+    fn about(&self) -> &'static CameraSourceDescription {
+        &CameraSourceDescription {
             id: ID,
             title: "Splats",
             hint: "Gaussians at voxel centres, as the papers render",
@@ -40,16 +40,16 @@ impl CameraSource for Splats {
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
         let (grid, cells) = (&input.frame.occupancy, input.frame.layout.cells());
-        Box::new(Ready(match input.detail {
+        Box::new(PreparedSplats(match input.detail {
             Detail::Live => GaussianCloud::from_grid_shell(grid, cells, SHELL_LAYERS),
             Detail::Full => GaussianCloud::from_grid(grid, cells),
         }))
     }
 }
 
-struct Ready(GaussianCloud);
+struct PreparedSplats(GaussianCloud);
 
-impl PreparedCameras for Ready {
+impl PreparedCameras for PreparedSplats {
     fn suits_card(&self) -> bool {
         true
     }

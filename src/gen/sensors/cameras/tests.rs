@@ -53,7 +53,7 @@ fn rgba_beside(
         size: [80, 45],
         quality: Quality::Preview,
     };
-    let ready = Ready::new(source, &input);
+    let ready = PreparedSource::new(source, &input);
     let picture = ready.render(camera, &options, RenderContext::processor());
     let picture = picture.expect("a small picture");
     picture.rgba(source.views()[0].id, 12.0).1
@@ -78,7 +78,7 @@ fn drawn(
         size,
         quality: Quality::Preview,
     };
-    Ready::new(source, &input).render(camera, &options, RenderContext::processor())
+    PreparedSource::new(source, &input).render(camera, &options, RenderContext::processor())
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn every_source_keeps_the_bounds_and_stops_when_cancelled() {
             card: None,
             cancelled: &|| true,
         };
-        let stopped = Ready::new(*source, &input).render(&camera, &options, context);
+        let stopped = PreparedSource::new(*source, &input).render(&camera, &options, context);
         assert!(matches!(stopped, Err(CameraError::Cancelled)), "{name}");
     }
     let full = bounds::check([8000, 4000], 200, 0).expect_err("6.4 GB");
@@ -214,7 +214,7 @@ fn small_pictures_side_by_side_are_those_one_after_another() {
             detail: Detail::Full,
             paint: None,
         };
-        let ready = Ready::new(*source, &input);
+        let ready = PreparedSource::new(*source, &input);
         assert!(ready.side_by_side(&options) >= rig.cameras.len(), "{name}");
         let all = ready
             .render_all(&rig.cameras, &options, None)

@@ -2,8 +2,8 @@
 
 use super::view::MAP_VIEWS;
 use super::{
-    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
-    RenderOptions, SourceId,
+    CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
+    PreparedCameras, RenderOptions, SourceId,
 };
 use crate::appearance::Appearance;
 use crate::march::GroundHeight;
@@ -14,11 +14,11 @@ use scene::{Camera, CameraMaps, CameraTruth, Class, Frame};
 pub const ID: SourceId = SourceId::new("truth");
 
 /// The source.
-pub struct Told;
+pub struct TruthCameraSource;
 
-impl CameraSource for Told {
-    fn about(&self) -> &'static About {
-        &About {
+impl CameraSource for TruthCameraSource {
+    fn about(&self) -> &'static CameraSourceDescription {
+        &CameraSourceDescription {
             id: ID,
             title: "As pictures",
             hint: "what the pictures show, pixel by pixel: paint, crowns and the skyline too",
@@ -38,19 +38,19 @@ impl CameraSource for Told {
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
-        Box::new(Ready {
+        Box::new(PreparedSurfaceTruth {
             appearance: Appearance::with_things(input.frame, input.background, input.rig, &input.conditions),
             frame: input.frame,
         })
     }
 }
 
-struct Ready<'a> {
+struct PreparedSurfaceTruth<'a> {
     appearance: Appearance,
     frame: &'a Frame,
 }
 
-impl PreparedCameras for Ready<'_> {
+impl PreparedCameras for PreparedSurfaceTruth<'_> {
     fn draw(
         &self,
         camera: &Camera,

@@ -59,7 +59,7 @@ pub enum Knob {
 
 /// Content of a picture, as menus offer it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct View {
+pub struct SourceView {
     /// Its name.
     pub id: ViewId,
     /// Name on a button.
@@ -70,7 +70,7 @@ pub struct View {
     pub knob: Option<Knob>,
 }
 
-impl View {
+impl SourceView {
     /// A view without a setting of its own.
     pub const fn new(id: ViewId, title: &'static str, hint: &'static str) -> Self {
         Self {
@@ -83,7 +83,7 @@ impl View {
 }
 
 /// The views that maps of classes and depths give.
-pub(super) const MAP_VIEWS: &[View] = &[
-    View::new(ViewId::SEMANTIC, "Semantic", "classes"),
-    View::new(ViewId::DEPTH, "Depth", "2 m warm to 60 m cold"),
+pub(super) const MAP_VIEWS: &[SourceView] = &[
+    SourceView::new(ViewId::SEMANTIC, "Semantic", "classes"),
+    SourceView::new(ViewId::DEPTH, "Depth", "2 m warm to 60 m cold"),
 ];

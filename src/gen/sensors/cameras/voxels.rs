@@ -1,18 +1,18 @@
 //! Classes and depths by exact rays to the voxels.
 
 use super::view::MAP_VIEWS;
-use super::{About, CameraInput, CameraSource, Needs, PreparedCameras, SourceId, marched};
+use super::{CameraInput, CameraSource, CameraSourceDescription, Needs, PreparedCameras, SourceId, marched};
 use crate::march::GroundHeight;
 
 /// Name of the source.
 pub const ID: SourceId = SourceId::new("voxels");
 
 /// The source.
-pub struct Voxels;
+pub struct VoxelCameraSource;
 
-impl CameraSource for Voxels {
-    fn about(&self) -> &'static About {
-        &About {
+impl CameraSource for VoxelCameraSource {
+    fn about(&self) -> &'static CameraSourceDescription {
+        &CameraSourceDescription {
             id: ID,
             title: "Voxels",
             hint: "exact rays to the voxels",
@@ -31,6 +31,6 @@ impl CameraSource for Voxels {
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
         let scene = marched::march_scene(input.frame, false, input.conditions.seed);
-        Box::new(marched::Ready(scene))
+        Box::new(marched::PreparedMarch(scene))
     }
 }

@@ -24,7 +24,7 @@ const THICK: f64 = 1.0;
 
 /// Heights of the ground in voxel units, `[x][y]`; empty if the ground stays among the voxels.
 #[derive(Clone, Debug, Default)]
-pub struct Ground {
+pub struct GroundHeightField {
     extent: Extent,
     top: Vec<f64>, // NaN: none
     class: Vec<u8>,
@@ -50,16 +50,16 @@ fn is_ground(label: u8) -> bool {
 
 /// Splits a grid into the voxels that stand on the ground, and the ground. With [`GroundHeight::AsLabelled`] the ground
 /// stays among the voxels.
-pub fn split(grid: &VoxelGrid, height: GroundHeight) -> (VoxelGrid, Ground) {
+pub fn split(grid: &VoxelGrid, height: GroundHeight) -> (VoxelGrid, GroundHeightField) {
     let extent = grid.extent();
     if height == GroundHeight::AsLabelled {
-        let none = Ground {
+        let none = GroundHeightField {
             extent,
-            ..Ground::default()
+            ..GroundHeightField::default()
         };
         return (grid.clone(), none);
     }
-    let mut ground = Ground {
+    let mut ground = GroundHeightField {
         extent,
         top: vec![f64::NAN; extent.columns()],
         class: vec![Class::FREE; extent.columns()],
@@ -112,7 +112,7 @@ fn unsmear(column: &mut [u8; Extent::NZ]) {
     column[..SMEAR].fill(Class::FREE);
 }
 
-impl Ground {
+impl GroundHeightField {
     fn set(&mut self, at: usize, top: f64, class: u8) {
         (self.top[at], self.class[at]) = (top, class);
         self.lowest = self.lowest.min(top);

@@ -4,7 +4,7 @@
 
 use glam::DVec2;
 
-use scene::appearance::{AppearanceData, Section};
+use scene::appearance::{AppearanceData, AppearanceSection};
 use scene::sensor_data::RenderId;
 use scene::{BevLayer, BevLayout, Extent, PolylineKind};
 
@@ -42,7 +42,7 @@ pub struct Nearest {
 
 /// All paint of a layout.
 #[derive(Clone, Debug, Default)]
-pub struct Paint {
+pub struct RoadMarkings {
     extent: Extent,
     units: Units,
     /// Lower corner, m.
@@ -105,7 +105,7 @@ fn layer_of(kind: PolylineKind) -> Option<BevLayer> {
     }
 }
 
-impl Paint {
+impl RoadMarkings {
     /// The paint of a layout. Vertices that are not finite and segments without length are skipped.
     pub fn new(layout: &BevLayout) -> Self {
         let extent = layout.extent();
@@ -213,8 +213,8 @@ impl Paint {
             starts.push((segments.len() / 6) as u32);
         }
         starts.resize(self.bins.len() + 1, (segments.len() / 6) as u32);
-        out.push(Section::BinStarts, starts);
-        out.push(Section::Segments, segments);
+        out.push(AppearanceSection::BinStarts, starts);
+        out.push(AppearanceSection::Segments, segments);
         let (mut crossings, mut outlines) = (Vec::new(), Vec::new());
         for c in &self.crossings {
             crossings.extend([(outlines.len() / 2) as u32, c.outline.len() as u32]);
@@ -225,12 +225,12 @@ impl Paint {
             );
             outlines.extend(c.outline.iter().flat_map(|p| [bits(p.x), bits(p.y)]));
         }
-        out.push(Section::Crossings, crossings);
-        out.push(Section::Outlines, outlines);
-        out.at[Section::CrossingCount as usize] = self.crossings.len() as u32;
+        out.push(AppearanceSection::Crossings, crossings);
+        out.push(AppearanceSection::Outlines, outlines);
+        out.at[AppearanceSection::CrossingCount as usize] = self.crossings.len() as u32;
         for (section, of) in [
-            (Section::Allowed, &self.allowed),
-            (Section::Orphans, &self.orphans),
+            (AppearanceSection::Allowed, &self.allowed),
+            (AppearanceSection::Orphans, &self.orphans),
         ] {
             let mut cells = of.clone();
             cells.resize(self.extent.columns(), 0);

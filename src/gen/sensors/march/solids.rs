@@ -15,7 +15,7 @@ const BIN_COLUMNS: usize = 10;
 #[derive(Clone, Debug, Default)]
 pub struct SolidIndex {
     solids: Vec<(Solid, BoxId)>,
-    groups: Vec<Group>,
+    groups: Vec<BoxSolids>,
     /// Lower corner of the grid, m.
     low: DVec2,
     /// Bins along x and y.
@@ -25,7 +25,7 @@ pub struct SolidIndex {
 
 /// The solids of one box, and a circle on the ground that holds them.
 #[derive(Clone, Debug)]
-struct Group {
+struct BoxSolids {
     solids: std::ops::Range<usize>,
     low: DVec3,
     high: DVec3,
@@ -55,7 +55,7 @@ pub struct SolidHit<'a> {
     pub origin: DVec3,
 }
 
-impl Group {
+impl BoxSolids {
     /// True if a ray passes beside the circle.
     #[inline]
     fn beside(&self, origin: DVec3, dir: DVec3) -> bool {
@@ -98,7 +98,7 @@ impl SolidIndex {
             let low = parts().fold(DVec3::INFINITY, |m, (lo, _)| m.min(lo));
             let high = parts().fold(DVec3::NEG_INFINITY, |m, (_, hi)| m.max(hi));
             if first < solids.len() {
-                groups.push(Group {
+                groups.push(BoxSolids {
                     solids: first..solids.len(),
                     low,
                     high,
@@ -199,7 +199,7 @@ impl SolidIndex {
     #[inline]
     fn enter<'a>(
         &'a self,
-        group: &Group,
+        group: &BoxSolids,
         origin: DVec3,
         dir: DVec3,
         best: &mut f64,

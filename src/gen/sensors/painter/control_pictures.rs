@@ -1,15 +1,15 @@
 //! Inputs of public networks for a view: classes in their colours, depths, boxes and lanes in perspective, and planes
 //! of classes.
 
-use super::seen::Seen;
+use super::seen::RingFrame;
 use crate::color::perspective_rgba;
 use crate::mpi::{self, RenderIds};
 use crate::perspective;
 use crate::picture_hints::PictureHints;
-use scene::sensor_data::Planes;
+use scene::sensor_data::PlaneDepths;
 use scene::{Camera, Frame, truth};
 use stable::StableError;
-use stable::planes::{Run, of_runs};
+use stable::planes::{PlaneSpan, of_runs};
 
 /// Depths up to this are brightest, m.
 const NEAREST_M: f32 = 2.0;
@@ -63,7 +63,7 @@ pub(super) fn boxes_and_lanes(frame: &Frame, camera: &Camera, channels: usize) -
 /// Input of [`stable::Planes`] for some views: the label on each plane, at the size of latents.
 pub(super) fn planes(
     frame: &Frame,
-    seen: &Seen,
+    seen: &RingFrame,
     views: &[usize],
     [rows, columns]: [usize; 2],
     channels: usize,
@@ -71,7 +71,7 @@ pub(super) fn planes(
     let ids = RenderIds::new(&frame.occupancy, &[]);
     let count = channels.saturating_sub(1).min(MOST_PLANES) as u16;
     // Spacing of SyntheOcc's code: every 0.2 m.
-    let layout = Planes {
+    let layout = PlaneDepths {
         count,
         near_m: STEP_M,
         far_m: STEP_M * f64::from(count + 1),
@@ -81,7 +81,7 @@ pub(super) fn planes(
     for (view, place) in views.iter().enumerate() {
         let image = mpi::render(&ids, seen.camera(*place), columns as u32, rows as u32, layout);
         for cell in 0..cells {
-            runs.extend(image.pixel(cell).iter().map(|run| Run {
+            runs.extend(image.pixel(cell).iter().map(|run| PlaneSpan {
                 cell: view * cells + cell,
                 first: run.first.into(),
                 end: run.end.into(),

@@ -1,6 +1,6 @@
 //! Parts of the pictures that change when the scene does.
 
-use super::seen::Seen;
+use super::seen::RingFrame;
 use nets::picture::{CELL, RingSize};
 
 /// Cells around that of a changed pixel that are painted too.
@@ -14,7 +14,7 @@ pub const RIM_PX: usize = 10;
 
 /// Changed pixels of each view: those that show another class, depth or heading, or another light on it, such as the
 /// shadow of a thing that was added or removed.
-pub(super) fn changed(then: &Seen, now: &Seen, size: RingSize) -> Vec<Vec<bool>> {
+pub(super) fn changed(then: &RingFrame, now: &RingFrame, size: RingSize) -> Vec<Vec<bool>> {
     let [height, width] = size.pixels();
     let of_view = |view: usize| {
         let ((a, old), (b, new)) = (then.pixels(view), now.pixels(view));

@@ -21,14 +21,14 @@ use rayon::prelude::*;
 
 use crate::appearance::CameraImage;
 use diffusion::inversion::Trajectory;
-pub use model::{Paint, PaintModel, PaintWith};
+pub use model::{CameraPainter, PaintModel, PaintWith};
 use nets::ModelError;
-use nets::picture::{self, Before, Motion, PictureNets, RingSize, Sampling};
+use nets::picture::{self, Motion, PictureNets, PictureSampling, RingSize, WarpedLatents};
 pub use noise::NoisePrior;
 use ring::Ring;
 pub use ring::native_px;
 use scene::{Background, Conditions, Frame, SensorRig};
-use seen::Seen;
+use seen::RingFrame;
 pub use stable::config::SchedulerKind;
 
 /// Number of states whose pictures are kept, so that a state painted before is there again at once.
@@ -111,7 +111,7 @@ pub enum PaintError {
 
 /// Progress of a painting.
 #[derive(Debug)]
-pub struct Progress<'a> {
+pub struct PaintProgress<'a> {
     /// Steps done; 0 before the first.
     pub step: usize,
     /// All steps.
@@ -127,12 +127,12 @@ pub struct Painter {
     /// True if pictures are made of the steps too.
     previews: bool,
     /// Pictures of recent states, the newest last.
-    kept: VecDeque<Painted>,
+    kept: VecDeque<PaintedRing>,
 }
 
 /// Pictures of one state.
-struct Painted {
-    seen: Seen,
+struct PaintedRing {
+    seen: RingFrame,
     trajectory: Trajectory,
     /// Noise that the trajectory began with, and the number of frames of a drive that came before.
     noise: Vec<f32>,
@@ -172,12 +172,12 @@ impl Painter {
     pub fn paint(
         &mut self,
         input: &PaintInput<'_>,
-        mut watch: impl FnMut(Progress<'_>) -> ControlFlow<()>,
+        mut watch: impl FnMut(PaintProgress<'_>) -> ControlFlow<()>,
     ) -> Result<Vec<Arc<CameraImage>>, PaintError> {
         let Some(ring) = Ring::of(&input.rig.cameras)? else {
             return Ok(Vec::new());
         };
-        let seen = Seen::of(input, &ring);
+        let seen = RingFrame::of(input, &ring);
         if let Some(at) = self.kept.iter().position(|p| p.seen == seen)
             && let Some(painted) = self.kept.remove(at)
         {
@@ -196,10 +196,10 @@ impl Painter {
 
     fn painted(
         &self,
-        seen: Seen,
+        seen: RingFrame,
         ring: &Ring,
-        watch: &mut impl FnMut(Progress<'_>) -> ControlFlow<()>,
-    ) -> Result<Painted, PaintError> {
+        watch: &mut impl FnMut(PaintProgress<'_>) -> ControlFlow<()>,
+    ) -> Result<PaintedRing, PaintError> {
         let source = self.kept.iter().rfind(|p| p.seen.differs_in_scene_alone(&seen));
         let changed = source.map(|source| mask::changed(&source.seen, &seen, ring.size));
         let brush = Brush {
@@ -237,7 +237,7 @@ impl Painter {
                 self.options.noise.of(&seen, ring, earlier, number, latent)?
             }
         };
-        let sampling = Sampling {
+        let sampling = PictureSampling {
             told: &told,
             silent: None,
             before: before.as_ref(),
@@ -255,7 +255,7 @@ impl Painter {
             // The last step is followed by the pictures themselves.
             let preview = order.first().filter(|_| self.previews && step < steps);
             let image = preview.and_then(|first| brush.image(*first, &clean(), &seen).ok());
-            watch(Progress {
+            watch(PaintProgress {
                 step,
                 steps,
                 news: preview.map(|first| ring.camera(*first)).zip(image.as_ref()),
@@ -276,7 +276,7 @@ impl Painter {
         if let Some((first, rest)) = order.split_first() {
             let image = brush.image(*first, &latents, &seen)?;
             let steps = self.options.steps;
-            let _ = watch(Progress {
+            let _ = watch(PaintProgress {
                 step: steps,
                 steps,
                 news: Some((ring.camera(*first), &image)),
@@ -292,7 +292,7 @@ impl Painter {
         }
         let kept = |view: usize| source.map(|s| s.images[view].clone());
         let images = images.into_iter().enumerate();
-        Ok(Painted {
+        Ok(PaintedRing {
             images: images
                 .filter_map(|(view, image)| image.or_else(|| kept(view)))
                 .collect(),
@@ -304,14 +304,19 @@ impl Painter {
     }
 
     /// The newest frame that was painted while these cameras stood near, and how they moved since.
-    fn earlier(&self, seen: &Seen, size: RingSize) -> Option<(&Painted, Vec<Motion>)> {
+    fn earlier(&self, seen: &RingFrame, size: RingSize) -> Option<(&PaintedRing, Vec<Motion>)> {
         let mut kept = self.kept.iter().rev();
         kept.find_map(|p| Some((p, seen.motion_since(&p.seen, size)?)))
     }
 }
 
 /// Input of the cells of a frame from an earlier frame that was painted.
-fn before(painted: &Painted, motions: &[Motion], seen: &Seen, size: RingSize) -> Result<Before, PaintError> {
+fn before(
+    painted: &PaintedRing,
+    motions: &[Motion],
+    seen: &RingFrame,
+    size: RingSize,
+) -> Result<WarpedLatents, PaintError> {
     let depths = [&seen.depth_m()[..], &painted.seen.depth_m()];
     let before = picture::warp(size, &painted.trajectory.latent_f32(), depths, motions);
     before.map_err(network)
@@ -340,7 +345,7 @@ impl Brush<'_> {
     }
 
     /// Decodes the picture of one view of the ring from the latents of all.
-    fn image(&self, view: usize, latents: &[f32], seen: &Seen) -> Result<CameraImage, PaintError> {
+    fn image(&self, view: usize, latents: &[f32], seen: &RingFrame) -> Result<CameraImage, PaintError> {
         let numbers = latents.len() / self.size.views();
         let latents = &latents[view * numbers..][..numbers];
         let colors = self
@@ -370,8 +375,11 @@ impl Brush<'_> {
 }
 
 /// Tells the watcher the number of steps. Errors if the watcher stops the painting.
-fn begins(watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>, steps: usize) -> Result<(), PaintError> {
-    let progress = Progress {
+fn begins(
+    watch: &mut dyn FnMut(PaintProgress<'_>) -> ControlFlow<()>,
+    steps: usize,
+) -> Result<(), PaintError> {
+    let progress = PaintProgress {
         step: 0,
         steps,
         news: None,

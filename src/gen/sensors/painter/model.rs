@@ -5,27 +5,27 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use super::public::PublicPainter;
-use super::{PaintError, PaintInput, PaintOptions, Painter, Progress};
+use super::{PaintError, PaintInput, PaintOptions, PaintProgress, Painter};
 use crate::appearance::CameraImage;
 use nets::picture::PictureNets;
 use stable::{Folders, Machine, Pipeline};
 
 /// A painter of the cameras of a frame, which remembers what it painted.
-pub trait Paint: Send {
+pub trait CameraPainter: Send {
     /// Paints pictures of all cameras of the rig, in its order. `watch` is told of every step and may stop the
     /// painting. Errors if it did, or if the networks refuse their input.
     fn paint(
         &mut self,
         input: &PaintInput<'_>,
-        watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+        watch: &mut dyn FnMut(PaintProgress<'_>) -> ControlFlow<()>,
     ) -> Result<Vec<Arc<CameraImage>>, PaintError>;
 }
 
-impl Paint for Painter {
+impl CameraPainter for Painter {
     fn paint(
         &mut self,
         input: &PaintInput<'_>,
-        watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+        watch: &mut dyn FnMut(PaintProgress<'_>) -> ControlFlow<()>,
     ) -> Result<Vec<Arc<CameraImage>>, PaintError> {
         Painter::paint(self, input, watch)
     }
@@ -51,7 +51,7 @@ pub struct PaintWith {
 
 impl PaintWith {
     /// A painter; with `previews` it shows pictures of its steps, where that costs little.
-    pub fn painter(&self, previews: bool) -> Box<dyn Paint> {
+    pub fn painter(&self, previews: bool) -> Box<dyn CameraPainter> {
         self.model.painter(self.options.clone(), previews)
     }
 }
@@ -132,7 +132,7 @@ impl PaintModel {
     }
 
     /// A painter; with `previews` it shows pictures of its steps, where that costs little.
-    fn painter(&self, options: PaintOptions, previews: bool) -> Box<dyn Paint> {
+    fn painter(&self, options: PaintOptions, previews: bool) -> Box<dyn CameraPainter> {
         match self {
             Self::Own(nets) => {
                 let painter = Painter::new(nets.clone(), options);

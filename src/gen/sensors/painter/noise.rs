@@ -2,7 +2,7 @@
 
 use super::PaintError;
 use super::ring::Ring;
-use super::seen::Seen;
+use super::seen::RingFrame;
 use super::surfaces::{cells_of, pixels_before, shared_cells};
 use nets::picture::CELL;
 use stable::noise::{carried, fresh};
@@ -25,9 +25,9 @@ impl NoisePrior {
     /// and its noise if there is one near.
     pub(super) fn of(
         self,
-        seen: &Seen,
+        seen: &RingFrame,
         ring: &Ring,
-        earlier: Option<(&[f32], &Seen)>,
+        earlier: Option<(&[f32], &RingFrame)>,
         number: u32,
         latent: usize,
     ) -> Result<Vec<f32>, PaintError> {

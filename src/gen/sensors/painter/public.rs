@@ -9,14 +9,17 @@ use image::imageops::FilterType;
 
 use super::control_pictures::{boxes_and_lanes, classes, depths, planes};
 use super::ring::Ring;
-use super::seen::Seen;
+use super::seen::RingFrame;
 use super::surfaces::{cells_of, pixels_before, shared_cells};
-use super::{KEPT, PaintError, PaintInput, PaintOptions, Progress, begins, mask};
+use super::{KEPT, PaintError, PaintInput, PaintOptions, PaintProgress, begins, mask};
 use crate::appearance::CameraImage;
-use crate::painter::model::Paint;
+use crate::painter::model::CameraPainter;
 use diffusion::solver::Guidance;
 use stable::noise::{carried, fresh};
-use stable::{Control, Pictures, Pipeline, Planes, Request, StableError, Start, Step};
+use stable::{
+    Control, DenoisingStep, PictureBatch, PictureRequest, Pipeline, SemanticPlanes, StableError,
+    StartPictures,
+};
 
 /// Paints with public weights.
 pub(super) struct PublicPainter {
@@ -25,15 +28,15 @@ pub(super) struct PublicPainter {
     /// True if pictures are made of the steps too.
     previews: bool,
     /// Pictures of recent states, the newest last.
-    kept: VecDeque<Painted>,
+    kept: VecDeque<DiffusionRing>,
 }
 
 /// Largest share of a picture that is painted anew if it continues the frame before: enough to mend what the warp tore.
 const ONWARD: f64 = 0.5;
 
 /// Pictures of one state, in the ring's order.
-struct Painted {
-    seen: Seen,
+struct DiffusionRing {
+    seen: RingFrame,
     images: Vec<Arc<CameraImage>>,
     /// Noise that they were drawn from, `[view][channel][row][column]`.
     noise: Vec<f32>,
@@ -48,20 +51,20 @@ struct Onward<'a> {
 }
 
 /// The pictures before an edit, and for each view the share of each pixel that is new.
-type Before<'a> = (&'a [Arc<CameraImage>], Vec<Vec<f32>>);
+type PicturesBeforeEdit<'a> = (&'a [Arc<CameraImage>], Vec<Vec<f32>>);
 
 /// Input that some views of one frame are drawn from.
-struct Told<'a> {
+struct ViewInputs<'a> {
     input: &'a PaintInput<'a>,
-    seen: &'a Seen,
+    seen: &'a RingFrame,
     ring: &'a Ring,
-    before: Option<Before<'a>>,
+    before: Option<PicturesBeforeEdit<'a>>,
     onward: Option<Onward<'a>>,
     /// Noise of all views.
     noise: &'a [f32],
 }
 
-impl Told<'_> {
+impl ViewInputs<'_> {
     /// Share of the pictures that is drawn anew: one step at least, unless it is 0 in the options.
     fn strength(&self, options: &PaintOptions) -> f64 {
         let strength = match self.onward {
@@ -119,7 +122,7 @@ impl Told<'_> {
     }
 
     /// Preview of the first of some views: one pixel per cell, enlarged.
-    fn preview(&self, step: &Step<'_>, view: usize) -> Option<CameraImage> {
+    fn preview(&self, step: &DenoisingStep<'_>, view: usize) -> Option<CameraImage> {
         let seen = step.preview()?;
         let [rows, columns] = seen.size().map(|side| side as u32);
         let mut rgb = seen.to_bytes();
@@ -155,9 +158,9 @@ impl PublicPainter {
     /// Draws views together and returns their pictures.
     fn draw(
         &self,
-        told: &Told<'_>,
+        told: &ViewInputs<'_>,
         views: &[usize],
-        watch: &mut dyn FnMut(&Step<'_>) -> ControlFlow<()>,
+        watch: &mut dyn FnMut(&DenoisingStep<'_>) -> ControlFlow<()>,
     ) -> Result<Vec<CameraImage>, PaintError> {
         let [height, width] = told.ring.size.pixels();
         let start: Vec<u8> = views.iter().flat_map(|view| told.start(*view)).collect();
@@ -165,7 +168,7 @@ impl PublicPainter {
         let noise = views
             .iter()
             .flat_map(|view| &told.noise[view * of_view..][..of_view]);
-        let start = Pictures::from_bytes(views.len(), [height, width], &start).map_err(public)?;
+        let start = PictureBatch::from_bytes(views.len(), [height, width], &start).map_err(public)?;
         let mask: Option<Vec<bool>> = told.before.as_ref().map(|(_, shares)| {
             let all = views.iter().flat_map(|view| &shares[*view]);
             all.map(|share| *share > 0.0).collect()
@@ -182,7 +185,7 @@ impl PublicPainter {
             )
         });
         let planes = planes.transpose().map_err(public)?;
-        let request = Request {
+        let request = PictureRequest {
             prompts: views.iter().map(|view| self.prompt(told, *view)).collect(),
             negative: self.options.negative.clone(),
             size: [height, width],
@@ -196,7 +199,7 @@ impl PublicPainter {
             scheduler: self.options.scheduler,
             seed: told.seen.seed(),
             noise: Some(noise.copied().collect()),
-            start: Some(Start {
+            start: Some(StartPictures {
                 pictures: &start,
                 strength: told.strength(&self.options),
                 mask: mask.as_deref(),
@@ -205,7 +208,7 @@ impl PublicPainter {
                 .iter()
                 .map(|(net, picture)| Control::new(*net, picture))
                 .collect(),
-            planes: planes.as_deref().map(|ids| Planes { ids, scale: 1.0 }),
+            planes: planes.as_deref().map(|ids| SemanticPlanes { ids, scale: 1.0 }),
         };
         let drawn = self.pipeline.draw(&request, |step| watch(step)).map_err(public)?;
         let rgb = drawn.pictures.to_bytes();
@@ -215,7 +218,7 @@ impl PublicPainter {
 
     /// Input of each ControlNet that takes pictures: depths, or boxes and lanes, if its folder is named for them, else
     /// classes.
-    fn shown(&self, told: &Told<'_>, views: &[usize]) -> Vec<(usize, Vec<f32>)> {
+    fn shown(&self, told: &ViewInputs<'_>, views: &[usize]) -> Vec<(usize, Vec<f32>)> {
         let nets = self.pipeline.controls().iter().enumerate();
         let pictures = nets.filter(|(_, net)| !net.takes_planes());
         pictures
@@ -238,7 +241,7 @@ impl PublicPainter {
     }
 
     /// Prompt of a view: the user's words, the light and the camera.
-    fn prompt(&self, told: &Told<'_>, view: usize) -> String {
+    fn prompt(&self, told: &ViewInputs<'_>, view: usize) -> String {
         let conditions = &told.input.conditions;
         let camera = told
             .seen
@@ -260,10 +263,10 @@ impl PublicPainter {
     fn painted(
         &self,
         input: &PaintInput<'_>,
-        seen: Seen,
+        seen: RingFrame,
         ring: &Ring,
-        watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
-    ) -> Result<Painted, PaintError> {
+        watch: &mut dyn FnMut(PaintProgress<'_>) -> ControlFlow<()>,
+    ) -> Result<DiffusionRing, PaintError> {
         let together = self.pipeline.unet().views();
         let count = ring.size.views();
         if together > 1 && together != count {
@@ -309,7 +312,7 @@ impl PublicPainter {
             let shares = changed.iter().map(|c| mask::shares(c, width)).collect();
             (&source.images[..], shares)
         });
-        let told = Told {
+        let told = ViewInputs {
             input,
             seen: &seen,
             ring,
@@ -345,14 +348,14 @@ impl PublicPainter {
                 // After the last step comes the picture itself.
                 let shown = self.previews && step.step < step.steps;
                 let preview = shown.then(|| told.preview(step, group[0])).flatten();
-                watch(Progress {
+                watch(PaintProgress {
                     step: last.0,
                     steps: last.1,
                     news: preview.as_ref().map(|image| (ring.camera(group[0]), image)),
                 })
             })?;
             for (view, image) in group.iter().zip(drawn) {
-                let news = Progress {
+                let news = PaintProgress {
                     step: last.0,
                     steps: last.1,
                     news: Some((ring.camera(*view), &image)),
@@ -364,7 +367,7 @@ impl PublicPainter {
                 }
             }
         }
-        Ok(Painted {
+        Ok(DiffusionRing {
             images: images.into_iter().flatten().collect(),
             seen,
             noise,
@@ -373,11 +376,11 @@ impl PublicPainter {
     }
 }
 
-impl Paint for PublicPainter {
+impl CameraPainter for PublicPainter {
     fn paint(
         &mut self,
         input: &PaintInput<'_>,
-        watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+        watch: &mut dyn FnMut(PaintProgress<'_>) -> ControlFlow<()>,
     ) -> Result<Vec<Arc<CameraImage>>, PaintError> {
         if input.rig.cameras.is_empty() {
             return Ok(Vec::new());
@@ -385,7 +388,7 @@ impl Paint for PublicPainter {
         let Some(ring) = Ring::sized(&input.rig.cameras, self.size(input))? else {
             return Ok(Vec::new());
         };
-        let seen = Seen::of(input, &ring);
+        let seen = RingFrame::of(input, &ring);
         let known = self.kept.iter().position(|p| p.seen == seen);
         let painted = match known.and_then(|at| self.kept.remove(at)) {
             Some(painted) => painted,

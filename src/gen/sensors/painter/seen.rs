@@ -17,21 +17,21 @@ const TURNED_RAD: f64 = 0.35;
 
 /// A frame as the cameras of a ring see it.
 #[derive(PartialEq)]
-pub(super) struct Seen {
+pub(super) struct RingFrame {
     conditions: Conditions,
     /// Cameras at the size of their pictures, in the ring's order.
     cameras: Vec<Camera>,
-    views: Vec<View>,
+    views: Vec<HintedView>,
 }
 
 #[derive(PartialEq)]
-struct View {
+struct HintedView {
     hints: PictureHints,
     /// sRGB of the program's own renderer, row-major, without effects of the lens.
     plain: Vec<[u8; 3]>,
 }
 
-impl Seen {
+impl RingFrame {
     /// Looks at a scene.
     pub fn of(input: &PaintInput<'_>, ring: &Ring) -> Self {
         let [height, width] = ring.size.pixels().map(|n| n as u32);
@@ -43,7 +43,7 @@ impl Seen {
         let view = |camera: &&Camera| {
             let plain = appearance.render_plain(camera, [width, height], Quality::Preview);
             let byte = |v: f32| (v * 255.0).round().clamp(0.0, 255.0) as u8;
-            View {
+            HintedView {
                 hints: teller.of(camera, [width, height]),
                 plain: plain.into_iter().map(|c| c.map(byte)).collect(),
             }

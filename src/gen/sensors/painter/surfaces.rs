@@ -4,7 +4,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::seen::Seen;
+use super::seen::RingFrame;
 use crate::rays::CameraRays;
 
 /// Depth taken where there is no surface, m.
@@ -14,15 +14,15 @@ const SAME_SHARE: f64 = 0.03;
 const SAME_M: f64 = 0.25;
 
 /// One view of a frame.
-struct View<'a> {
-    seen: &'a Seen,
+struct SurfaceView<'a> {
+    seen: &'a RingFrame,
     place: usize,
     rays: CameraRays,
     size: [usize; 2],
 }
 
-impl<'a> View<'a> {
-    fn of(seen: &'a Seen, place: usize) -> Self {
+impl<'a> SurfaceView<'a> {
+    fn of(seen: &'a RingFrame, place: usize) -> Self {
         let camera = seen.camera(place);
         Self {
             seen,
@@ -32,7 +32,7 @@ impl<'a> View<'a> {
         }
     }
 
-    fn all(seen: &'a Seen, views: usize) -> Vec<Self> {
+    fn all(seen: &'a RingFrame, views: usize) -> Vec<Self> {
         (0..views).map(|place| Self::of(seen, place)).collect()
     }
 
@@ -65,8 +65,8 @@ impl<'a> View<'a> {
 
 /// For each pixel `[view][row][column]` of a frame the pixel of an earlier frame that showed the same surface, in the
 /// same view if it did there. Both rings have the given number of views.
-pub(super) fn pixels_before(now: &Seen, before: &Seen, views: usize) -> Vec<Option<u32>> {
-    let (now, then) = (View::all(now, views), View::all(before, views));
+pub(super) fn pixels_before(now: &RingFrame, before: &RingFrame, views: usize) -> Vec<Option<u32>> {
+    let (now, then) = (SurfaceView::all(now, views), SurfaceView::all(before, views));
     let pixels = now.first().map_or(0, |v| v.size[0] * v.size[1]);
     let of_pixel = |i: usize| {
         let view = &now[i / pixels];
@@ -103,8 +103,8 @@ pub(super) fn cells_of(pixels: &[Option<u32>], [height, width]: [usize; 2], cell
 
 /// For each cell of `cell` pixels a side `[view][row][column]` the cell of a view drawn before it, in `order`, that
 /// shows the same surface: the two share their noise. The first cell that shows a surface has none.
-pub(super) fn shared_cells(seen: &Seen, order: &[usize], cell: usize) -> Vec<Option<u32>> {
-    let views = View::all(seen, order.len());
+pub(super) fn shared_cells(seen: &RingFrame, order: &[usize], cell: usize) -> Vec<Option<u32>> {
+    let views = SurfaceView::all(seen, order.len());
     let [height, width] = views.first().map_or([0, 0], |v| v.size);
     let (rows, columns) = (height / cell, width / cell);
     let mut from: Vec<Option<u32>> = vec![None; order.len() * rows * columns];

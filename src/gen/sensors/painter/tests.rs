@@ -35,7 +35,7 @@ pub(super) fn input<'a>(frame: &'a Frame, rig: &'a SensorRig) -> PaintInput<'a> 
     }
 }
 
-fn go_on(_: Progress<'_>) -> ControlFlow<()> {
+fn go_on(_: PaintProgress<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -67,7 +67,7 @@ fn an_edit_changes_what_it_touches_and_nothing_else() {
     let new = new.expect("pictures");
 
     let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
-    let (then, now) = (Seen::of(&before, &ring), Seen::of(&after, &ring));
+    let (then, now) = (RingFrame::of(&before, &ring), RingFrame::of(&after, &ring));
     let changed = mask::changed(&then, &now, ring.size);
     let [_, width] = ring.size.pixels();
     let (mut painted, mut touched_views) = (0, 0);
@@ -145,7 +145,7 @@ fn a_drive_goes_on_from_the_frame_before() {
     let rig = SensorRig::default();
     let here = input(&frame, &rig);
     let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
-    let seen = |input: &PaintInput<'_>| Seen::of(input, &ring);
+    let seen = |input: &PaintInput<'_>| RingFrame::of(input, &ring);
     let then = seen(&here);
     let moved = |ahead_m: f64, turn_rad: f64| rig.standing_at(&Pose::planar(ahead_m, 0.0, turn_rad));
     let known = |ahead_m: f64, turn_rad: f64| {
@@ -266,7 +266,7 @@ fn seconds_of_a_painting() {
             std::time::Instant::now()
         };
         let start = std::time::Instant::now();
-        drop(Seen::of(&input(&with, &rig), &ring));
+        drop(RingFrame::of(&input(&with, &rig), &ring));
         let start = timed("look", start);
         let mut painter = Painter::new(nets.clone(), PaintOptions::default());
         painter.paint(&input(&with, &rig), go_on).expect("pictures");
@@ -291,7 +291,7 @@ fn noise_goes_along_with_surfaces() {
             ..PaintOptions::default()
         };
         let mut painter = Painter::new(PictureNets::bundled().expect("the shipped weights"), options);
-        let go_on = |_: Progress<'_>| ControlFlow::Continue(());
+        let go_on = |_: PaintProgress<'_>| ControlFlow::Continue(());
         let last = [&here, &ahead].map(|rig| painter.paint(&input(&frame, rig), go_on).expect("painted"));
         let noise: Vec<Vec<f32>> = painter.kept.iter().map(|p| p.noise.clone()).collect();
         (noise, last)

@@ -5,15 +5,15 @@
 
 use glam::DVec3;
 
-use super::walk::{Start, inverse_of, walk};
-use super::wide::{Wide, Work, heights, run};
+use super::walk::{GridEntry, inverse_of, walk};
+use super::wide::{Wide, WideKernel, heights, run};
 use super::{BLOCK, BORDER, ColumnMasks};
 use scene::Extent;
 
 /// Rays in a packet.
 pub const LANES: usize = 8;
 /// Hit of a ray: the distance in units of its direction's length, and the voxel; `None` if it meets nothing.
-pub type Met = Option<(f64, [u16; 3])>;
+pub type PacketHit = Option<(f64, [u16; 3])>;
 
 /// Positions are integers in 1/2^22 voxel.
 pub(super) const FRACTION: u32 = 22;
@@ -46,10 +46,10 @@ impl ColumnMasks {
         count: usize,
         max_t: f64,
         packet: impl Fn(usize) -> Packet,
-        met: impl FnMut(usize, &[Met; LANES]),
+        met: impl FnMut(usize, &[PacketHit; LANES]),
     ) {
         struct Cast<'a, P, M>(&'a ColumnMasks, usize, f64, P, M);
-        impl<P: Fn(usize) -> Packet, M: FnMut(usize, &[Met; LANES])> Work for Cast<'_, P, M> {
+        impl<P: Fn(usize) -> Packet, M: FnMut(usize, &[PacketHit; LANES])> WideKernel for Cast<'_, P, M> {
             #[inline(always)]
             fn with(self, wide: impl Wide) {
                 let Cast(masks, count, max_t, packet, mut met) = self;
@@ -72,7 +72,7 @@ impl ColumnMasks {
     }
 
     #[inline(never)]
-    fn cast_alone(&self, origin: DVec3, direction: DVec3, max_t: f64) -> Met {
+    fn cast_alone(&self, origin: DVec3, direction: DVec3, max_t: f64) -> PacketHit {
         let (t, voxel) = self.cast_in_voxels(origin, direction, max_t)?;
         Some((t, voxel.map(|v| v as u16)))
     }
@@ -233,7 +233,7 @@ impl Lanes {
 
     /// From slab to slab until every ray of the packet is settled, or at its end. One bit per ray that is not settled.
     #[inline(always)]
-    fn cast(&self, wide: impl Wide, masks: &ColumnMasks, met: &mut [Met; LANES]) -> u8 {
+    fn cast(&self, wide: impl Wide, masks: &ColumnMasks, met: &mut [PacketHit; LANES]) -> u8 {
         let mut alive = self.fits;
         let mut end = self.end(alive);
         let (low, high) = wide.bounds(&self.across);
@@ -323,7 +323,7 @@ impl Lanes {
         lane: usize,
         slab: i32,
         strides: [usize; 2],
-        met: &mut Met,
+        met: &mut PacketHit,
     ) -> bool {
         let cell = self.cell(slab);
         let t = |axis: usize, plane: i32| (f64::from(plane) - self.origin[axis]) * self.inverse[axis][lane];
@@ -416,9 +416,9 @@ impl Lanes {
 
     /// The walk of one ray from its start, or from where it enters a cell along the main axis.
     #[inline(never)]
-    fn walked(&self, masks: &ColumnMasks, lane: usize, from: Option<(usize, f64)>, t_end: f64) -> Met {
+    fn walked(&self, masks: &ColumnMasks, lane: usize, from: Option<(usize, f64)>, t_end: f64) -> PacketHit {
         let places = [[0, 1, 2], [1, 0, 2]][self.main];
-        let start = Start {
+        let start = GridEntry {
             shape: places.map(|axis| self.shape[axis]),
             origin: places.map(|axis| self.origin[axis]).into(),
             direction: places.map(|axis| self.direction[axis][lane]).into(),

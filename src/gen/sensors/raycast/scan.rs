@@ -4,7 +4,7 @@
 //! Positions are integers in 1/2^32 voxel that only grow by a constant, so a slab costs a few
 //! integer operations. A margin far above the rounding error widens every range looked at.
 
-use super::walk::Start;
+use super::walk::GridEntry;
 use super::{BLOCK, BORDER, ColumnMasks};
 use scene::Extent;
 
@@ -45,28 +45,28 @@ pub(super) struct Scan {
     strides: [usize; 2],
     block_strides: [usize; 2],
     /// Position across at the slab's entry, widened, border included; and its growth per slab.
-    across: Line,
+    across: SlabCoordinate,
     /// Height at the slab's entry, widened, without border; and its growth per slab.
-    height: Line,
+    height: SlabCoordinate,
     origin: f64,
     inverse: f64,
 }
 
 /// A coordinate that grows from slab to slab.
 #[derive(Clone, Copy)]
-struct Line {
+struct SlabCoordinate {
     entry: i64,
     per_slab: i64,
     /// Distance from the widened entry to the widened exit of one slab.
     width: i64,
 }
 
-impl Line {
-    fn new(entry: f64, per_slab: f64) -> Line {
+impl SlabCoordinate {
+    fn new(entry: f64, per_slab: f64) -> SlabCoordinate {
         const ONE: f64 = (1u64 << FRACTION) as f64;
         let per_slab = (per_slab * ONE) as i64;
         let outward = if per_slab < 0 { -MARGIN } else { MARGIN };
-        Line {
+        SlabCoordinate {
             entry: (entry * ONE) as i64 - outward,
             per_slab,
             width: per_slab + 2 * outward,
@@ -89,7 +89,7 @@ impl Line {
 impl Scan {
     /// Starts a scan; `None` for rays that are better walked: steep ones and those from very far.
     #[inline]
-    pub fn new(masks: &ColumnMasks, start: &Start) -> Option<Scan> {
+    pub fn new(masks: &ColumnMasks, start: &GridEntry) -> Option<Scan> {
         let (o, d) = (start.origin, start.direction);
         let main = usize::from(d.y.abs() > d.x.abs());
         let (om, dm) = (o[main], d[main]);
@@ -123,8 +123,8 @@ impl Scan {
             slabs_left: cell.abs_diff(last) + 1,
             strides: [strides[main], strides[other]],
             block_strides: [block_strides[main], block_strides[other]],
-            across: Line::new(entry(other) + BORDER as f64, d[other] * per_slab),
-            height: Line::new(entry(2), d.z * per_slab),
+            across: SlabCoordinate::new(entry(other) + BORDER as f64, d[other] * per_slab),
+            height: SlabCoordinate::new(entry(2), d.z * per_slab),
             origin: om,
             inverse,
         })

@@ -81,7 +81,7 @@ fn scattered_voxels(extent: Extent, count: u64) -> ColumnMasks {
 
 fn walk_of(masks: &ColumnMasks, o: DVec3, d: DVec3) -> (Vec<[usize; 3]>, Option<f64>) {
     let mut visited = Vec::new();
-    let start = Start::new(masks.shape, o, d, f64::INFINITY).expect("starts inside");
+    let start = GridEntry::new(masks.shape, o, d, f64::INFINITY).expect("starts inside");
     let hit = walk(masks, start.state(), start.t_end, |v| visited.push(v));
     // The cast, which skips what is free, comes to the same end.
     assert_eq!(
@@ -159,8 +159,8 @@ fn row_45_scan_equals_the_walk() {
             };
             let max_t = if i % 5 == 0 { at(6) * 300.0 } else { 1e9 };
             let d = d.normalize();
-            let want =
-                Start::new(masks.shape, o, d, max_t).and_then(|s| walk(&masks, s.state(), s.t_end, |_| ()));
+            let want = GridEntry::new(masks.shape, o, d, max_t)
+                .and_then(|s| walk(&masks, s.state(), s.t_end, |_| ()));
             assert_eq!(
                 masks.cast_in_voxels(o, d, max_t),
                 want,
@@ -393,9 +393,9 @@ fn row_45_packets_equal_single_rays() {
 /// The instructions make no difference.
 #[test]
 fn wide_operations_equal_plain_ones() {
-    use super::wide::{Plain, Wide, Work};
+    use super::wide::{Plain, Wide, WideKernel};
     struct Check;
-    impl Work for Check {
+    impl WideKernel for Check {
         fn with(self, wide: impl Wide) {
             for i in 0..20_000u64 {
                 let at = |k: u64| scatter(77_000_000 + i * 32 + k);

@@ -12,7 +12,7 @@ const STILL: f64 = 1e-30;
 
 /// The part of a ray inside the grid, in units of its direction's length.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
+pub struct RaySpan {
     /// Distance at which the ray enters; 0 if it starts inside.
     pub enter: f64,
     /// Distance at which the ray leaves.
@@ -22,7 +22,7 @@ pub struct Span {
 /// The part of the ray inside the half-open box of the grid, in voxel units of that grid. `None` if there is
 /// none (a start inside counts, a mere touch does not), or for NaN and a zero direction. A ray
 /// parallel to a face is inside if its origin is at or above the lower plane and below the upper one.
-pub fn grid_span(extent: Extent, origin: DVec3, direction: DVec3) -> Option<Span> {
+pub fn grid_span(extent: Extent, origin: DVec3, direction: DVec3) -> Option<RaySpan> {
     let inverse = direction.to_array().map(inverse_of).into();
     span_of(extent.shape(), origin, direction, inverse)
 }
@@ -34,7 +34,7 @@ pub(super) fn inverse_of(d: f64) -> f64 {
 }
 
 #[inline]
-fn span_of(shape: [usize; 3], origin: DVec3, direction: DVec3, inverse: DVec3) -> Option<Span> {
+fn span_of(shape: [usize; 3], origin: DVec3, direction: DVec3, inverse: DVec3) -> Option<RaySpan> {
     if !origin.is_finite() || !direction.is_finite() {
         return None;
     }
@@ -56,11 +56,11 @@ fn span_of(shape: [usize; 3], origin: DVec3, direction: DVec3, inverse: DVec3) -
     }
     // A start on a lower face is inside, even if the ray leaves at once. Infinity is left only if
     // no axis moved.
-    ((enter < leave || starts_inside) && leave.is_finite()).then_some(Span { enter, leave })
+    ((enter < leave || starts_inside) && leave.is_finite()).then_some(RaySpan { enter, leave })
 }
 
 /// A ray that meets the grid.
-pub(super) struct Start {
+pub(super) struct GridEntry {
     /// Voxels of the grid along each axis.
     pub shape: [usize; 3],
     pub origin: DVec3,
@@ -74,13 +74,13 @@ pub(super) struct Start {
 }
 
 /// State of a walk: the voxel entered at `t_in`.
-pub(super) struct State {
+pub(super) struct WalkState {
     t_in: f64,
-    axes: [Axis; 3],
+    axes: [AxisStepper; 3],
 }
 
 #[derive(Clone, Copy)]
-struct Axis {
+struct AxisStepper {
     cell: usize,
     step: isize,
     /// Distance at which the ray leaves this cell along this axis.
@@ -91,16 +91,16 @@ struct Axis {
     inverse: f64,
 }
 
-impl Start {
+impl GridEntry {
     /// Prepares a walk; `None` if the ray misses the grid or its range ends before.
     #[inline]
-    pub fn new(shape: [usize; 3], origin: DVec3, direction: DVec3, max_t: f64) -> Option<Start> {
+    pub fn new(shape: [usize; 3], origin: DVec3, direction: DVec3, max_t: f64) -> Option<GridEntry> {
         let inverse = DVec3::from_array(direction.to_array().map(inverse_of));
         let span = span_of(shape, origin, direction, inverse)?;
         if max_t.is_nan() || span.enter > max_t {
             return None;
         }
-        Some(Start {
+        Some(GridEntry {
             shape,
             origin,
             direction,
@@ -134,9 +134,9 @@ impl Start {
 
     /// The walk at its beginning.
     #[inline]
-    pub fn state(&self) -> State {
+    pub fn state(&self) -> WalkState {
         let axis = |a: usize| self.axis(a, self.first_cell(a));
-        State {
+        WalkState {
             t_in: self.t_in,
             axes: [axis(0), axis(1), axis(2)],
         }
@@ -146,7 +146,7 @@ impl Start {
     /// come there step by step: the other axes have passed the planes before `t`, and those at `t`
     /// if they go first on a tie.
     #[inline]
-    pub fn state_at(&self, main: usize, cell: usize, t: f64) -> State {
+    pub fn state_at(&self, main: usize, cell: usize, t: f64) -> WalkState {
         let axis = |a: usize| {
             if a == main {
                 return self.axis(a, cell);
@@ -166,17 +166,17 @@ impl Start {
                 axis
             }
         };
-        State {
+        WalkState {
             t_in: t,
             axes: [axis(0), axis(1), axis(2)],
         }
     }
 
     #[inline(always)]
-    fn axis(&self, a: usize, cell: usize) -> Axis {
+    fn axis(&self, a: usize, cell: usize) -> AxisStepper {
         let (origin, direction, inverse) = (self.origin[a], self.direction[a], self.inverse[a]);
         if inverse.is_infinite() {
-            return Axis {
+            return AxisStepper {
                 cell,
                 step: 0,
                 t_next: f64::INFINITY,
@@ -187,7 +187,7 @@ impl Start {
             };
         }
         let plane = (cell + usize::from(direction > 0.0)) as f64;
-        Axis {
+        AxisStepper {
             cell,
             step: if direction > 0.0 { 1 } else { -1 },
             t_next: (plane - origin) * inverse,
@@ -199,7 +199,7 @@ impl Start {
     }
 }
 
-impl Axis {
+impl AxisStepper {
     /// Moves to the next cell.
     #[inline(always)]
     fn advance(&mut self) {
@@ -214,12 +214,12 @@ impl Axis {
 #[inline(always)]
 pub(super) fn walk(
     masks: &ColumnMasks,
-    state: State,
+    state: WalkState,
     t_end: f64,
     mut visit: impl FnMut([usize; 3]),
 ) -> Option<(f64, [usize; 3])> {
     let stride = masks.stride;
-    let State {
+    let WalkState {
         mut t_in,
         axes: [mut ax, mut ay, mut az],
     } = state;

@@ -6,7 +6,7 @@ use super::packet::{FRACTION, LANES, MARGIN};
 /// The operations.
 pub(super) trait Wide: Copy {
     /// Runs `work` with the instructions that this stands for.
-    fn run<W: Work>(self, work: W);
+    fn run<W: WideKernel>(self, work: W);
 
     /// Finds the rays that may touch an occupied height of `union`, one bit per ray. A ray climbs from `height` by
     /// `step` a slab, for `slabs` slabs, both ends widened by the margin. Bit 0 of `union` is below the grid, bit 17
@@ -21,7 +21,7 @@ pub(super) trait Wide: Copy {
 }
 
 /// Work to be run with these operations.
-pub(super) trait Work {
+pub(super) trait WideKernel {
     /// Runs the work; inlined into code for the instructions of `wide`.
     fn with(self, wide: impl Wide);
 }
@@ -34,7 +34,7 @@ pub(super) fn heights(low: i32, high: i32) -> u32 {
 }
 
 /// Runs `work` with the best instructions of this machine.
-pub(super) fn run(work: impl Work) {
+pub(super) fn run(work: impl WideKernel) {
     #[cfg(target_arch = "x86_64")]
     if let Some(v3) = pulp::x86::V3::try_new() {
         return v3.run(work);
@@ -48,7 +48,7 @@ pub(super) struct Plain;
 
 impl Wide for Plain {
     #[inline(always)]
-    fn run<W: Work>(self, work: W) {
+    fn run<W: WideKernel>(self, work: W) {
         work.with(self);
     }
 
@@ -88,16 +88,16 @@ mod avx2 {
 
     impl Wide for V3 {
         #[inline(always)]
-        fn run<W: Work>(self, work: W) {
-            struct Run<W>(V3, W);
-            impl<W: Work> pulp::NullaryFnOnce for Run<W> {
+        fn run<W: WideKernel>(self, work: W) {
+            struct VectorizedWork<W>(V3, W);
+            impl<W: WideKernel> pulp::NullaryFnOnce for VectorizedWork<W> {
                 type Output = ();
                 #[inline(always)]
                 fn call(self) {
                     self.1.with(self.0);
                 }
             }
-            self.vectorize(Run(self, work));
+            self.vectorize(VectorizedWork(self, work));
         }
 
         #[inline(always)]

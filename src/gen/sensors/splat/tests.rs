@@ -51,7 +51,7 @@ fn sheet(depth_m: f32, opacity: f32, id: u8) -> Gaussian {
 #[test]
 fn row_37_projection() {
     let camera = camera(64, 48, 90.0);
-    let view = View::new(&camera, 64, 48, 1.3);
+    let view = SplatCamera::new(&camera, 64, 48, 1.3);
     for x in [
         0.0,
         -0.0,
@@ -102,7 +102,7 @@ fn row_37_projection() {
 fn row_38_ewa_jacobian() {
     let (w, h) = (128, 96);
     let camera = camera(w, h, 120.0);
-    let view = View::new(&camera, w, h, 1.3);
+    let view = SplatCamera::new(&camera, w, h, 1.3);
     let near = 0.2;
     let focal = camera.focal_px[0];
     let limit = |size: u32| 1.3 * 0.5 * f64::from(size) / focal;
@@ -186,7 +186,7 @@ fn row_40_low_pass() {
             let maps = draw(&[splat], &camera, &options);
             maps.coverage.iter().map(|&c| f64::from(c)).sum()
         };
-        let view = View::new(&camera, 64, 48, 1.3);
+        let view = SplatCamera::new(&camera, 64, 48, 1.3);
         let position = DVec3::new(depth, offset.into(), offset.into());
         let [a, b, c] = view
             .project(position, std_m.into(), 0.2, 200.0)

@@ -19,7 +19,7 @@ use crate::StableError;
 pub use control::{ControlConfig, MpiConfig};
 pub use scheduler::{BetaSchedule, Predicts, SchedulerConfig, SchedulerKind, Steps};
 pub use text::{Activation, TextConfig, TokenizerConfig};
-pub use unet::{Block, Connector, Heard, UnetConfig};
+pub use unet::{Connector, NeighbourFusion, UnetBlockKind, UnetConfig};
 pub use vae::VaeConfig;
 
 /// Largest size of a configuration, bytes.

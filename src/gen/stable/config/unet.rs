@@ -11,7 +11,7 @@ use crate::StableError;
 
 /// Kind of a level: with or without attention to the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-pub enum Block {
+pub enum UnetBlockKind {
     /// Convolutions with transformer blocks.
     #[serde(rename = "CrossAttnDownBlock2D", alias = "CrossAttnUpBlock2D")]
     Listens,
@@ -23,7 +23,7 @@ pub enum Block {
 /// Way to join the attention to several neighbours (`neighboring_attn_type`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Heard {
+pub enum NeighbourFusion {
     /// One attention for each neighbour; their sum.
     #[default]
     Add,
@@ -62,10 +62,10 @@ pub struct UnetConfig {
     #[serde(default)]
     pub freq_shift: f64,
     /// Levels on the way down.
-    pub down_block_types: Vec<Block>,
+    pub down_block_types: Vec<UnetBlockKind>,
     /// Levels on the way up; a ControlNet has none.
     #[serde(default)]
-    pub up_block_types: Vec<Block>,
+    pub up_block_types: Vec<UnetBlockKind>,
     /// Channels of each level, from the finest to the coarsest.
     pub block_out_channels: Vec<usize>,
     /// Residual blocks of each level on the way down.
@@ -97,13 +97,13 @@ pub struct UnetConfig {
     pub neighboring_view_pair: Option<BTreeMap<String, Vec<usize>>>,
     /// SyntheOcc: way to join them.
     #[serde(default)]
-    pub neighboring_attn_type: Heard,
+    pub neighboring_attn_type: NeighbourFusion,
     /// SyntheOcc: layer behind that attention.
     #[serde(default)]
     pub zero_module_type: Connector,
     /// Attention to the frames before and after, an addition of this program; `"add"` is the only kind.
     #[serde(default)]
-    pub cross_frame_attn_type: Option<Heard>,
+    pub cross_frame_attn_type: Option<NeighbourFusion>,
     #[serde(flatten)]
     rest: Map<String, Value>,
 }
@@ -212,7 +212,7 @@ impl UnetConfig {
                 ));
             }
         }
-        if self.cross_frame_attn_type == Some(Heard::Concat) {
+        if self.cross_frame_attn_type == Some(NeighbourFusion::Concat) {
             return Err("cross_frame_attn_type is \"concat\", expected \"add\"".into());
         }
         self.neighbours().map(|_| ())

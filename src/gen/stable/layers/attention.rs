@@ -2,7 +2,7 @@
 
 use candle_core::{DType, Device, Result, Tensor};
 
-use super::{Linear, softmax};
+use super::{TransposedLinear, softmax};
 use crate::StableError;
 use crate::weights::Names;
 
@@ -13,10 +13,10 @@ const MOST_SCORES: usize = 1 << 26;
 /// `to_out.0`.
 #[derive(Clone, Debug)]
 pub(crate) struct Attention {
-    query: Linear,
-    key: Linear,
-    value: Linear,
-    out: Linear,
+    query: TransposedLinear,
+    key: TransposedLinear,
+    value: TransposedLinear,
+    out: TransposedLinear,
     heads: usize,
 }
 
@@ -30,10 +30,10 @@ impl Attention {
         heads: usize,
     ) -> std::result::Result<Self, StableError> {
         Ok(Self {
-            query: Linear::load_without_bias(&names.at("to_q"), width, width)?,
-            key: Linear::load_without_bias(&names.at("to_k"), context, width)?,
-            value: Linear::load_without_bias(&names.at("to_v"), context, width)?,
-            out: Linear::load(&names.at("to_out.0"), width, width)?,
+            query: TransposedLinear::load_without_bias(&names.at("to_q"), width, width)?,
+            key: TransposedLinear::load_without_bias(&names.at("to_k"), context, width)?,
+            value: TransposedLinear::load_without_bias(&names.at("to_v"), context, width)?,
+            out: TransposedLinear::load(&names.at("to_out.0"), width, width)?,
             heads,
         })
     }
@@ -46,7 +46,7 @@ impl Attention {
         width: usize,
         heads: usize,
     ) -> std::result::Result<Self, StableError> {
-        let layer = |all: &[&str]| Linear::load(&names.at_any(all, "weight"), width, width);
+        let layer = |all: &[&str]| TransposedLinear::load(&names.at_any(all, "weight"), width, width);
         Ok(Self {
             query: layer(query)?,
             key: layer(key)?,

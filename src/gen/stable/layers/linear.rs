@@ -7,12 +7,12 @@ use crate::weights::Names;
 
 /// y = x W^T + b.
 #[derive(Clone, Debug)]
-pub(crate) struct Linear {
+pub(crate) struct TransposedLinear {
     weight: Tensor, // [outputs, inputs]
     bias: Option<Tensor>,
 }
 
-impl Linear {
+impl TransposedLinear {
     /// Loads `weight` of `[outputs, inputs]` and `bias` below a prefix.
     pub fn load(names: &Names<'_>, inputs: usize, outputs: usize) -> std::result::Result<Self, StableError> {
         Ok(Self {

@@ -9,9 +9,9 @@ mod residual;
 
 pub(crate) use attention::{Attention, causal_mask};
 pub(crate) use convolution::Conv;
-pub(crate) use linear::Linear;
+pub(crate) use linear::TransposedLinear;
 pub(crate) use norm::{GroupNorm, LayerNorm};
-pub(crate) use residual::Residual;
+pub(crate) use residual::StableResidual;
 
 use candle_core::{DType, Result, Tensor};
 

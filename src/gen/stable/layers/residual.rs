@@ -2,21 +2,21 @@
 
 use candle_core::{Result, Tensor};
 
-use super::{Conv, GroupNorm, Linear};
+use super::{Conv, GroupNorm, TransposedLinear};
 use crate::StableError;
 use crate::weights::Names;
 
 /// x + convolution(silu(norm(convolution(silu(norm(x))) + time))); x passes through a 1x1 convolution if the channels
 /// change.
 #[derive(Clone, Debug)]
-pub(crate) struct Residual {
+pub(crate) struct StableResidual {
     norms: [GroupNorm; 2],
     convolutions: [Conv; 2],
-    time: Option<Linear>,
+    time: Option<TransposedLinear>,
     shortcut: Option<Conv>,
 }
 
-impl Residual {
+impl StableResidual {
     /// Loads a block. `time` is the width of the timestep's embedding, if the block takes it.
     pub fn load(
         names: &Names<'_>,
@@ -25,7 +25,7 @@ impl Residual {
         groups: usize,
         epsilon: f64,
     ) -> std::result::Result<Self, StableError> {
-        let time = time.map(|width| Linear::load(&names.at("time_emb_proj"), width, outputs));
+        let time = time.map(|width| TransposedLinear::load(&names.at("time_emb_proj"), width, outputs));
         let shortcut =
             (inputs != outputs).then(|| Conv::load_point(&names.at("conv_shortcut"), inputs, outputs));
         Ok(Self {

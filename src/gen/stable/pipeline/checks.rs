@@ -1,6 +1,6 @@
 //! Checks that the parts of a model fit each other, and that a request fits the model.
 
-use super::{Pipeline, Request};
+use super::{PictureRequest, Pipeline};
 use crate::config::{ControlConfig, MpiConfig, TextConfig, UnetConfig, VaeConfig};
 use crate::text::Words;
 use crate::{StableError, check_finite, check_length, wrong};
@@ -81,7 +81,7 @@ pub(super) fn fit_mpi(mpi: &MpiConfig, unet: &UnetConfig) -> Result<(), StableEr
 }
 
 /// Fails unless the sizes of a request fit the model and each other, and its numbers are finite.
-pub(super) fn request(pipeline: &Pipeline, request: &Request<'_>) -> Result<(), StableError> {
+pub(super) fn request(pipeline: &Pipeline, request: &PictureRequest<'_>) -> Result<(), StableError> {
     let (pictures, cell) = (request.pictures(), pipeline.cell());
     if !(1..=MOST_PICTURES).contains(&pictures) {
         return Err(wrong(

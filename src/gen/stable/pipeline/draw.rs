@@ -6,15 +6,15 @@ use candle_core::{Device, Tensor};
 use diffusion::solver::{Guidance, Prediction, check_finite as check_state, clean_estimate};
 
 use super::preview::Colours;
-use super::{Control, Pipeline, Request, checks, numbers};
+use super::{Control, PictureRequest, Pipeline, checks, numbers};
 use crate::noise::{self, LatentSize};
-use crate::pictures::Pictures;
-use crate::sampling::{Plan, Solver};
+use crate::pictures::PictureBatch;
+use crate::sampling::{SamplingPlan, Solver};
 use crate::unet::Extra;
 use crate::{StableError, check_length};
 
 /// State of a run that the caller gets after each network call.
-pub struct Step<'a> {
+pub struct DenoisingStep<'a> {
     /// Number of calls done, from 1.
     pub step: usize,
     /// Number of all calls; PNDM does one more than it has steps.
@@ -24,13 +24,13 @@ pub struct Step<'a> {
     x: &'a [f64],
     predicted: &'a [f64],
     prediction: Prediction,
-    level: diffusion::schedule::Level,
+    level: diffusion::schedule::NoiseLevel,
     colours: Option<&'a Colours>,
 }
 
-impl Step<'_> {
+impl DenoisingStep<'_> {
     /// The pictures at this stage, one pixel a cell, without the decoder. `None` for a run that starts from no picture.
-    pub fn preview(&self) -> Option<Pictures> {
+    pub fn preview(&self) -> Option<PictureBatch> {
         self.colours?.of(&self.clean_estimate(), self.size).ok()
     }
 
@@ -44,9 +44,9 @@ impl Step<'_> {
 
 /// Result of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drawn {
+pub struct GeneratedPictures {
     /// The pictures: all views of the first frame, then of the next.
-    pub pictures: Pictures,
+    pub pictures: PictureBatch,
     /// Their latents, before they were decoded.
     pub latents: Vec<f32>,
     /// The noise that the run started from, for the next frame.
@@ -56,7 +56,7 @@ pub struct Drawn {
 }
 
 /// A ControlNet with the embedding of its picture.
-struct Shown<'a> {
+struct EmbeddedControl<'a> {
     control: Control<'a>,
     embedded: Tensor,
 }
@@ -65,7 +65,7 @@ struct Shown<'a> {
 struct Conditions<'a> {
     told: Tensor,
     negative: Tensor,
-    shown: Vec<Shown<'a>>,
+    shown: Vec<EmbeddedControl<'a>>,
     planes: Option<Tensor>,
 }
 
@@ -75,14 +75,14 @@ impl Pipeline {
     /// is 0 or too large.
     pub fn draw(
         &self,
-        request: &Request<'_>,
-        mut on_step: impl FnMut(&Step<'_>) -> ControlFlow<()>,
-    ) -> Result<Drawn, StableError> {
+        request: &PictureRequest<'_>,
+        mut on_step: impl FnMut(&DenoisingStep<'_>) -> ControlFlow<()>,
+    ) -> Result<GeneratedPictures, StableError> {
         checks::request(self, request)?;
         let size = self.latent_size(request.pictures(), request.size);
         let strength = request.start.map_or(1.0, |s| s.strength);
         let kind = request.scheduler.unwrap_or(self.scheduler.kind);
-        let plan = Plan::new(&self.scheduler, kind, request.steps, strength)?;
+        let plan = SamplingPlan::new(&self.scheduler, kind, request.steps, strength)?;
         let noise = request.noise.clone();
         let noise = noise.unwrap_or_else(|| noise::fresh(request.seed, 0, size));
         let clean = request
@@ -95,7 +95,7 @@ impl Pipeline {
             .map(|mask| self.cells(mask, size));
         let idle = plan.calls.is_empty() || anew.as_ref().is_some_and(|cells| !cells.contains(&true));
         if let (Some(start), Some(clean), true) = (request.start, &clean, idle) {
-            return Ok(Drawn {
+            return Ok(GeneratedPictures {
                 pictures: start.pictures.clone(),
                 latents: clean.clone(),
                 noise,
@@ -122,7 +122,7 @@ impl Pipeline {
                     .for_each(|((next, kept), _)| *next = kept);
             }
             check_state(&next, k + 1, steps)?;
-            let seen = Step {
+            let seen = DenoisingStep {
                 step: k + 1,
                 steps,
                 size,
@@ -142,7 +142,7 @@ impl Pipeline {
         if let Some((start, mask)) = request.start.and_then(|s| Some((s, s.mask?))) {
             pictures = pictures.except(mask, start.pictures);
         }
-        Ok(Drawn {
+        Ok(GeneratedPictures {
             pictures,
             latents,
             noise,
@@ -165,7 +165,11 @@ impl Pipeline {
     }
 
     /// Conditions of a request, after the networks that run only once.
-    fn conditions<'a>(&self, request: &Request<'a>, size: LatentSize) -> Result<Conditions<'a>, StableError> {
+    fn conditions<'a>(
+        &self,
+        request: &PictureRequest<'a>,
+        size: LatentSize,
+    ) -> Result<Conditions<'a>, StableError> {
         let [count, _, rows, columns] = size;
         let on = |numbers: &[f32], shape: [usize; 4]| -> Result<Tensor, StableError> {
             Ok(Tensor::from_slice(numbers, &shape, &Device::Cpu)?.to_device(&self.machine.device)?)
@@ -182,7 +186,7 @@ impl Pipeline {
             let shape = [count, net.config().conditioning_channels, height, width];
             let embedded = net.embed(&on(control.picture, shape)?)?;
             let control = *control;
-            shown.push(Shown { control, embedded });
+            shown.push(EmbeddedControl { control, embedded });
         }
         let mut added = None;
         if let (Some(planes), Some(channels)) = (&request.planes, self.plane_channels()) {
@@ -196,7 +200,7 @@ impl Pipeline {
                         ..Control::new(net, planes.ids)
                     };
                     let embedded = self.controls[net].embed(&ids)?;
-                    shown.push(Shown { control, embedded });
+                    shown.push(EmbeddedControl { control, embedded });
                 }
             }
         }
@@ -217,7 +221,7 @@ impl Pipeline {
     /// The prediction for a state, with guidance.
     fn guided(
         &self,
-        request: &Request<'_>,
+        request: &PictureRequest<'_>,
         conditions: &Conditions<'_>,
         x: &[f64],
         t: f64,
@@ -263,7 +267,7 @@ impl Pipeline {
             first: conditions.planes.clone(),
             ..Extra::default()
         };
-        for Shown { control, embedded } in &conditions.shown {
+        for EmbeddedControl { control, embedded } in &conditions.shown {
             let [from, until] = control.during;
             let (begins, ends) = (k as f64 / steps as f64, (k + 1) as f64 / steps as f64);
             if begins < from || ends > until {

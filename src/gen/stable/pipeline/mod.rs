@@ -11,16 +11,16 @@ use candle_core::{DType, Device, Tensor};
 use crate::config::{SchedulerConfig, SchedulerKind};
 use crate::control::{ControlNet, MpiEncoder};
 use crate::noise::LatentSize;
-use crate::pictures::Pictures;
-use crate::sampling::Plan;
+use crate::pictures::PictureBatch;
+use crate::sampling::SamplingPlan;
 use crate::text::{TextEncoder, Words};
 use crate::unet::Unet;
 use crate::vae::Vae;
 use crate::{Machine, StableError, check_finite, check_length};
 
-pub use draw::{Drawn, Step};
+pub use draw::{DenoisingStep, GeneratedPictures};
 pub use open::Folders;
-pub use request::{Control, Planes, Request, Start};
+pub use request::{Control, PictureRequest, SemanticPlanes, StartPictures};
 
 /// All networks of a model, checked against each other.
 pub struct Pipeline {
@@ -77,7 +77,7 @@ impl Pipeline {
         strength: f64,
     ) -> Result<usize, StableError> {
         let kind = scheduler.unwrap_or(self.scheduler.kind);
-        let plan = Plan::new(&self.scheduler, kind, steps, strength)?;
+        let plan = SamplingPlan::new(&self.scheduler, kind, steps, strength)?;
         Ok(plan.calls.len())
     }
 
@@ -94,7 +94,7 @@ impl Pipeline {
 
     /// Mean latents of pictures, `[picture][channel][row][column]`, as the UNet sees them. Errors if a side is no multiple of
     /// [`cell`](Self::cell).
-    pub fn encode(&self, pictures: &Pictures) -> Result<Vec<f32>, StableError> {
+    pub fn encode(&self, pictures: &PictureBatch) -> Result<Vec<f32>, StableError> {
         // One picture at a time, since the finest maps of a picture are large.
         let x = pictures.tensor(&self.machine)?;
         let mut out = Vec::new();
@@ -107,7 +107,7 @@ impl Pipeline {
     }
 
     /// Decodes latents of the given size. Errors if sizes do not fit or a number is not finite.
-    pub fn decode(&self, latents: &[f32], size: LatentSize) -> Result<Pictures, StableError> {
+    pub fn decode(&self, latents: &[f32], size: LatentSize) -> Result<PictureBatch, StableError> {
         let [count, channels, rows, columns] = size;
         check_length("latents", latents.len(), crate::noise::count(size))?;
         check_length("channels of latents", channels, self.vae.config().latent_channels)?;
@@ -116,10 +116,10 @@ impl Pipeline {
         let cell = self.cell();
         for latent in latents.chunks_exact((channels * rows * columns).max(1)) {
             let latent = Tensor::from_slice(latent, (1, channels, rows, columns), &self.machine.device)?;
-            let picture = Pictures::of_tensor(&self.vae.decode(&latent)?)?;
+            let picture = PictureBatch::of_tensor(&self.vae.decode(&latent)?)?;
             rgb.extend_from_slice(picture.rgb());
         }
-        Pictures::new(count, [rows * cell, columns * cell], rgb)
+        PictureBatch::new(count, [rows * cell, columns * cell], rgb)
     }
 }
 

@@ -61,12 +61,12 @@ struct ModelIndex {
 }
 
 /// A network's configuration and weights.
-struct Part<C> {
+struct ConfiguredWeights<C> {
     config: C,
     weights: Weights,
 }
 
-impl<C> Part<C> {
+impl<C> ConfiguredWeights<C> {
     fn read(
         folder: &Path,
         config: impl FnOnce(&Path) -> Result<C, StableError>,
@@ -82,11 +82,11 @@ impl<C> Part<C> {
 struct Parts {
     words: Words,
     scheduler: SchedulerConfig,
-    text: Part<TextConfig>,
-    vae: Part<VaeConfig>,
-    unet: Part<UnetConfig>,
-    controls: Vec<Part<ControlConfig>>,
-    mpi: Option<Part<MpiConfig>>,
+    text: ConfiguredWeights<TextConfig>,
+    vae: ConfiguredWeights<VaeConfig>,
+    unet: ConfiguredWeights<UnetConfig>,
+    controls: Vec<ConfiguredWeights<ControlConfig>>,
+    mpi: Option<ConfiguredWeights<MpiConfig>>,
 }
 
 impl Parts {
@@ -98,14 +98,14 @@ impl Parts {
         let parts = Self {
             scheduler: SchedulerConfig::read(&base.join("scheduler/scheduler_config.json"))?,
             words: Words::open(&base.join("tokenizer"))?,
-            text: Part::read(&base.join("text_encoder"), TextConfig::read)?,
-            vae: Part::read(&base.join("vae"), VaeConfig::read)?,
-            unet: Part::read(&folders.unet, UnetConfig::read)?,
+            text: ConfiguredWeights::read(&base.join("text_encoder"), TextConfig::read)?,
+            vae: ConfiguredWeights::read(&base.join("vae"), VaeConfig::read)?,
+            unet: ConfiguredWeights::read(&folders.unet, UnetConfig::read)?,
             controls: controls
-                .map(|folder| Part::read(folder, ControlConfig::read))
+                .map(|folder| ConfiguredWeights::read(folder, ControlConfig::read))
                 .collect::<Result<_, _>>()?,
             mpi: mpi
-                .map(|folder| Part::read(folder, MpiConfig::read))
+                .map(|folder| ConfiguredWeights::read(folder, MpiConfig::read))
                 .transpose()?,
         };
         parts.check()?;

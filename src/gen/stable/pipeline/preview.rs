@@ -5,7 +5,7 @@ use numeric::linear::solve;
 
 use crate::StableError;
 use crate::noise::LatentSize;
-use crate::pictures::Pictures;
+use crate::pictures::PictureBatch;
 
 /// Ridge that keeps the fit of a picture of one colour finite, as a share of its cells.
 const RIDGE: f64 = 1e-3;
@@ -19,7 +19,7 @@ pub(super) struct Colours {
 
 impl Colours {
     /// Fits the map from latents to the mean colours of their cells by least squares. `None` if there is no solution.
-    pub fn fit(latents: &[f32], size: LatentSize, pictures: &Pictures) -> Option<Self> {
+    pub fn fit(latents: &[f32], size: LatentSize, pictures: &PictureBatch) -> Option<Self> {
         let [count, channels, rows, columns] = size;
         let [height, width] = pictures.size();
         if rows * columns == 0 || pictures.count() != count || latents.len() != crate::noise::count(size) {
@@ -63,7 +63,7 @@ impl Colours {
     }
 
     /// Pictures of latents, one pixel a cell. Errors if the latents are not of that size.
-    pub fn of(&self, latents: &[f32], size: LatentSize) -> Result<Pictures, StableError> {
+    pub fn of(&self, latents: &[f32], size: LatentSize) -> Result<PictureBatch, StableError> {
         crate::check_length("latents", latents.len(), crate::noise::count(size))?;
         let [count, _, rows, columns] = size;
         let mut rgb = Vec::with_capacity(count * rows * columns * COLOURS);
@@ -73,7 +73,7 @@ impl Colours {
                 rgb.push(value.clamp(-1.0, 1.0) as f32);
             }
         }
-        Pictures::new(count, [rows, columns], rgb)
+        PictureBatch::new(count, [rows, columns], rgb)
     }
 }
 
@@ -107,7 +107,7 @@ mod tests {
                 rgb.extend((0..COLOURS).map(|c| colour(i, c) + off));
             }
         }
-        let pictures = Pictures::new(count, [2 * rows, 2 * columns], rgb).expect("pictures");
+        let pictures = PictureBatch::new(count, [2 * rows, 2 * columns], rgb).expect("pictures");
         let colours = Colours::fit(&latents, size, &pictures).expect("a fit");
         let seen = colours.of(&latents, size).expect("pictures");
         assert_eq!((seen.count(), seen.size()), (count, [rows, columns]));
@@ -117,7 +117,7 @@ mod tests {
             }
         }
         // Grey latents of a grey picture: finite.
-        let grey = Pictures::new(1, [2, 2], vec![0.5; 12]).expect("a picture");
+        let grey = PictureBatch::new(1, [2, 2], vec![0.5; 12]).expect("a picture");
         let flat = Colours::fit(&[0.0; 4], [1, 4, 1, 1], &grey).expect("a fit");
         let seen = flat.of(&[0.0; 4], [1, 4, 1, 1]).expect("a picture");
         assert!(seen.rgb().iter().all(|v| (v - 0.5).abs() < 0.01));

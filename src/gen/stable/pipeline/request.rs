@@ -3,13 +3,13 @@
 use diffusion::solver::Guidance;
 
 use crate::config::SchedulerKind;
-use crate::pictures::Pictures;
+use crate::pictures::PictureBatch;
 
 /// Pictures that a run starts from.
 #[derive(Clone, Copy, Debug)]
-pub struct Start<'a> {
+pub struct StartPictures<'a> {
     /// Pictures of the same number and size as those drawn: renderings, or the frame before.
-    pub pictures: &'a Pictures,
+    pub pictures: &'a PictureBatch,
     /// Share of the steps that are done anew, 0 to 1: 0 gives the pictures back, 1 keeps nothing of them.
     pub strength: f64,
     /// Pixels `[picture][row][column]` that may change; `None` means all. The others come back bit for bit. Pictures
@@ -45,7 +45,7 @@ impl<'a> Control<'a> {
 
 /// Semantic multi-plane images.
 #[derive(Clone, Copy, Debug)]
-pub struct Planes<'a> {
+pub struct SemanticPlanes<'a> {
     /// Class ids as plain numbers, `[picture][channel][row][column]` at the size of latents: all planes from the
     /// nearest on, 0 for empty, then the first visible id.
     pub ids: &'a [f32],
@@ -55,7 +55,7 @@ pub struct Planes<'a> {
 
 /// All inputs of pictures: an equal request gives equal bytes on one machine and build.
 #[derive(Clone, Debug)]
-pub struct Request<'a> {
+pub struct PictureRequest<'a> {
     /// One text for all pictures, or one for each.
     pub prompts: Vec<String>,
     /// Text of the other branch of guidance; usually empty.
@@ -77,14 +77,14 @@ pub struct Request<'a> {
     /// The noise `[picture][channel][row][column]`, of unit spread; `None` draws it from the seed (see [`crate::noise::fresh`]).
     pub noise: Option<Vec<f32>>,
     /// Pictures that the run starts from.
-    pub start: Option<Start<'a>>,
+    pub start: Option<StartPictures<'a>>,
     /// Inputs of ControlNets; their outputs are summed.
     pub controls: Vec<Control<'a>>,
     /// Semantic multi-plane images.
-    pub planes: Option<Planes<'a>>,
+    pub planes: Option<SemanticPlanes<'a>>,
 }
 
-impl Request<'_> {
+impl PictureRequest<'_> {
     /// A request for one picture of a text: 20 steps, guidance 7.5.
     pub fn new(prompt: &str, size: [usize; 2], seed: u64) -> Self {
         Self {

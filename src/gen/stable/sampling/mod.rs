@@ -7,5 +7,5 @@
 mod plan;
 mod solver;
 
-pub use plan::{Call, Plan};
+pub use plan::{Call, SamplingPlan};
 pub(crate) use solver::Solver;

@@ -1,6 +1,6 @@
 //! Training steps that a run visits.
 
-use diffusion::schedule::{Betas, Level, Schedule, ScheduleError};
+use diffusion::schedule::{Betas, NoiseLevel, Schedule, ScheduleError};
 use diffusion::solver::Prediction;
 
 use crate::config::{BetaSchedule, Predicts, SchedulerConfig, SchedulerKind, Steps};
@@ -13,16 +13,16 @@ const LEAST_ALPHA_BAR: f64 = 1.0 / (1u64 << 24) as f64;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Call {
     /// Level of the network's input; the network is given its `t`.
-    pub at: Level,
+    pub at: NoiseLevel,
     /// Level that the step starts from; it differs from `at` only in PNDM.
-    pub from: Level,
+    pub from: NoiseLevel,
     /// Level of the state after the step.
-    pub to: Level,
+    pub to: NoiseLevel,
 }
 
 /// All calls of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct SamplingPlan {
     /// The method.
     pub kind: SchedulerKind,
     /// Quantity that the network predicts.
@@ -30,12 +30,12 @@ pub struct Plan {
     /// The calls in order.
     pub calls: Vec<Call>,
     /// `calls + 1` levels from noise to data, for methods with a memory.
-    pub(super) levels: Vec<Level>,
+    pub(super) levels: Vec<NoiseLevel>,
     /// Spread of the noise that a run without a start picture begins with.
     pub spread: f64,
 }
 
-impl Plan {
+impl SamplingPlan {
     /// Plan of the last `strength` (0 to 1) of `steps` steps by `kind`; 1 is a run from pure noise, 0 has no calls.
     /// Errors if there are no steps or more than the schedule has, or if two steps coincide.
     pub fn new(
@@ -64,7 +64,7 @@ impl Plan {
             BetaSchedule::ScaledLinear => Betas::ScaledLinear { first, last },
             BetaSchedule::Cosine => Betas::Cosine,
         };
-        let schedule = Table {
+        let schedule = NoiseLevelTable {
             schedule: Schedule::new(betas, train, config.rescale_betas_zero_snr)?,
             divides: kind != SchedulerKind::Ddim,
         };
@@ -84,13 +84,13 @@ impl Plan {
         let told = &all[steps - kept..];
         let to_one = config.set_alpha_to_one.unwrap_or(kind == SchedulerKind::Ddim);
         let behind = match kind {
-            SchedulerKind::Ddim | SchedulerKind::Pndm if !to_one => Level {
+            SchedulerKind::Ddim | SchedulerKind::Pndm if !to_one => NoiseLevel {
                 t: -1.0,
                 ..schedule.at(0.0)
             },
-            _ => Level::CLEAN,
+            _ => NoiseLevel::CLEAN,
         };
-        let mut levels: Vec<Level> = told.iter().map(|t| schedule.at(*t)).collect();
+        let mut levels: Vec<NoiseLevel> = told.iter().map(|t| schedule.at(*t)).collect();
         levels.push(behind);
         let stride = (train / steps) as f64;
         let calls = match kind {
@@ -124,7 +124,7 @@ impl Plan {
 
 /// Steps of equal stride. diffusers counts the stride in whole training steps, also if the next timestep is one
 /// further.
-fn strides(schedule: &Table, told: &[f64], stride: f64, behind: Level) -> Vec<Call> {
+fn strides(schedule: &NoiseLevelTable, told: &[f64], stride: f64, behind: NoiseLevel) -> Vec<Call> {
     let call = |t: &f64| {
         let at = schedule.at(*t);
         let to = if *t < stride {
@@ -139,7 +139,7 @@ fn strides(schedule: &Table, told: &[f64], stride: f64, behind: Level) -> Vec<Ca
 
 /// The calls of PNDM, whose first step is done twice: the second time from the same start, with the mean of the
 /// predictions at its two ends.
-fn repeated(mut calls: Vec<Call>, schedule: &Table, stride: f64) -> Vec<Call> {
+fn repeated(mut calls: Vec<Call>, schedule: &NoiseLevelTable, stride: f64) -> Vec<Call> {
     if let Some(second) = calls.get(1).copied() {
         let again = Call {
             at: second.at,
@@ -152,33 +152,33 @@ fn repeated(mut calls: Vec<Call>, schedule: &Table, stride: f64) -> Vec<Call> {
 }
 
 /// Levels of a schedule at whole training steps and between.
-struct Table {
+struct NoiseLevelTable {
     schedule: Schedule,
     /// Whether the method divides by the signal of the noisiest step.
     divides: bool,
 }
 
-impl Table {
-    fn whole(&self, t: usize) -> Level {
+impl NoiseLevelTable {
+    fn whole(&self, t: usize) -> NoiseLevel {
         let level = self.schedule.level(t.min(self.schedule.train_steps() - 1));
         match self.divides && level.alpha == 0.0 {
-            true => Level::from_log_alpha_bar(level.t, LEAST_ALPHA_BAR.ln()),
+            true => NoiseLevel::from_log_alpha_bar(level.t, LEAST_ALPHA_BAR.ln()),
             false => level,
         }
     }
 
     /// Between two training steps, noise per signal is interpolated linearly.
-    fn at(&self, t: f64) -> Level {
+    fn at(&self, t: f64) -> NoiseLevel {
         let below = t.max(0.0).floor();
         let level = self.whole(below as usize);
         let part = t - below;
         if part <= 0.0 {
-            return Level { t, ..level };
+            return NoiseLevel { t, ..level };
         }
-        let ratio = |level: Level| level.sigma / level.alpha;
+        let ratio = |level: NoiseLevel| level.sigma / level.alpha;
         let above = ratio(self.whole(below as usize + 1));
         let between = ratio(level) * (1.0 - part) + above * part;
-        Level::from_log_alpha_bar(t, -(between * between).ln_1p())
+        NoiseLevel::from_log_alpha_bar(t, -(between * between).ln_1p())
     }
 }
 

@@ -2,17 +2,17 @@
 
 use diffusion::solver::{DdimStep, SolverKind, Stepper};
 
-use super::Plan;
+use super::SamplingPlan;
 use crate::StableError;
 use crate::config::SchedulerKind;
 
 /// Runs through a plan and keeps what the method needs of earlier steps. States are in 64 bits.
 pub(crate) struct Solver<'a> {
-    plan: &'a Plan,
-    memory: Memory<'a>,
+    plan: &'a SamplingPlan,
+    memory: SolverHistory<'a>,
 }
 
-enum Memory<'a> {
+enum SolverHistory<'a> {
     /// DDIM and Euler need no memory.
     None,
     /// PNDM: predictions of up to four steps, oldest first, and the state before the first step.
@@ -32,11 +32,11 @@ const WEIGHTS: [&[f64]; 4] = [
 
 impl<'a> Solver<'a> {
     /// A solver at the first call of a plan.
-    pub fn new(plan: &'a Plan) -> Self {
-        let stepper = |kind| Memory::Stepper(Stepper::new(kind, plan.prediction, &plan.levels));
+    pub fn new(plan: &'a SamplingPlan) -> Self {
+        let stepper = |kind| SolverHistory::Stepper(Stepper::new(kind, plan.prediction, &plan.levels));
         let memory = match plan.kind {
-            SchedulerKind::Ddim | SchedulerKind::Euler => Memory::None,
-            SchedulerKind::Pndm => Memory::Past {
+            SchedulerKind::Ddim | SchedulerKind::Euler => SolverHistory::None,
+            SchedulerKind::Pndm => SolverHistory::Past {
                 said: Vec::new(),
                 start: Vec::new(),
             },
@@ -52,14 +52,14 @@ impl<'a> Solver<'a> {
         let call = &self.plan.calls[k];
         let step = || DdimStep::new(self.plan.prediction, &call.from, &call.to);
         match &mut self.memory {
-            Memory::None => Ok(step()?.apply_all(x, predicted)),
-            Memory::Stepper(stepper) => Ok(stepper.advance(k, x, predicted)?),
-            Memory::Past { said, start } if k == 1 => {
+            SolverHistory::None => Ok(step()?.apply_all(x, predicted)),
+            SolverHistory::Stepper(stepper) => Ok(stepper.advance(k, x, predicted)?),
+            SolverHistory::Past { said, start } if k == 1 => {
                 let first = said.first().map_or(predicted, |s| s.as_slice());
                 let mean: Vec<f64> = first.iter().zip(predicted).map(|(a, b)| 0.5 * (a + b)).collect();
                 Ok(step()?.apply_all(start, &mean))
             }
-            Memory::Past { said, start } => {
+            SolverHistory::Past { said, start } => {
                 if k == 0 {
                     *start = x.to_vec();
                 }

@@ -4,29 +4,32 @@ use std::ops::ControlFlow;
 
 use super::opened;
 use crate::noise::{carried, fresh, with_prior};
-use crate::{Control, Drawn, Pictures, Pipeline, Planes, Request, StableError, Start};
+use crate::{
+    Control, GeneratedPictures, PictureBatch, PictureRequest, Pipeline, SemanticPlanes, StableError,
+    StartPictures,
+};
 use diffusion::solver::Guidance;
 
-pub(super) fn go_on(_: &crate::Step<'_>) -> ControlFlow<()> {
+pub(super) fn go_on(_: &crate::DenoisingStep<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-pub(super) fn request(seed: u64) -> Request<'static> {
-    Request {
+pub(super) fn request(seed: u64) -> PictureRequest<'static> {
+    PictureRequest {
         steps: 4,
-        ..Request::new("a road", [16, 24], seed)
+        ..PictureRequest::new("a road", [16, 24], seed)
     }
 }
 
-fn drawn(pipeline: &Pipeline, request: &Request<'_>) -> Drawn {
+fn drawn(pipeline: &Pipeline, request: &PictureRequest<'_>) -> GeneratedPictures {
     pipeline.draw(request, go_on).expect("drawn")
 }
 
-pub(super) fn some_picture(count: usize, size: [usize; 2]) -> Pictures {
+pub(super) fn some_picture(count: usize, size: [usize; 2]) -> PictureBatch {
     let bytes: Vec<u8> = (0..count * size[0] * size[1] * 3)
         .map(|i| (i * 37 % 251) as u8)
         .collect();
-    Pictures::from_bytes(count, size, &bytes).expect("pictures")
+    PictureBatch::from_bytes(count, size, &bytes).expect("pictures")
 }
 
 /// A worker thread may hold a model.
@@ -67,12 +70,12 @@ fn pixels_outside_of_the_mask_stay_to_the_bit() {
     let before = some_picture(1, [16, 24]);
     let mask: Vec<bool> = (0..16 * 24).map(|i| i % 24 < 7 && i / 24 > 4).collect();
     for strength in [0.5, 1.0] {
-        let start = Some(Start {
+        let start = Some(StartPictures {
             pictures: &before,
             strength,
             mask: Some(&mask),
         });
-        let after = drawn(&pipeline, &Request { start, ..request(1) }).pictures;
+        let after = drawn(&pipeline, &PictureRequest { start, ..request(1) }).pictures;
         let pairs = after
             .rgb()
             .chunks_exact(3)
@@ -84,14 +87,14 @@ fn pixels_outside_of_the_mask_stay_to_the_bit() {
     }
     // What is drawn depends on what stays around it.
     let other = some_picture(1, [16, 24]).rgb().iter().map(|v| -v).collect();
-    let other = Pictures::new(1, [16, 24], other).expect("a picture");
-    let inside = |pictures: &Pictures| {
-        let start = Some(Start {
+    let other = PictureBatch::new(1, [16, 24], other).expect("a picture");
+    let inside = |pictures: &PictureBatch| {
+        let start = Some(StartPictures {
             pictures,
             strength: 1.0,
             mask: Some(&mask),
         });
-        let after = drawn(&pipeline, &Request { start, ..request(1) }).pictures;
+        let after = drawn(&pipeline, &PictureRequest { start, ..request(1) }).pictures;
         let pixels = after.rgb().chunks_exact(3).zip(&mask).filter(|(_, m)| **m);
         pixels.flat_map(|(p, _)| p.to_vec()).collect::<Vec<f32>>()
     };
@@ -104,12 +107,12 @@ fn nothing_to_draw_costs_no_call() {
     let before = some_picture(1, [16, 24]);
     let nothing = vec![false; 16 * 24];
     for (strength, mask) in [(0.0, None), (1.0, Some(nothing.as_slice()))] {
-        let start = Some(Start {
+        let start = Some(StartPictures {
             pictures: &before,
             strength,
             mask,
         });
-        let after = drawn(&pipeline, &Request { start, ..request(1) });
+        let after = drawn(&pipeline, &PictureRequest { start, ..request(1) });
         assert_eq!((after.calls, after.pictures), (0, before.clone()));
     }
 }
@@ -120,12 +123,12 @@ fn strength_keeps_or_leaves_the_picture() {
     let before = some_picture(1, [16, 24]);
     let clean = pipeline.encode(&before).expect("encoded");
     let off = |strength| {
-        let start = Some(Start {
+        let start = Some(StartPictures {
             pictures: &before,
             strength,
             mask: None,
         });
-        let asked = Request {
+        let asked = PictureRequest {
             steps: 20,
             guidance: Guidance::NONE,
             start,
@@ -161,7 +164,7 @@ fn a_run_ends_when_its_watcher_says_so() {
 fn guidance_of_one_and_zero_asks_one_branch() {
     let pipeline = opened("sd15");
     let with = |weight, negative: &str, prompt: &str| {
-        let asked = Request {
+        let asked = PictureRequest {
             prompts: vec![prompt.into()],
             negative: negative.into(),
             guidance: Guidance { weight, rescale: 0.0 },
@@ -182,7 +185,7 @@ fn each_view_has_its_own_text_and_noise() {
     let prompts = ["a wet road", "two cars"];
     let all = drawn(
         &pipeline,
-        &Request {
+        &PictureRequest {
             views: 2,
             prompts: prompts.map(String::from).to_vec(),
             ..request(6)
@@ -193,7 +196,7 @@ fn each_view_has_its_own_text_and_noise() {
         let part = |numbers: &[f32]| numbers[i * half..][..half].to_vec();
         let alone = drawn(
             &pipeline,
-            &Request {
+            &PictureRequest {
                 prompts: vec![(*prompt).into()],
                 noise: Some(part(&all.noise)),
                 ..request(0)
@@ -216,7 +219,7 @@ fn a_control_is_heard_as_loud_and_as_long_as_asked() {
         }];
         drawn(
             &pipeline,
-            &Request {
+            &PictureRequest {
                 controls,
                 ..request(1)
             },
@@ -243,13 +246,13 @@ fn a_reference_frame_comes_back_and_is_heard() {
     assert!(pipeline.unet().hears_frames());
     let size = [8, 14];
     let mask: Vec<bool> = (0..12 * 8 * 14).map(|i| i >= 6 * 8 * 14).collect();
-    let with = |pictures: &Pictures| {
-        let asked = Request {
+    let with = |pictures: &PictureBatch| {
+        let asked = PictureRequest {
             views: 6,
             frames: 2,
             steps: 2,
             size,
-            start: Some(Start {
+            start: Some(StartPictures {
                 pictures,
                 strength: 1.0,
                 mask: Some(&mask),
@@ -260,7 +263,7 @@ fn a_reference_frame_comes_back_and_is_heard() {
     };
     let one = some_picture(12, size);
     let other: Vec<f32> = one.rgb().iter().map(|v| v * 0.5).collect();
-    let other = Pictures::new(12, size, other).expect("pictures");
+    let other = PictureBatch::new(12, size, other).expect("pictures");
     let (a, b) = (with(&one), with(&other));
     let half = 6 * 8 * 14 * 3;
     assert_eq!(a.pictures.rgb()[..half], one.rgb()[..half]);
@@ -297,11 +300,11 @@ fn noise_that_is_carried_stays_white() {
 #[test]
 fn bytes_come_back_as_they_were() {
     let bytes: Vec<u8> = (0..=255).flat_map(|b| [b, b, b]).collect();
-    let pictures = Pictures::from_bytes(1, [16, 16], &bytes).expect("a picture");
+    let pictures = PictureBatch::from_bytes(1, [16, 16], &bytes).expect("a picture");
     assert_eq!(pictures.to_bytes(), bytes);
-    assert!(Pictures::from_bytes(2, [16, 16], &bytes).is_err());
-    assert!(Pictures::new(1, [1, 1], vec![f32::NAN; 3]).is_err());
-    assert!(Pictures::new(usize::MAX, [8192, 8192], vec![]).is_err());
+    assert!(PictureBatch::from_bytes(2, [16, 16], &bytes).is_err());
+    assert!(PictureBatch::new(1, [1, 1], vec![f32::NAN; 3]).is_err());
+    assert!(PictureBatch::new(usize::MAX, [8192, 8192], vec![]).is_err());
 }
 
 /// Cards compute in 16 bits: the same path on the processor.
@@ -317,11 +320,11 @@ fn sixteen_bits_stay_near_thirty_two() {
         let exact = opened(model);
         let picture: Vec<f32> = (0..3 * 16 * 24).map(|i| (i % 7) as f32 / 7.0).collect();
         let ids: Vec<f32> = (0..6 * 9 * 4 * 7).map(|i| (i % 17) as f32).collect();
-        let planes = Planes {
+        let planes = SemanticPlanes {
             ids: &ids,
             scale: 1.0,
         };
-        let asked = Request {
+        let asked = PictureRequest {
             size,
             views,
             controls: (views == 1)

@@ -1,7 +1,7 @@
 //! Every part of the networks beside diffusers.
 
 use super::{Golden, opened};
-use crate::unet::Around;
+use crate::unet::NeighbourIndices;
 
 #[test]
 fn parity_of_text_and_autoencoder() {
@@ -35,7 +35,7 @@ fn parity_of_unet() {
         let golden = Golden::open(&format!("{model}/golden.safetensors"));
         let unet = opened(model).unet;
         let (x, context) = (golden.tensor("unet.x"), golden.tensor("unet.context"));
-        let around = Around::default();
+        let around = NeighbourIndices::default();
         let time = unet.time.forward(481.0, &crate::Machine::cpu()).expect("time");
         let both = time
             .broadcast_as((2, time.dim(1).expect("two dimensions")))

@@ -2,15 +2,19 @@
 
 use super::behaviour::{go_on, request, some_picture};
 use super::opened;
-use crate::{Control, Pictures, Planes, Request, Start};
+use crate::{Control, PictureBatch, PictureRequest, SemanticPlanes, StartPictures};
 
 /// What is wrong with a request.
-type Spoil<'a> = fn(&mut Request<'a>, &'a Pictures);
+type Spoil<'a> = fn(&mut PictureRequest<'a>, &'a PictureBatch);
 
 const NUMBERS: [f32; 9] = [0.0; 9];
 
-fn start<'a>(pictures: &'a Pictures, strength: f64, mask: Option<&'a [bool]>) -> Option<Start<'a>> {
-    Some(Start {
+fn start<'a>(
+    pictures: &'a PictureBatch,
+    strength: f64,
+    mask: Option<&'a [bool]>,
+) -> Option<StartPictures<'a>> {
+    Some(StartPictures {
         pictures,
         strength,
         mask,
@@ -55,7 +59,7 @@ fn requests_that_do_not_fit_are_refused_in_one_line() {
             r.controls = vec![Control::new(0, &NUMBERS)];
         }),
         ("multi-plane images is 9", |r, _| {
-            r.planes = Some(Planes {
+            r.planes = Some(SemanticPlanes {
                 ids: &NUMBERS,
                 scale: 1.0,
             });
@@ -77,7 +81,7 @@ fn a_ring_wants_all_its_views_and_planes() {
         .expect_err("one view")
         .to_string();
     assert_eq!(error, "number of views is 1, expected 6, those of the UNet");
-    let asked = Request {
+    let asked = PictureRequest {
         views: 6,
         controls: vec![Control::new(0, &NUMBERS)],
         ..request(1)

@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 
 use super::{Golden, folder, opened};
 use crate::config::UnetConfig;
-use crate::{Extra, Folders, Machine, Pipeline, Planes, Request, Unet, Weights};
+use crate::{Extra, Folders, Machine, PictureRequest, Pipeline, SemanticPlanes, Unet, Weights};
 use diffusion::solver::Guidance;
 
-fn request<'a>(golden: &'a Golden) -> Request<'a> {
-    Request {
+fn request<'a>(golden: &'a Golden) -> PictureRequest<'a> {
+    PictureRequest {
         negative: "blur".into(),
         steps: 5,
         views: 6,
@@ -17,11 +17,11 @@ fn request<'a>(golden: &'a Golden) -> Request<'a> {
             rescale: 0.0,
         },
         noise: Some(golden.numbers("run.noise").to_vec()),
-        planes: Some(Planes {
+        planes: Some(SemanticPlanes {
             ids: golden.numbers("mpi"),
             scale: 1.0,
         }),
-        ..Request::new("A wet road, it's dawn; two cars", [8, 14], 0)
+        ..PictureRequest::new("A wet road, it's dawn; two cars", [8, 14], 0)
     }
 }
 

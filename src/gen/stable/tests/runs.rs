@@ -5,20 +5,20 @@ use std::ops::ControlFlow;
 use super::{Golden, opened};
 use crate::config::SchedulerKind;
 use crate::noise::noised;
-use crate::sampling::{Plan, Solver};
-use crate::{Control, Request};
+use crate::sampling::{SamplingPlan, Solver};
+use crate::{Control, PictureRequest};
 use diffusion::solver::Guidance;
 
 const PROMPT: &str = "A wet road, it's dawn; two cars";
 
 /// What the script asks for.
-fn request(weight: f64, rescale: f64, noise: &[f32]) -> Request<'static> {
-    Request {
+fn request(weight: f64, rescale: f64, noise: &[f32]) -> PictureRequest<'static> {
+    PictureRequest {
         negative: "blur".into(),
         steps: 5,
         guidance: Guidance { weight, rescale },
         noise: Some(noise.to_vec()),
-        ..Request::new(PROMPT, [16, 16], 0)
+        ..PictureRequest::new(PROMPT, [16, 16], 0)
     }
 }
 
@@ -35,7 +35,7 @@ fn parity_of_text_to_picture() {
     let golden = Golden::open("sd15/golden.safetensors");
     let pipeline = opened("sd15");
     for (name, kind) in KINDS {
-        let asked = Request {
+        let asked = PictureRequest {
             scheduler: Some(kind),
             ..request(7.5, 0.0, golden.numbers("run.noise"))
         };
@@ -44,7 +44,7 @@ fn parity_of_text_to_picture() {
             .expect("drawn");
         golden.compare_numbers("sd15", &format!("run.{name}.latents"), &drawn.latents);
         let expected = golden.tensor(&format!("run.{name}.picture"));
-        let expected = crate::Pictures::of_tensor(&expected).expect("a picture");
+        let expected = crate::PictureBatch::of_tensor(&expected).expect("a picture");
         let off = super::largest_difference(drawn.pictures.rgb(), expected.rgb());
         println!("| sd15 | run.{name}.picture | {off:.1e} |");
         assert!(off <= super::TOLERANCE, "{name}: {off}");
@@ -66,7 +66,7 @@ fn parity_of_v_prediction_with_rescaled_guidance() {
 fn parity_of_control_run() {
     let golden = Golden::open("sd15/golden.safetensors");
     let pipeline = opened("sd15");
-    let asked = Request {
+    let asked = PictureRequest {
         scheduler: Some(SchedulerKind::Ddim),
         controls: vec![Control {
             scale: 0.7,
@@ -97,7 +97,7 @@ fn parity_of_picture_to_picture() {
         rescale: 0.0,
     };
     for (name, kind) in KINDS.into_iter().filter(|(name, _)| *name != "pndm") {
-        let plan = Plan::new(&pipeline.scheduler, kind, 5, 0.6).expect("a plan");
+        let plan = SamplingPlan::new(&pipeline.scheduler, kind, 5, 0.6).expect("a plan");
         assert_eq!(plan.calls.len(), 3);
         let [clean, noise] = ["again.latents", "again.noise"].map(|n| golden.numbers(n));
         let mut x = noised(clean, noise, &plan.calls[0].at);

@@ -2,7 +2,7 @@
 
 use super::{Golden, folder, largest_difference};
 use crate::config::{SchedulerConfig, SchedulerKind};
-use crate::sampling::{Plan, Solver};
+use crate::sampling::{SamplingPlan, Solver};
 
 #[derive(serde::Deserialize)]
 struct Case {
@@ -16,7 +16,7 @@ fn cases() -> Vec<Case> {
     serde_json::from_slice(&bytes).expect("cases")
 }
 
-fn run(plan: &Plan, start: &[f32]) -> Vec<f32> {
+fn run(plan: &SamplingPlan, start: &[f32]) -> Vec<f32> {
     let mut x: Vec<f64> = start.iter().map(|v| f64::from(*v) * plan.spread).collect();
     let mut solver = Solver::new(plan);
     for (k, call) in plan.calls.iter().enumerate() {
@@ -36,7 +36,7 @@ fn parity_of_schedulers() {
     let mut worst: std::collections::BTreeMap<String, (f32, usize)> = Default::default();
     let mut wrong = Vec::new();
     for (i, case) in cases().iter().enumerate() {
-        let plan = Plan::new(&case.config, case.config.kind, case.steps, 1.0).expect("a plan");
+        let plan = SamplingPlan::new(&case.config, case.config.kind, case.steps, 1.0).expect("a plan");
         let expected = golden.numbers(&format!("schedule.case.{i}"));
         // Without a network nothing bounds a state: what is large is compared with its size.
         let size = expected.iter().fold(1.0f32, |most, v| most.max(v.abs()));
@@ -74,7 +74,7 @@ fn every_number_of_steps_is_a_plan_or_an_error() {
             usize::MAX,
         ] {
             for strength in [0.0, 0.3, 1.0, -0.1, f64::NAN] {
-                let Ok(plan) = Plan::new(config, kind, steps, strength) else {
+                let Ok(plan) = SamplingPlan::new(config, kind, steps, strength) else {
                     continue;
                 };
                 assert!((0.0..=1.0).contains(&strength) && (1..=1000).contains(&steps));
@@ -82,8 +82,8 @@ fn every_number_of_steps_is_a_plan_or_an_error() {
                 assert!(x.iter().all(|v| v.is_finite()), "{kind:?} {steps} {strength}");
             }
         }
-        assert!(Plan::new(config, kind, 20, 1.0).is_ok());
-        assert!(Plan::new(config, kind, 0, 1.0).is_err());
+        assert!(SamplingPlan::new(config, kind, 20, 1.0).is_ok());
+        assert!(SamplingPlan::new(config, kind, 0, 1.0).is_err());
     }
 }
 
@@ -94,7 +94,7 @@ fn pure_noise_is_survived() {
     let config: SchedulerConfig = serde_json::from_str(text).expect("a scheduler");
     for kind in SchedulerKind::ALL {
         for steps in [1, 2, 4, 20] {
-            let plan = Plan::new(&config, kind, steps, 1.0).expect("a plan");
+            let plan = SamplingPlan::new(&config, kind, steps, 1.0).expect("a plan");
             assert!(
                 run(&plan, &[1.0, -2.0])
                     .iter()
@@ -106,7 +106,7 @@ fn pure_noise_is_survived() {
     // A noise prediction cannot leave pure noise.
     let text = text.replace("v_prediction", "epsilon");
     let config: SchedulerConfig = serde_json::from_str(&text).expect("a scheduler");
-    let plan = Plan::new(&config, SchedulerKind::Ddim, 4, 1.0).expect("a plan");
+    let plan = SamplingPlan::new(&config, SchedulerKind::Ddim, 4, 1.0).expect("a plan");
     let error = Solver::new(&plan)
         .advance(0, &[1.0], &[1.0])
         .expect_err("no signal")

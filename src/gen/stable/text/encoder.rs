@@ -3,18 +3,18 @@
 use candle_core::{Device, Tensor};
 
 use crate::config::{Activation, TextConfig};
-use crate::layers::{Attention, LayerNorm, Linear, causal_mask, quick_gelu};
+use crate::layers::{Attention, LayerNorm, TransposedLinear, causal_mask, quick_gelu};
 use crate::weights::{Names, Weights};
 use crate::{Machine, StableError, wrong};
 
 /// Tensors that are ignored: old files hold a table of positions, and some files the projection of the whole network.
 const IGNORED: [&str; 2] = ["position_ids", "text_projection.weight"];
 
-struct Layer {
+struct TextEncoderLayer {
     norms: [LayerNorm; 2],
     attention: Attention,
-    widen: Linear,
-    narrow: Linear,
+    widen: TransposedLinear,
+    narrow: TransposedLinear,
 }
 
 /// Encoder of token ids to the text input of the UNet.
@@ -22,7 +22,7 @@ pub struct TextEncoder {
     config: TextConfig,
     words: Tensor,     // [vocab, width]
     positions: Tensor, // [tokens, width]
-    layers: Vec<Layer>,
+    layers: Vec<TextEncoderLayer>,
     norm: LayerNorm,
     mask: Tensor,
     device: Device,
@@ -52,7 +52,7 @@ impl TextEncoder {
         let layer = |i: usize| {
             let names = names.at("encoder.layers").at(i);
             let attention: [&[&str]; 4] = [&["q_proj"], &["k_proj"], &["v_proj"], &["out_proj"]];
-            Ok(Layer {
+            Ok(TextEncoderLayer {
                 norms: [
                     LayerNorm::load(&names.at("layer_norm1"), width, epsilon)?,
                     LayerNorm::load(&names.at("layer_norm2"), width, epsilon)?,
@@ -63,8 +63,8 @@ impl TextEncoder {
                     width,
                     config.num_attention_heads,
                 )?,
-                widen: Linear::load(&names.at("mlp.fc1"), width, config.intermediate_size)?,
-                narrow: Linear::load(&names.at("mlp.fc2"), config.intermediate_size, width)?,
+                widen: TransposedLinear::load(&names.at("mlp.fc1"), width, config.intermediate_size)?,
+                narrow: TransposedLinear::load(&names.at("mlp.fc2"), config.intermediate_size, width)?,
             })
         };
         let at = names.at("embeddings");

@@ -2,19 +2,19 @@
 
 use candle_core::{Result, Tensor};
 
-use super::neighbours::Around;
+use super::neighbours::NeighbourIndices;
 use super::time::TimeEmbedding;
 use super::transformer::Transformer;
 use crate::StableError;
-use crate::config::{Block, UnetConfig};
-use crate::layers::{Conv, Residual};
+use crate::config::{UnetBlockKind, UnetConfig};
+use crate::layers::{Conv, StableResidual};
 use crate::weights::Names;
 
-type Loaded<T> = std::result::Result<T, StableError>;
+type StableResult<T> = std::result::Result<T, StableError>;
 
 /// Residual blocks, each followed by a transformer if the level attends to the text.
 struct Pairs {
-    residuals: Vec<Residual>,
+    residuals: Vec<StableResidual>,
     transformers: Vec<Transformer>,
 }
 
@@ -25,7 +25,7 @@ impl Pairs {
         x: &Tensor,
         time: &Tensor,
         context: &Tensor,
-        around: &Around,
+        around: &NeighbourIndices,
     ) -> Result<Tensor> {
         let x = self.residuals[i].forward(x, Some(time))?;
         match self.transformers.get(i) {
@@ -48,7 +48,7 @@ impl Down {
         mut x: Tensor,
         time: &Tensor,
         context: &Tensor,
-        around: &Around,
+        around: &NeighbourIndices,
         kept: &mut Vec<Tensor>,
     ) -> Result<Tensor> {
         for i in 0..self.pairs.residuals.len() {
@@ -63,7 +63,7 @@ impl Down {
     }
 
     #[cfg(test)]
-    pub fn parts(&self) -> (&Residual, &Transformer, Option<&Conv>) {
+    pub fn parts(&self) -> (&StableResidual, &Transformer, Option<&Conv>) {
         (
             &self.pairs.residuals[0],
             &self.pairs.transformers[0],
@@ -73,14 +73,20 @@ impl Down {
 }
 
 /// The level at the bottom.
-pub(crate) struct Middle {
-    residuals: [Residual; 2],
+pub(crate) struct UnetBottleneck {
+    residuals: [StableResidual; 2],
     transformer: Transformer,
 }
 
-impl Middle {
+impl UnetBottleneck {
     /// Applies the blocks to the coarsest map.
-    pub fn forward(&self, x: &Tensor, time: &Tensor, context: &Tensor, around: &Around) -> Result<Tensor> {
+    pub fn forward(
+        &self,
+        x: &Tensor,
+        time: &Tensor,
+        context: &Tensor,
+        around: &NeighbourIndices,
+    ) -> Result<Tensor> {
         let x = self.residuals[0].forward(x, Some(time))?;
         let x = self.transformer.forward(&x, context, around)?;
         self.residuals[1].forward(&x, Some(time))
@@ -101,7 +107,7 @@ impl Up {
         mut x: Tensor,
         time: &Tensor,
         context: &Tensor,
-        around: &Around,
+        around: &NeighbourIndices,
         kept: &mut Vec<Tensor>,
     ) -> Result<Tensor> {
         for i in 0..self.pairs.residuals.len() {
@@ -126,13 +132,13 @@ impl Up {
 }
 
 /// Sizes of all levels, from the finest to the coarsest.
-pub(crate) struct Levels<'a> {
+pub(crate) struct UnetLevels<'a> {
     config: &'a UnetConfig,
     heads: Vec<usize>,
     depths: Vec<usize>,
 }
 
-impl<'a> Levels<'a> {
+impl<'a> UnetLevels<'a> {
     /// Sizes of a configuration that has been checked.
     pub fn of(config: &'a UnetConfig) -> Self {
         Self {
@@ -142,35 +148,45 @@ impl<'a> Levels<'a> {
         }
     }
 
-    fn residual(&self, names: &Names<'_>, i: usize, channels: [usize; 2]) -> Loaded<Residual> {
+    fn residual(&self, names: &Names<'_>, i: usize, channels: [usize; 2]) -> StableResult<StableResidual> {
         let config = self.config;
         let time = Some(TimeEmbedding::width(config));
         let names = names.at("resnets").at(i);
-        Residual::load(&names, channels, time, config.norm_num_groups, config.norm_eps)
+        StableResidual::load(&names, channels, time, config.norm_num_groups, config.norm_eps)
     }
 
-    fn transformer(&self, names: &Names<'_>, i: usize, level: usize) -> Loaded<Transformer> {
+    fn transformer(&self, names: &Names<'_>, i: usize, level: usize) -> StableResult<Transformer> {
         let width = self.config.block_out_channels[level];
         let sizes = [width, self.heads[level], self.depths[level]];
         Transformer::load(&names.at("attentions").at(i), self.config, sizes)
     }
 
-    fn pairs(&self, names: &Names<'_>, kind: Block, level: usize, inputs: &[usize]) -> Loaded<Pairs> {
+    fn pairs(
+        &self,
+        names: &Names<'_>,
+        kind: UnetBlockKind,
+        level: usize,
+        inputs: &[usize],
+    ) -> StableResult<Pairs> {
         let width = self.config.block_out_channels[level];
-        let listening = if kind == Block::Listens { inputs.len() } else { 0 };
+        let listening = if kind == UnetBlockKind::Listens {
+            inputs.len()
+        } else {
+            0
+        };
         let residuals = inputs.iter().enumerate();
         Ok(Pairs {
             residuals: residuals
                 .map(|(i, inputs)| self.residual(names, i, [*inputs, width]))
-                .collect::<Loaded<_>>()?,
+                .collect::<StableResult<_>>()?,
             transformers: (0..listening)
                 .map(|i| self.transformer(names, i, level))
-                .collect::<Loaded<_>>()?,
+                .collect::<StableResult<_>>()?,
         })
     }
 
     /// All levels on the way down.
-    pub fn down(&self, names: &Names<'_>) -> Loaded<Vec<Down>> {
+    pub fn down(&self, names: &Names<'_>) -> StableResult<Vec<Down>> {
         let widths = &self.config.block_out_channels;
         let level = |i: usize| {
             let names = names.at("down_blocks").at(i);
@@ -200,11 +216,11 @@ impl<'a> Levels<'a> {
     }
 
     /// The bottom.
-    pub fn middle(&self, names: &Names<'_>) -> Loaded<Middle> {
+    pub fn middle(&self, names: &Names<'_>) -> StableResult<UnetBottleneck> {
         let names = names.at("mid_block");
         let coarsest = self.config.block_out_channels.len() - 1;
         let width = self.config.block_out_channels[coarsest];
-        Ok(Middle {
+        Ok(UnetBottleneck {
             residuals: [
                 self.residual(&names, 0, [width; 2])?,
                 self.residual(&names, 1, [width; 2])?,
@@ -214,7 +230,7 @@ impl<'a> Levels<'a> {
     }
 
     /// All levels on the way up, from the coarsest to the finest.
-    pub fn up(&self, names: &Names<'_>) -> Loaded<Vec<Up>> {
+    pub fn up(&self, names: &Names<'_>) -> StableResult<Vec<Up>> {
         let widths = &self.config.block_out_channels;
         let mut kept = self.kept();
         let mut levels = Vec::new();

@@ -6,7 +6,7 @@ mod neighbours;
 mod time;
 mod transformer;
 
-pub(crate) use levels::{Down, Levels, Middle};
+pub(crate) use levels::{Down, UnetBottleneck, UnetLevels};
 pub(crate) use time::TimeEmbedding;
 
 use candle_core::Tensor;
@@ -16,7 +16,7 @@ use crate::layers::{Conv, GroupNorm};
 use crate::weights::{Names, Weights};
 use crate::{Machine, StableError, wrong};
 use levels::Up;
-pub(crate) use neighbours::Around;
+pub(crate) use neighbours::NeighbourIndices;
 
 /// Largest side of an input, cells.
 const MOST_SIDE: usize = 4096;
@@ -39,7 +39,7 @@ pub struct Unet {
     pub(crate) time: TimeEmbedding,
     first: Conv,
     pub(crate) down: Vec<Down>,
-    pub(crate) middle: Middle,
+    pub(crate) middle: UnetBottleneck,
     pub(crate) up: Vec<Up>,
     norm: GroupNorm,
     last: Conv,
@@ -59,7 +59,7 @@ impl Unet {
     }
 
     fn of(config: &UnetConfig, names: &Names<'_>, machine: &Machine) -> Result<Self, StableError> {
-        let levels = Levels::of(config);
+        let levels = UnetLevels::of(config);
         let (finest, groups) = (config.block_out_channels[0], config.norm_num_groups);
         Ok(Self {
             neighbours: config.neighbours().unwrap_or_default(),
@@ -110,7 +110,7 @@ impl Unet {
                 format!("1 to {MOST_SIDE} a side"),
             ));
         }
-        let around = Around::of(&self.neighbours, frames, batch)?;
+        let around = NeighbourIndices::of(&self.neighbours, frames, batch)?;
         let dtype = self.machine.dtype;
         let x = x.to_dtype(dtype)?;
         let context = told_to_each(context, batch)?.to_dtype(dtype)?;

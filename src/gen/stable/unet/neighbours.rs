@@ -3,8 +3,8 @@
 
 use candle_core::{Result, Tensor};
 
-use crate::config::{Connector, Heard};
-use crate::layers::{Attention, LayerNorm, Linear};
+use crate::config::{Connector, NeighbourFusion};
+use crate::layers::{Attention, LayerNorm, TransposedLinear};
 use crate::weights::Names;
 use crate::{StableError, wrong};
 
@@ -13,14 +13,14 @@ const EPSILON: f64 = 1e-5;
 
 /// Neighbours of each item, by index in the batch.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Around {
+pub(crate) struct NeighbourIndices {
     /// Neighbouring views of the same frame; empty if the network draws views one by one.
     pub views: Vec<Vec<usize>>,
     /// Items of the same view in the frames before and after; empty if there is one frame.
     pub frames: Vec<Vec<usize>>,
 }
 
-impl Around {
+impl NeighbourIndices {
     /// Neighbours in a batch of all views of the first frame, then of the next. `neighbours` lists those of each view.
     /// Errors if the batch does not hold whole frames.
     pub fn of(
@@ -63,7 +63,7 @@ impl Around {
 /// Layer behind the attention.
 #[derive(Clone, Debug)]
 enum Behind {
-    Linear(Linear),
+    Linear(TransposedLinear),
     Gate(Tensor), // tanh of alpha, [width]
     Nothing,
 }
@@ -74,7 +74,7 @@ pub(super) struct Neighbours {
     norm: LayerNorm,
     attention: Attention,
     behind: Behind,
-    heard: Heard,
+    heard: NeighbourFusion,
 }
 
 impl Neighbours {
@@ -84,14 +84,14 @@ impl Neighbours {
         ours: [&str; 3],
         [width, heads]: [usize; 2],
         connector: Connector,
-        heard: Heard,
+        heard: NeighbourFusion,
     ) -> std::result::Result<Self, StableError> {
         let [norm, attention, behind] = ours.map(|name| names.at(name));
         Ok(Self {
             norm: LayerNorm::load(&norm, width, EPSILON)?,
             attention: Attention::load(&attention, width, width, heads)?,
             behind: match connector {
-                Connector::Linear => Behind::Linear(Linear::load(&behind, width, width)?),
+                Connector::Linear => Behind::Linear(TransposedLinear::load(&behind, width, width)?),
                 Connector::Gated => Behind::Gate(behind.tensor("alpha", &[width])?.tanh()?),
                 Connector::None => Behind::Nothing,
             },
@@ -103,8 +103,8 @@ impl Neighbours {
     pub fn forward(&self, x: &Tensor, around: &[Vec<usize>]) -> Result<Tensor> {
         let normed = self.norm.forward(x)?;
         let heard = match self.heard {
-            Heard::Add => self.added(&normed, around)?,
-            Heard::Concat => self.joined(&normed, around)?,
+            NeighbourFusion::Add => self.added(&normed, around)?,
+            NeighbourFusion::Concat => self.joined(&normed, around)?,
         };
         let heard = match &self.behind {
             Behind::Linear(layer) => layer.forward(&heard)?,

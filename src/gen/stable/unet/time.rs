@@ -3,7 +3,7 @@
 use candle_core::Tensor;
 
 use crate::config::UnetConfig;
-use crate::layers::Linear;
+use crate::layers::TransposedLinear;
 use crate::weights::Names;
 use crate::{Machine, StableError};
 
@@ -13,7 +13,7 @@ const LONGEST: f64 = 10000.0;
 /// Sinusoids, then two linear layers.
 #[derive(Clone, Debug)]
 pub(crate) struct TimeEmbedding {
-    layers: [Linear; 2],
+    layers: [TransposedLinear; 2],
     width: usize,
     cosines_first: bool,
     shift: f64,
@@ -29,8 +29,8 @@ impl TimeEmbedding {
         let (inner, width) = (config.block_out_channels[0], Self::width(config));
         Ok(Self {
             layers: [
-                Linear::load(&names.at("linear_1"), inner, width)?,
-                Linear::load(&names.at("linear_2"), width, width)?,
+                TransposedLinear::load(&names.at("linear_1"), inner, width)?,
+                TransposedLinear::load(&names.at("linear_2"), width, width)?,
             ],
             width: inner,
             cosines_first: config.flip_sin_to_cos,

@@ -2,10 +2,10 @@
 
 use candle_core::{D, Result, Tensor};
 
-use super::neighbours::{Around, Neighbours};
+use super::neighbours::{NeighbourIndices, Neighbours};
 use crate::StableError;
 use crate::config::{Connector, UnetConfig};
-use crate::layers::{Attention, GroupNorm, LayerNorm, Linear};
+use crate::layers::{Attention, GroupNorm, LayerNorm, TransposedLinear};
 use crate::weights::Names;
 
 /// Epsilon of the norm of maps.
@@ -13,20 +13,20 @@ const MAP_EPSILON: f64 = 1e-6;
 /// Epsilon of the norms of tokens.
 const EPSILON: f64 = 1e-5;
 
-type Loaded<T> = std::result::Result<T, StableError>;
+type StableResult<T> = std::result::Result<T, StableError>;
 
 /// A gated perceptron (Shazeer 2020): narrow(a gelu(b)) with (a, b) = widen(x).
 #[derive(Clone, Debug)]
 pub(crate) struct Gated {
-    widen: Linear,
-    narrow: Linear,
+    widen: TransposedLinear,
+    narrow: TransposedLinear,
 }
 
 impl Gated {
-    fn load(names: &Names<'_>, width: usize) -> Loaded<Self> {
+    fn load(names: &Names<'_>, width: usize) -> StableResult<Self> {
         Ok(Self {
-            widen: Linear::load(&names.at("net.0.proj"), width, 8 * width)?,
-            narrow: Linear::load(&names.at("net.2"), 4 * width, width)?,
+            widen: TransposedLinear::load(&names.at("net.0.proj"), width, 8 * width)?,
+            narrow: TransposedLinear::load(&names.at("net.2"), 4 * width, width)?,
         })
     }
 
@@ -39,7 +39,7 @@ impl Gated {
 
 /// A transformer block: attention to itself, to the text and to its neighbours, then the perceptron.
 #[derive(Clone, Debug)]
-pub(crate) struct Block {
+pub(crate) struct UnetTransformerBlock {
     norms: [LayerNorm; 3],
     itself: Attention,
     text: Attention,
@@ -48,8 +48,8 @@ pub(crate) struct Block {
     pub(crate) gated: Gated,
 }
 
-impl Block {
-    fn load(names: &Names<'_>, config: &UnetConfig, width: usize, heads: usize) -> Loaded<Self> {
+impl UnetTransformerBlock {
+    fn load(names: &Names<'_>, config: &UnetConfig, width: usize, heads: usize) -> StableResult<Self> {
         let norm = |name: &str| LayerNorm::load(&names.at(name), width, EPSILON);
         let sizes = [width, heads];
         let views = config.neighboring_view_pair.is_some().then(|| {
@@ -72,7 +72,7 @@ impl Block {
     }
 
     /// Applies the block to tokens `[batch, tokens, width]`.
-    pub fn forward(&self, x: &Tensor, context: &Tensor, around: &Around) -> Result<Tensor> {
+    pub fn forward(&self, x: &Tensor, context: &Tensor, around: &NeighbourIndices) -> Result<Tensor> {
         let y = self.norms[0].forward(x)?;
         let x = (x + self.itself.forward(&y, &y, None)?)?;
         let y = self.norms[1].forward(&x)?;
@@ -91,32 +91,36 @@ impl Block {
 #[derive(Clone, Debug)]
 pub(crate) struct Transformer {
     norm: GroupNorm,
-    enter: Linear,
-    pub(crate) blocks: Vec<Block>,
-    leave: Linear,
+    enter: TransposedLinear,
+    pub(crate) blocks: Vec<UnetTransformerBlock>,
+    leave: TransposedLinear,
 }
 
 impl Transformer {
     /// Loads the layers. The projections may be stored as linear layers or as 1x1 convolutions, which are equivalent.
-    pub fn load(names: &Names<'_>, config: &UnetConfig, [width, heads, depth]: [usize; 3]) -> Loaded<Self> {
+    pub fn load(
+        names: &Names<'_>,
+        config: &UnetConfig,
+        [width, heads, depth]: [usize; 3],
+    ) -> StableResult<Self> {
         let block = |i: usize| {
             let names = names.at("transformer_blocks").at(i);
-            Block::load(&names, config, width, heads)
+            UnetTransformerBlock::load(&names, config, width, heads)
         };
         Ok(Self {
             norm: GroupNorm::load(&names.at("norm"), width, config.norm_num_groups, MAP_EPSILON)?,
-            enter: Linear::load(&names.at("proj_in"), width, width)?,
-            blocks: (0..depth).map(block).collect::<Loaded<_>>()?,
-            leave: Linear::load(&names.at("proj_out"), width, width)?,
+            enter: TransposedLinear::load(&names.at("proj_in"), width, width)?,
+            blocks: (0..depth).map(block).collect::<StableResult<_>>()?,
+            leave: TransposedLinear::load(&names.at("proj_out"), width, width)?,
         })
     }
 
     /// Applies the transformer to a map.
-    pub fn forward(&self, x: &Tensor, context: &Tensor, around: &Around) -> Result<Tensor> {
+    pub fn forward(&self, x: &Tensor, context: &Tensor, around: &NeighbourIndices) -> Result<Tensor> {
         let (batch, width, rows, columns) = x.dims4()?;
         let tokens = self.norm.forward(x)?.reshape((batch, width, rows * columns))?;
         let tokens = self.enter.forward(&tokens.transpose(1, 2)?)?;
-        let through = |y: Tensor, block: &Block| block.forward(&y, context, around);
+        let through = |y: Tensor, block: &UnetTransformerBlock| block.forward(&y, context, around);
         let tokens = self
             .leave
             .forward(&self.blocks.iter().try_fold(tokens, through)?)?;

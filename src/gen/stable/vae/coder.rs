@@ -4,13 +4,13 @@ use candle_core::{Result, Tensor};
 
 use crate::StableError;
 use crate::config::VaeConfig;
-use crate::layers::{Attention, Conv, GroupNorm, Residual};
+use crate::layers::{Attention, Conv, GroupNorm, StableResidual};
 use crate::weights::Names;
 
 /// Epsilon of the norms.
 const EPSILON: f64 = 1e-6;
 
-type Loaded<T> = std::result::Result<T, StableError>;
+type StableResult<T> = std::result::Result<T, StableError>;
 
 /// Attention of all cells of a map to each other, with one head.
 pub(crate) struct Everywhere {
@@ -20,7 +20,7 @@ pub(crate) struct Everywhere {
 
 impl Everywhere {
     /// Loads the layers, by the names of current files or of older ones.
-    fn load(names: &Names<'_>, width: usize, groups: usize) -> Loaded<Self> {
+    fn load(names: &Names<'_>, width: usize, groups: usize) -> StableResult<Self> {
         let layers: [&[&str]; 4] = [
             &["to_q", "query"],
             &["to_k", "key"],
@@ -46,16 +46,16 @@ impl Everywhere {
 }
 
 /// The coarsest level.
-pub(crate) struct Middle {
-    pub(crate) residuals: [Residual; 2],
+pub(crate) struct VaeBottleneck {
+    pub(crate) residuals: [StableResidual; 2],
     pub(crate) everywhere: Everywhere,
 }
 
-impl Middle {
-    fn load(names: &Names<'_>, width: usize, groups: usize) -> Loaded<Self> {
+impl VaeBottleneck {
+    fn load(names: &Names<'_>, width: usize, groups: usize) -> StableResult<Self> {
         let residual = |i: usize| {
             let names = names.at("resnets").at(i);
-            Residual::load(&names, [width; 2], None, groups, EPSILON)
+            StableResidual::load(&names, [width; 2], None, groups, EPSILON)
         };
         Ok(Self {
             residuals: [residual(0)?, residual(1)?],
@@ -70,22 +70,22 @@ impl Middle {
 }
 
 /// A level: residual blocks, and a convolution to the next size.
-struct Level {
-    residuals: Vec<Residual>,
+struct VaeLevel {
+    residuals: Vec<StableResidual>,
     resize: Option<Conv>,
 }
 
-impl Level {
+impl VaeLevel {
     fn load(
         names: &Names<'_>,
         [inputs, outputs]: [usize; 2],
         count: usize,
         groups: usize,
         resize: Option<(&str, usize)>,
-    ) -> Loaded<Self> {
+    ) -> StableResult<Self> {
         let residual = |i: usize| {
             let inputs = if i == 0 { inputs } else { outputs };
-            Residual::load(
+            StableResidual::load(
                 &names.at("resnets").at(i),
                 [inputs, outputs],
                 None,
@@ -98,7 +98,7 @@ impl Level {
             Conv::load_with(&names.at(name), [outputs; 2], 3, stride, padding)
         });
         Ok(Self {
-            residuals: (0..count).map(residual).collect::<Loaded<_>>()?,
+            residuals: (0..count).map(residual).collect::<StableResult<_>>()?,
             resize: resize.transpose()?,
         })
     }
@@ -111,23 +111,23 @@ impl Level {
 }
 
 /// Encoder of pictures to mean and log variance.
-pub(crate) struct Encoder {
+pub(crate) struct VaeEncoder {
     first: Conv,
-    levels: Vec<Level>,
-    pub(crate) middle: Middle,
+    levels: Vec<VaeLevel>,
+    pub(crate) middle: VaeBottleneck,
     norm: GroupNorm,
     last: Conv,
 }
 
-impl Encoder {
-    pub fn load(names: &Names<'_>, config: &VaeConfig) -> Loaded<Self> {
+impl VaeEncoder {
+    pub fn load(names: &Names<'_>, config: &VaeConfig) -> StableResult<Self> {
         let (widths, groups) = (&config.block_out_channels, config.norm_num_groups);
         let (finest, coarsest) = (widths[0], widths[widths.len() - 1]);
         let level = |i: usize| {
             let inputs = widths[i.saturating_sub(1)];
             let resize = (i + 1 < widths.len()).then_some(("downsamplers.0.conv", 2));
             let names = names.at("down_blocks").at(i);
-            Level::load(
+            VaeLevel::load(
                 &names,
                 [inputs, widths[i]],
                 config.layers_per_block,
@@ -137,8 +137,8 @@ impl Encoder {
         };
         Ok(Self {
             first: Conv::load(&names.at("conv_in"), 3, finest)?,
-            levels: (0..widths.len()).map(level).collect::<Loaded<_>>()?,
-            middle: Middle::load(&names.at("mid_block"), coarsest, groups)?,
+            levels: (0..widths.len()).map(level).collect::<StableResult<_>>()?,
+            middle: VaeBottleneck::load(&names.at("mid_block"), coarsest, groups)?,
             norm: GroupNorm::load(&names.at("conv_norm_out"), coarsest, groups, EPSILON)?,
             last: Conv::load(&names.at("conv_out"), coarsest, 2 * config.latent_channels)?,
         })
@@ -161,14 +161,14 @@ impl Encoder {
 /// Decoder of latents to pictures.
 pub(crate) struct Decoder {
     first: Conv,
-    middle: Middle,
-    levels: Vec<Level>,
+    middle: VaeBottleneck,
+    levels: Vec<VaeLevel>,
     norm: GroupNorm,
     last: Conv,
 }
 
 impl Decoder {
-    pub fn load(names: &Names<'_>, config: &VaeConfig) -> Loaded<Self> {
+    pub fn load(names: &Names<'_>, config: &VaeConfig) -> StableResult<Self> {
         let groups = config.norm_num_groups;
         let widths: Vec<usize> = config.block_out_channels.iter().rev().copied().collect();
         let (coarsest, finest) = (widths[0], widths[widths.len() - 1]);
@@ -176,7 +176,7 @@ impl Decoder {
             let inputs = widths[i.saturating_sub(1)];
             let resize = (i + 1 < widths.len()).then_some(("upsamplers.0.conv", 1));
             let names = names.at("up_blocks").at(i);
-            Level::load(
+            VaeLevel::load(
                 &names,
                 [inputs, widths[i]],
                 config.layers_per_block + 1,
@@ -186,8 +186,8 @@ impl Decoder {
         };
         Ok(Self {
             first: Conv::load(&names.at("conv_in"), config.latent_channels, coarsest)?,
-            middle: Middle::load(&names.at("mid_block"), coarsest, groups)?,
-            levels: (0..widths.len()).map(level).collect::<Loaded<_>>()?,
+            middle: VaeBottleneck::load(&names.at("mid_block"), coarsest, groups)?,
+            levels: (0..widths.len()).map(level).collect::<StableResult<_>>()?,
             norm: GroupNorm::load(&names.at("conv_norm_out"), finest, groups, EPSILON)?,
             last: Conv::load(&names.at("conv_out"), finest, 3)?,
         })

@@ -8,7 +8,7 @@ use crate::config::VaeConfig;
 use crate::layers::Conv;
 use crate::weights::{Names, Weights};
 use crate::{Machine, StableError, wrong};
-use coder::{Decoder, Encoder};
+use coder::{Decoder, VaeEncoder};
 
 /// Smallest and largest log variance of a latent.
 const LOG_VARIANCE: [f64; 2] = [-30.0, 20.0];
@@ -17,7 +17,7 @@ const LOG_VARIANCE: [f64; 2] = [-30.0, 20.0];
 /// Latents are as the UNet sees them: multiplied by the scaling factor.
 pub struct Vae {
     config: VaeConfig,
-    pub(crate) encoder: Encoder,
+    pub(crate) encoder: VaeEncoder,
     quant: Conv,
     post_quant: Conv,
     decoder: Decoder,
@@ -38,7 +38,7 @@ impl Vae {
     fn of(config: &VaeConfig, names: &Names<'_>) -> Result<Self, StableError> {
         let latent = config.latent_channels;
         Ok(Self {
-            encoder: Encoder::load(&names.at("encoder"), config)?,
+            encoder: VaeEncoder::load(&names.at("encoder"), config)?,
             quant: Conv::load_point(&names.at("quant_conv"), 2 * latent, 2 * latent)?,
             post_quant: Conv::load_point(&names.at("post_quant_conv"), latent, latent)?,
             decoder: Decoder::load(&names.at("decoder"), config)?,

@@ -15,7 +15,7 @@ const MOST_HEADER: u64 = 100_000_000;
 
 /// Position of a tensor in a file.
 #[derive(Clone, Debug)]
-pub(super) struct Place {
+pub(super) struct TensorLocation {
     /// Type of its numbers.
     pub dtype: Dtype,
     /// Its shape.
@@ -36,7 +36,7 @@ pub(super) struct WeightFile {
 impl WeightFile {
     /// Opens a file. Also gives the name and place of each tensor. Only the header is read. Errors if it is no regular
     /// file, damaged, or shorter or longer than its header says.
-    pub fn open(path: &Path) -> Result<(Self, Vec<(String, Place)>), StableError> {
+    pub fn open(path: &Path) -> Result<(Self, Vec<(String, TensorLocation)>), StableError> {
         let refused = |source| StableError::Read {
             path: path.to_owned(),
             source,
@@ -79,7 +79,7 @@ impl WeightFile {
         for (name, info) in header.tensors() {
             let (from, to) = info.data_offsets;
             end = end.max(to as u64);
-            let place = Place {
+            let place = TensorLocation {
                 dtype: info.dtype,
                 shape: info.shape.clone(),
                 start: 8 + length + from as u64,
@@ -106,7 +106,7 @@ impl WeightFile {
     }
 
     /// The bytes of a tensor. Errors if the file has become shorter since it was opened.
-    pub fn read(&self, place: &Place) -> Result<Vec<u8>, StableError> {
+    pub fn read(&self, place: &TensorLocation) -> Result<Vec<u8>, StableError> {
         let refused = |source| StableError::Read {
             path: self.path.clone(),
             source,

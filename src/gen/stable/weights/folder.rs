@@ -7,8 +7,8 @@ use candle_core::{DType, Tensor};
 use safetensors::Dtype;
 use serde::Deserialize;
 
-use super::file::{Place, WeightFile};
-use super::names::{Asked, Names};
+use super::file::{TensorLocation, WeightFile};
+use super::names::{Names, RequestedTensors};
 use crate::config::read_json;
 use crate::{Machine, StableError};
 
@@ -29,7 +29,7 @@ const LISTED: usize = 3;
 pub struct Weights {
     path: PathBuf,
     files: Vec<WeightFile>,
-    places: BTreeMap<String, (usize, Place)>,
+    places: BTreeMap<String, (usize, TensorLocation)>,
 }
 
 #[derive(Deserialize)]
@@ -157,13 +157,13 @@ impl Weights {
         ignored: &[&str],
         build: impl Fn(&Names<'_>) -> Result<M, StableError>,
     ) -> Result<(), StableError> {
-        let asked = Asked::default();
+        let asked = RequestedTensors::default();
         build(&Names::checking(self, &asked))?;
         self.compare(&asked, ignored)
     }
 
     /// Errors unless the tensors asked for are those in the files.
-    fn compare(&self, asked: &Asked, ignored: &[&str]) -> Result<(), StableError> {
+    fn compare(&self, asked: &RequestedTensors, ignored: &[&str]) -> Result<(), StableError> {
         let (mut missing, mut misshapen, mut mistyped) = (Vec::new(), Vec::new(), Vec::new());
         let mut taken = BTreeSet::new();
         for (name, expected) in asked.all() {

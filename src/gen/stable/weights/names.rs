@@ -11,9 +11,9 @@ use crate::{Machine, StableError};
 
 /// Names and shapes that a network asked for.
 #[derive(Debug, Default)]
-pub(super) struct Asked(RefCell<BTreeMap<String, Vec<usize>>>);
+pub(super) struct RequestedTensors(RefCell<BTreeMap<String, Vec<usize>>>);
 
-impl Asked {
+impl RequestedTensors {
     /// All names and shapes.
     pub fn all(&self) -> Vec<(String, Vec<usize>)> {
         let asked = self.0.borrow();
@@ -25,7 +25,7 @@ impl Asked {
 #[derive(Clone, Copy)]
 enum Mode<'a> {
     /// The request is recorded, and a placeholder that takes no memory is given.
-    Checking(&'a Asked),
+    Checking(&'a RequestedTensors),
     /// The tensor is read.
     Reading(&'a Machine),
 }
@@ -39,7 +39,7 @@ pub(crate) struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    pub(super) fn checking(weights: &'a Weights, asked: &'a Asked) -> Self {
+    pub(super) fn checking(weights: &'a Weights, asked: &'a RequestedTensors) -> Self {
         Self {
             weights,
             mode: Mode::Checking(asked),

@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 use serde::Serialize;
 
-use super::place::Ground;
+use super::place::FreeGround;
 use super::targets::{Meant, targets};
 use super::wishes::forms;
-use super::{Amount, Said, Verb, What};
+use super::{Amount, SceneryClause, SceneryKind, Verb};
 use place::off::TOLERATED_M;
 use scene::Form;
 use scene::background::STOREY_M;
 use scene::{Background, BevLayout, BoxId, Class, Edit, SceneBox, ThingId};
-use world::scenery::Setting;
+use world::scenery::RoadsideKind;
 
 /// Change of a height if none is said: number of storeys for a building; the next constant is the share for other
 /// things.
@@ -32,7 +32,7 @@ pub struct ThingCandidate {
     /// Its id, or that of the first one of a row.
     pub id: ThingId,
     /// The clause that means it alone; it replaces the one that raised the question.
-    pub said: Said,
+    pub said: SceneryClause,
 }
 
 impl ThingCandidate {
@@ -78,22 +78,22 @@ pub struct OpenBackground<'a> {
 }
 
 /// True if clauses name barriers of this scene, which are boxes: "the fence".
-pub fn means_barriers(said: &[Said], boxes: &BTreeMap<BoxId, SceneBox>) -> bool {
+pub fn means_barriers(said: &[SceneryClause], boxes: &BTreeMap<BoxId, SceneBox>) -> bool {
     boxes.values().any(|b| b.class == Class::Barrier) && said.iter().any(super::may_be_barrier)
 }
 
 /// Carries out the clauses one by one, each on the result of the one before.
-pub fn carry_out(said: &[Said], open: &OpenBackground<'_>, seed: u64) -> ThingOutcome {
+pub fn carry_out(said: &[SceneryClause], open: &OpenBackground<'_>, seed: u64) -> ThingOutcome {
     let mut out = ThingOutcome::default();
     if said.is_empty() {
         return out;
     }
     let mut now: Background = open.things.iter().filter(|t| in_grid(&t.form)).cloned().collect();
     for (i, s) in said.iter().enumerate() {
-        let ground = Ground::new(open.layout, open.boxes, &now);
+        let ground = FreeGround::new(open.layout, open.boxes, &now);
         match one(s, &now, ground, seed.wrapping_add(i as u64)) {
             Ok((edit, n)) => {
-                let off = off(s, &edit, &Ground::new(open.layout, open.boxes, &now));
+                let off = off(s, &edit, &FreeGround::new(open.layout, open.boxes, &now));
                 apply(&mut now, &edit, open.things);
                 // (a number that was not in the text)
                 let counted = n > 1 && s.count.is_none_or(|c| c as usize != n);
@@ -119,7 +119,7 @@ pub fn carry_out(said: &[Said], open: &OpenBackground<'_>, seed: u64) -> ThingOu
 }
 
 /// Distance ahead of the first new thing, if it is not the one that was asked for: "9.2 m in place of 12 m".
-fn off(s: &Said, edits: &[Edit], ground: &Ground) -> Option<String> {
+fn off(s: &SceneryClause, edits: &[Edit], ground: &FreeGround) -> Option<String> {
     let asked_m = s.place.distance_m.filter(|_| s.place.near.is_none() && !s.row)?;
     let first = edits.iter().find_map(|e| match e {
         Edit::AddThings { forms } => forms.first(),
@@ -131,8 +131,8 @@ fn off(s: &Said, edits: &[Edit], ground: &Ground) -> Option<String> {
 }
 
 /// The clause as a command: in an open scene, a thing that a description mentions is added.
-fn as_command(s: &Said) -> Said {
-    Said {
+fn as_command(s: &SceneryClause) -> SceneryClause {
+    SceneryClause {
         verb: if s.verb == Verb::Have { Verb::Add } else { s.verb },
         ..s.clone()
     }
@@ -150,14 +150,19 @@ enum Stopped {
 
 /// Edits of one clause in the ego frame, in the order in which they are applied, and the number of things that they
 /// change.
-fn one(s: &Said, now: &Background, ground: Ground, seed: u64) -> Result<(Vec<Edit>, usize), Stopped> {
+fn one(
+    s: &SceneryClause,
+    now: &Background,
+    ground: FreeGround,
+    seed: u64,
+) -> Result<(Vec<Edit>, usize), Stopped> {
     let called = format!("{}{}", s.things(), s.place());
     if matches!(s.verb, Verb::Add | Verb::Have) {
         let forms = forms(s, ground, seed).map_err(Stopped::Cannot)?;
         let n = forms.len();
         return Ok((vec![Edit::AddThings { forms }], n));
     }
-    if matches!(s.what, What::Place(p) if p != Setting::Forest) {
+    if matches!(s.what, SceneryKind::Place(p) if p != RoadsideKind::Forest) {
         return Err(Stopped::Cannot(format!(
             "{called}: a kind of place is no single thing; name buildings, trees or fences"
         )));
@@ -178,7 +183,7 @@ fn one(s: &Said, now: &Background, ground: Ground, seed: u64) -> Result<(Vec<Edi
         }
         Meant::These(ids) => ids,
         Meant::Ask(list) => {
-            let candidate = |(id, place, said): (ThingId, String, Said)| ThingCandidate {
+            let candidate = |(id, place, said): (ThingId, String, SceneryClause)| ThingCandidate {
                 class: now.get(id).map_or("thing", |t| t.form.name()),
                 place,
                 id,

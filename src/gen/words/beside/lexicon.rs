@@ -1,15 +1,15 @@
 //! The words of sentences about the background, with their meanings.
 
-use place::beside_road::{Verb, What};
+use place::beside_road::{SceneryKind, Verb};
 use scene::background::{LineKind, PostKind, TreeKind};
-use world::scenery::Setting;
+use world::scenery::RoadsideKind;
 
 /// Meaning of a run of words.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Word {
     Verb(Verb),
     /// The thing, and whether the word is a plural.
-    What(What, bool),
+    What(SceneryKind, bool),
     Left,
     Right,
     Both,
@@ -46,8 +46,8 @@ macro_rules! table {
     ($($words:literal => $word:expr),+ $(,)?) => { &[$(($words, $word)),+] };
 }
 
-use Setting::*;
-use What::*;
+use RoadsideKind::*;
+use SceneryKind::*;
 use Word as W;
 
 /// Words by their meaning, separated by `|`.

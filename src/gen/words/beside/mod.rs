@@ -11,5 +11,5 @@ mod tests;
 mod tokens;
 pub mod wishes;
 
-pub use ::place::beside_road::{Amount, NearTo, Said, SideOf, Verb, What, Where};
-pub use read::{Taken, blank, may_be_barrier, take};
+pub use ::place::beside_road::{Amount, NearTo, SceneryClause, SceneryKind, SideOf, Verb, Where};
+pub use read::{SceneryClauses, blank, may_be_barrier, take};

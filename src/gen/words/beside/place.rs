@@ -15,7 +15,7 @@ use world::scenery::distance_cells;
 const BORDER_M: f64 = 0.6;
 
 /// A scene's ground with room for new things; all in the ego frame.
-pub struct Ground {
+pub struct FreeGround {
     extent: Extent,
     /// Lanes, crossings and junctions.
     pub roads: RoadMap,
@@ -24,7 +24,7 @@ pub struct Ground {
     own: OnceCell<Vec<DVec2>>, // of each column: way along the ego lane, and offset to its left; slow, so on demand
 }
 
-impl Ground {
+impl FreeGround {
     /// The ground of a scene with things in the ego frame.
     pub fn new(layout: &BevLayout, boxes: &BTreeMap<BoxId, SceneBox>, things: &Background) -> Self {
         let paved = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit() | BevLayer::Walkway.bit();

@@ -2,26 +2,26 @@
 
 use super::lexicon::{Word, lookup};
 use super::tokens::{Token, TokenKind, tokens};
-use super::{Amount, NearTo, Said, SideOf, Verb, What, Where};
-use place::beside_road::Span;
+use super::{Amount, NearTo, SceneryClause, SceneryKind, SideOf, Verb, Where};
+use place::beside_road::TextSpan;
 use scene::background::PostKind;
-use world::scenery::Setting;
+use world::scenery::RoadsideKind;
 
 /// The clauses of a text about the background, and the rest with the same bytes in the same places.
 #[derive(Clone, Debug, Default)]
-pub struct Taken {
+pub struct SceneryClauses {
     /// The clauses in order.
-    pub said: Vec<Said>,
+    pub said: Vec<SceneryClause>,
     /// The text with spaces in place of the parts that were taken.
     pub rest: String,
     /// Numbers in the parts that were taken that have no effect.
-    pub idle: Vec<Span>,
+    pub idle: Vec<TextSpan>,
 }
 
 /// Reads all clauses about the background. `edits`: the text changes a scene rather than describes one.
-pub fn take(text: &str, edits: bool) -> Taken {
+pub fn take(text: &str, edits: bool) -> SceneryClauses {
     let tokens = tokens(text);
-    let mut out = Taken {
+    let mut out = SceneryClauses {
         said: Vec::new(),
         rest: text.to_owned(),
         idle: Vec::new(),
@@ -62,7 +62,7 @@ pub fn take(text: &str, edits: bool) -> Taken {
 }
 
 /// Puts spaces in place of a part of a text: the rest keeps its bytes.
-pub fn blank(text: &mut String, span: Span) {
+pub fn blank(text: &mut String, span: TextSpan) {
     let spaces = " ".repeat(span.end - span.start);
     text.replace_range(span.start..span.end, &spaces);
 }
@@ -110,11 +110,11 @@ fn clauses(tokens: &[Token]) -> Vec<(Option<&Token>, &[Token])> {
 }
 
 /// Reads one clause; `None` if it is not about the background, or not understood completely.
-fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Option<Said> {
+fn read(clause: &[Token], span: TextSpan, edits: bool, carried: Option<Verb>) -> Option<SceneryClause> {
     let words = senses(clause)?;
-    let mut s = Said {
+    let mut s = SceneryClause {
         span: Some(span),
-        ..Said::new(Verb::Have, What::Thing)
+        ..SceneryClause::new(Verb::Have, SceneryKind::Thing)
     };
     let (mut verb, mut what, mut article) = (None, None, None);
     let (mut no, mut all, mut comparative) = (false, false, None);
@@ -180,7 +180,7 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
         i += 1;
     }
     s.what = what?;
-    if s.what == What::Thing && s.id.is_none() {
+    if s.what == SceneryKind::Thing && s.id.is_none() {
         return None;
     }
     s.place.along |= s.row;
@@ -209,20 +209,21 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
         _ => {}
     }
     // "Clear the car park" is about the objects on it, "bus stops ahead" about a bus.
-    let cleared = matches!(s.what, What::Place(p) if p != Setting::Forest) && s.verb == Verb::Remove && !no;
-    let stops = s.what == What::Post(PostKind::BusStop) && verb.is_none();
+    let cleared =
+        matches!(s.what, SceneryKind::Place(p) if p != RoadsideKind::Forest) && s.verb == Verb::Remove && !no;
+    let stops = s.what == SceneryKind::Post(PostKind::BusStop) && verb.is_none();
     if cleared || stops {
         return None;
     }
     // Surroundings as a whole ("a forest") belong to the other reader unless a side is named.
-    let whole = matches!(s.what, What::Place(_)) && s.place.side.is_none() && verb.is_none() && !no;
+    let whole = matches!(s.what, SceneryKind::Place(_)) && s.place.side.is_none() && verb.is_none() && !no;
     let other = whole && !words.contains(&Word::Both);
     (!other && (edits || !may_be_barrier(&s))).then_some(s)
 }
 
 /// Reads a number and its unit or thing: the number of words after it that belong to it. `None` if it fits nothing.
 fn number(
-    s: &mut Said,
+    s: &mut SceneryClause,
     n: f64,
     (words, i): (&[Word], usize),
     verb: Option<Verb>,
@@ -271,9 +272,9 @@ fn number(
 }
 
 /// True if the word may also name barriers, which are boxes, and nothing indicates that it runs along the road.
-pub fn may_be_barrier(s: &Said) -> bool {
+pub fn may_be_barrier(s: &SceneryClause) -> bool {
     use scene::background::LineKind::{Fence, GuardRail};
-    matches!(s.what, What::Line(Fence | GuardRail)) && !s.place.along
+    matches!(s.what, SceneryKind::Line(Fence | GuardRail)) && !s.place.along
 }
 
 /// Meanings of the words of a clause, one after another; `None` if one is not known.

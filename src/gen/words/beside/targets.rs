@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::place::Ground;
-use super::{NearTo, Said, SideOf, What, Where};
+use super::place::FreeGround;
+use super::{NearTo, SceneryClause, SceneryKind, SideOf, Where};
 use scene::background::{LineKind, PostKind};
 use scene::road_map::{RoadMap, outline_distance_m};
 use scene::{Background, Form, Thing, ThingId};
@@ -23,7 +23,7 @@ pub(super) enum Meant {
     /// These things; none if nothing fits.
     These(Vec<ThingId>),
     /// One thing is meant and several fit: each with its place in words and the clause that means it alone.
-    Ask(Vec<(ThingId, String, Said)>),
+    Ask(Vec<(ThingId, String, SceneryClause)>),
 }
 
 /// True if any of the points is near the place that was stated.
@@ -46,32 +46,36 @@ pub(super) fn is_near(roads: &RoadMap, place: &Where, points_m: &[DVec2]) -> boo
 }
 
 /// True if the word names the form.
-pub(super) fn is(what: What, form: &Form) -> bool {
+pub(super) fn is(what: SceneryKind, form: &Form) -> bool {
     match (what, form) {
-        (What::Thing, _) | (What::Building(_), Form::Building(_)) | (What::Shrubs, Form::Shrubs(_)) => true,
-        (What::Tree(kind), Form::Tree(t)) => kind.is_none_or(|k| t.kind == k),
-        (What::Line(LineKind::Wall), Form::Line(l)) => {
+        (SceneryKind::Thing, _)
+        | (SceneryKind::Building(_), Form::Building(_))
+        | (SceneryKind::Shrubs, Form::Shrubs(_)) => true,
+        (SceneryKind::Tree(kind), Form::Tree(t)) => kind.is_none_or(|k| t.kind == k),
+        (SceneryKind::Line(LineKind::Wall), Form::Line(l)) => {
             matches!(l.kind, LineKind::Wall | LineKind::RetainingWall)
         }
-        (What::Line(kind), Form::Line(l)) => l.kind == kind,
-        (What::Post(PostKind::Pole), Form::Post(p)) => {
+        (SceneryKind::Line(kind), Form::Line(l)) => l.kind == kind,
+        (SceneryKind::Post(PostKind::Pole), Form::Post(p)) => {
             matches!(
                 p.kind,
                 PostKind::Pole | PostKind::StreetLight | PostKind::Sign | PostKind::TrafficLight
             )
         }
-        (What::Post(kind), Form::Post(p)) => p.kind == kind,
-        (What::Plants | What::Place(world::scenery::Setting::Forest), form) => match form {
-            Form::Tree(_) | Form::Shrubs(_) => true,
-            Form::Line(l) => l.kind == LineKind::Hedge,
-            _ => false,
-        },
+        (SceneryKind::Post(kind), Form::Post(p)) => p.kind == kind,
+        (SceneryKind::Plants | SceneryKind::Place(world::scenery::RoadsideKind::Forest), form) => {
+            match form {
+                Form::Tree(_) | Form::Shrubs(_) => true,
+                Form::Line(l) => l.kind == LineKind::Hedge,
+                _ => false,
+            }
+        }
         _ => false,
     }
 }
 
 /// The things in the grid that a clause means; `things` are in the ego frame.
-pub(super) fn targets(said: &Said, things: &Background, ground: &Ground) -> Meant {
+pub(super) fn targets(said: &SceneryClause, things: &Background, ground: &FreeGround) -> Meant {
     if let Some(id) = said.id {
         let found = things.get(ThingId(id)).filter(|t| is(said.what, &t.form));
         return Meant::These(found.map(|t| t.id).into_iter().collect());
@@ -116,7 +120,7 @@ pub(super) fn targets(said: &Said, things: &Background, ground: &Ground) -> Mean
     }
 }
 
-fn candidate(said: &Said, thing: &Thing, ground: &Ground) -> (ThingId, String, Said) {
+fn candidate(said: &SceneryClause, thing: &Thing, ground: &FreeGround) -> (ThingId, String, SceneryClause) {
     let own = ground.roads.along_ego_lane(thing.form.middle_m());
     let along = if own.x >= 0.0 { "ahead" } else { "behind" };
     let side = if own.y >= 0.0 { "left" } else { "right" };
@@ -126,7 +130,7 @@ fn candidate(said: &Said, thing: &Thing, ground: &Ground) -> (ThingId, String, S
         own.y.abs(),
         thing.form.height_m()
     );
-    let alone = Said {
+    let alone = SceneryClause {
         id: Some(thing.id.0),
         count: None,
         place: Where::default(),
@@ -135,7 +139,7 @@ fn candidate(said: &Said, thing: &Thing, ground: &Ground) -> (ThingId, String, S
     (thing.id, place, alone)
 }
 
-fn is_there(said: &Said, thing: &Thing, ground: &Ground) -> bool {
+fn is_there(said: &SceneryClause, thing: &Thing, ground: &FreeGround) -> bool {
     let (place, points) = (&said.place, thing.form.points_m());
     let middle = thing.form.middle_m();
     let own = ground.roads.along_ego_lane(middle);
@@ -149,7 +153,7 @@ fn is_there(said: &Said, thing: &Thing, ground: &Ground) -> bool {
 }
 
 /// The row that is meant: trees one after another along the road.
-fn row(fits: &[&Thing], said: &Said, ground: &Ground) -> Meant {
+fn row(fits: &[&Thing], said: &SceneryClause, ground: &FreeGround) -> Meant {
     let mut list: Vec<(&Thing, DVec2)> = fits
         .iter()
         .filter(|t| ground.paved_m(t.form.middle_m()) <= ROW_FROM_PAVED_M)

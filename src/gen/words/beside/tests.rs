@@ -6,11 +6,11 @@ use glam::DVec2;
 
 use super::edits::{OpenBackground, ThingOutcome, carry_out};
 use super::*;
-use scene::background::{Building, Line, LineKind, PostKind, Tree, TreeKind};
+use scene::background::{Building, LineKind, PostKind, SceneryLine, Tree, TreeKind};
 use scene::{Background, BevLayer, BevLayout, Edit, Form, Polyline, PolylineKind, ThingId, Window};
-use world::scenery::Setting;
+use world::scenery::RoadsideKind;
 
-fn one(text: &str, edits: bool) -> Said {
+fn one(text: &str, edits: bool) -> SceneryClause {
     let taken = take(text, edits);
     assert_eq!(taken.said.len(), 1, "{text}: {:?}", taken.said);
     assert!(
@@ -24,9 +24,9 @@ fn one(text: &str, edits: bool) -> Said {
 #[test]
 fn commands_are_taken() {
     use SideOf::{Left, Right};
-    let hedge = What::Line(LineKind::Hedge);
-    let tree = What::Tree(None);
-    let house = What::Building(None);
+    let hedge = SceneryKind::Line(LineKind::Hedge);
+    let tree = SceneryKind::Tree(None);
+    let house = SceneryKind::Building(None);
     for (text, verb, what, side) in [
         ("remove the trees on the left", Verb::Remove, tree, Some(Left)),
         (
@@ -58,7 +58,7 @@ fn commands_are_taken() {
         (
             "get rid of the wall on the right side of the road",
             Verb::Remove,
-            What::Line(LineKind::Wall),
+            SceneryKind::Line(LineKind::Wall),
             Some(Right),
         ),
         ("move the tree #7 3 m to the left", Verb::Move, tree, None),
@@ -66,31 +66,31 @@ fn commands_are_taken() {
         (
             "build a warehouse 20 m ahead on the right",
             Verb::Add,
-            What::Building(Some(Setting::Industry)),
+            SceneryKind::Building(Some(RoadsideKind::Industry)),
             Some(Right),
         ),
         (
             "add a bench on the left",
             Verb::Add,
-            What::Post(PostKind::Bench),
+            SceneryKind::Post(PostKind::Bench),
             Some(Left),
         ),
         (
             "remove the street lights",
             Verb::Remove,
-            What::Post(PostKind::StreetLight),
+            SceneryKind::Post(PostKind::StreetLight),
             None,
         ),
         (
             "plant a row of poplars along the left side",
             Verb::Add,
-            What::Tree(Some(TreeKind::Columnar)),
+            SceneryKind::Tree(Some(TreeKind::Columnar)),
             Some(Left),
         ),
         (
             "remove all vegetation on the right",
             Verb::Remove,
-            What::Plants,
+            SceneryKind::Plants,
             Some(Right),
         ),
         (
@@ -141,30 +141,37 @@ fn descriptions_are_taken() {
     assert_eq!(
         (a.what, a.tall, a.place.side),
         (
-            What::Building(Some(Setting::City)),
+            SceneryKind::Building(Some(RoadsideKind::City)),
             Some(true),
             Some(SideOf::Left)
         )
     );
     assert_eq!(
         (b.what, b.dense, b.place.side),
-        (What::Place(Setting::Forest), Some(true), Some(SideOf::Right))
+        (
+            SceneryKind::Place(RoadsideKind::Forest),
+            Some(true),
+            Some(SideOf::Right)
+        )
     );
     assert_eq!(
         (c.verb, c.what, c.place.near),
-        (Verb::Remove, What::Tree(None), Some(NearTo::Crossing))
+        (Verb::Remove, SceneryKind::Tree(None), Some(NearTo::Crossing))
     );
     for (text, what) in [
         (
             "warehouses on both sides",
-            What::Building(Some(Setting::Industry)),
+            SceneryKind::Building(Some(RoadsideKind::Industry)),
         ),
-        ("a park on the left", What::Place(Setting::Park)),
-        ("fields on the right", What::Place(Setting::Country)),
-        ("without trees", What::Tree(None)),
-        ("a hedge along the road on the left", What::Line(LineKind::Hedge)),
-        ("a row of trees on both sides", What::Tree(None)),
-        ("fences along both sides", What::Line(LineKind::Fence)),
+        ("a park on the left", SceneryKind::Place(RoadsideKind::Park)),
+        ("fields on the right", SceneryKind::Place(RoadsideKind::Country)),
+        ("without trees", SceneryKind::Tree(None)),
+        (
+            "a hedge along the road on the left",
+            SceneryKind::Line(LineKind::Hedge),
+        ),
+        ("a row of trees on both sides", SceneryKind::Tree(None)),
+        ("fences along both sides", SceneryKind::Line(LineKind::Fence)),
     ] {
         assert_eq!(one(text, false).what, what, "{text}");
     }
@@ -278,17 +285,17 @@ fn scene() -> (Background, BevLayout) {
     things.add(house(-10.0, -12.0)); // 8
     things.add(house(20.0, -16.0)); // 9
     let points_m = vec![DVec2::new(-30.0, 9.5), DVec2::new(-18.0, 9.5)];
-    things.add(Form::Line(Line::typical(LineKind::Hedge, points_m))); // 10
+    things.add(Form::Line(SceneryLine::typical(LineKind::Hedge, points_m))); // 10
     (things, layout)
 }
 
 fn edit(text: &str) -> ThingOutcome {
-    let Taken { said, rest, .. } = take(text, true);
+    let SceneryClauses { said, rest, .. } = take(text, true);
     assert!(!rest.contains(char::is_alphanumeric), "{rest:?} was left over");
     carried_out(&said)
 }
 
-fn carried_out(said: &[Said]) -> ThingOutcome {
+fn carried_out(said: &[SceneryClause]) -> ThingOutcome {
     let (things, layout) = scene();
     let boxes = BTreeMap::new();
     let open = OpenBackground {
@@ -579,7 +586,7 @@ fn clauses_are_values_with_words() {
         assert_eq!(said.problem(), None, "{text}");
         let json = serde_json::to_string(said).expect("JSON");
         assert_eq!(
-            &serde_json::from_str::<Said>(&json).expect("the same"),
+            &serde_json::from_str::<SceneryClause>(&json).expect("the same"),
             said,
             "{json}"
         );

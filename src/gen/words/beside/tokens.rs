@@ -1,7 +1,7 @@
 //! Splits a text into words, numbers and marks: the tokens of [`words`](crate), with lengths as number and unit.
 
-use super::super::measure::{Kind, measures};
-use place::beside_road::Span;
+use super::super::measure::{MeasuredQuantity, measures};
+use place::beside_road::TextSpan;
 
 /// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Token {
     /// Its text in lower case.
     pub text: String,
     /// Its place in the text.
-    pub span: Span,
+    pub span: TextSpan,
 }
 
 /// The tokens of a text.
@@ -43,8 +43,11 @@ pub fn tokens(text: &str) -> Vec<Token> {
             numbers.next();
         }
         let measure = numbers.peek().filter(|m| m.from <= i);
-        let kind = measure.map_or(Kind::Count, |m| m.kind);
-        let is_own = matches!(kind, Kind::Count | Kind::Length | Kind::Storeys);
+        let kind = measure.map_or(MeasuredQuantity::Count, |m| m.kind);
+        let is_own = matches!(
+            kind,
+            MeasuredQuantity::Count | MeasuredQuantity::Length | MeasuredQuantity::Storeys
+        );
         if let Some(m) = measure.filter(|_| !is_own) {
             if m.from < i {
                 continue;
@@ -64,7 +67,7 @@ pub fn tokens(text: &str) -> Vec<Token> {
         end = span.end;
         match (t.value, t.text.as_str()) {
             // ("one more", "one of")
-            (Some(_), _) if kind == Kind::Speed => push(TokenKind::Idle, "km/h"),
+            (Some(_), _) if kind == MeasuredQuantity::Speed => push(TokenKind::Idle, "km/h"),
             (Some(_), _) if !is_own => push(TokenKind::Mark, "unit"),
             (Some(_), "one") => push(TokenKind::Word, "one"),
             (Some(n), word) => {

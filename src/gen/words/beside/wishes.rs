@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use super::place::Ground;
+use super::place::FreeGround;
 use super::targets::{Meant, is, targets};
-use super::{Amount, Said, SideOf, Verb, What};
+use super::{Amount, SceneryClause, SceneryKind, SideOf, Verb};
 use place::description::{Description, Environment, Road};
-use scene::background::{Building, Line, Post, PostKind, STOREY_M, Shrubs, Tree, TreeKind};
+use scene::background::{Building, Post, PostKind, STOREY_M, SceneryLine, Shrubs, Tree, TreeKind};
 use scene::{Background, BevLayout, BoxId, Form, SceneBox};
 use world::draw::Draw;
-use world::scenery::{Setting, Side, Style, background_of};
+use world::scenery::{RoadsideKind, RoadsideStyle, Style, background_of};
 
 /// The scenery that a description asks for on a layout, and the wishes that could not be met, one line each.
 pub fn scenery(
@@ -25,7 +25,7 @@ pub fn scenery(
     let mut things = background_of(layout, boxes, &style, seed);
     let mut short = Vec::new();
     for (i, s) in description.background.iter().enumerate() {
-        let ground = Ground::new(layout, boxes, &things);
+        let ground = FreeGround::new(layout, boxes, &things);
         if s.verb == Verb::Remove {
             let lacks = match s.place.near {
                 Some(super::NearTo::Crossing) => ground.roads.crossings.is_empty(),
@@ -55,7 +55,7 @@ pub fn scenery(
             if s.place.side.is_none() && !s.place.along && !s.plural {
                 here.place.side = None;
             }
-            let ground = Ground::new(layout, boxes, &things);
+            let ground = FreeGround::new(layout, boxes, &things);
             if is_there(&here, &things, &ground) {
                 continue;
             }
@@ -72,21 +72,23 @@ pub fn scenery(
 }
 
 /// True if the thing that was described is there already.
-fn is_there(s: &Said, things: &Background, ground: &Ground) -> bool {
+fn is_there(s: &SceneryClause, things: &Background, ground: &FreeGround) -> bool {
     if s.row || s.place.distance_m.is_some() || s.count.is_some() || s.place.near.is_some() {
         return false;
     }
-    let of = |what: What| {
+    let of = |what: SceneryKind| {
         things
             .iter()
             .filter(move |t| is(what, &t.form) && ground.fits(&s.place, t.form.middle_m()))
     };
     match s.what {
-        What::Place(Setting::Forest | Setting::Park) => of(What::Tree(None)).count() >= 3,
-        What::Place(Setting::Country) => true,
-        What::Place(_) => of(What::Building(None)).count() > 0,
-        What::Building(_) => of(s.what).count() > 0,
-        What::Line(_) => {
+        SceneryKind::Place(RoadsideKind::Forest | RoadsideKind::Park) => {
+            of(SceneryKind::Tree(None)).count() >= 3
+        }
+        SceneryKind::Place(RoadsideKind::Country) => true,
+        SceneryKind::Place(_) => of(SceneryKind::Building(None)).count() > 0,
+        SceneryKind::Building(_) => of(s.what).count() > 0,
+        SceneryKind::Line(_) => {
             let length = |t: &scene::Thing| {
                 t.form
                     .points_m()
@@ -103,7 +105,7 @@ fn is_there(s: &Said, things: &Background, ground: &Ground) -> bool {
 fn style(description: &Description, layout: &BevLayout, seed: u64) -> Style {
     let mut style = Style::drawn(layout, seed);
     if let Some(setting) = around(description) {
-        style = Style::both(Side::usual(setting));
+        style = Style::both(RoadsideStyle::usual(setting));
     }
     let sides = [(SideOf::Left, &mut style.left), (SideOf::Right, &mut style.right)];
     for (which, side) in sides {
@@ -112,7 +114,8 @@ fn style(description: &Description, layout: &BevLayout, seed: u64) -> Style {
             .iter()
             .filter(|s| s.place.side.is_none_or(|of| of == which));
         // Kinds of place first: "trees" among them give a number.
-        let (places, rest): (Vec<&Said>, Vec<&Said>) = here.partition(|s| matches!(s.what, What::Place(_)));
+        let (places, rest): (Vec<&SceneryClause>, Vec<&SceneryClause>) =
+            here.partition(|s| matches!(s.what, SceneryKind::Place(_)));
         for s in places.into_iter().chain(rest) {
             // Things near a crossing, or counted, are added or removed afterwards.
             if s.place.near.is_none() && s.count.is_none() && !(s.row || s.place.distance_m.is_some()) {
@@ -124,24 +127,24 @@ fn style(description: &Description, layout: &BevLayout, seed: u64) -> Style {
 }
 
 /// The kind of place that surroundings and road name.
-fn around(description: &Description) -> Option<Setting> {
+fn around(description: &Description) -> Option<RoadsideKind> {
     let road = match description.road.kind {
-        Some(Road::Highway) => Some(Setting::Motorway),
-        Some(Road::Suburb) => Some(Setting::Suburb),
+        Some(Road::Highway) => Some(RoadsideKind::Motorway),
+        Some(Road::Suburb) => Some(RoadsideKind::Suburb),
         _ => None,
     };
     let environment = description.environment.map(|e| match e {
-        Environment::Downtown | Environment::Urban => Setting::City,
-        Environment::Suburban | Environment::Residential => Setting::Suburb,
-        Environment::Rural => Setting::Country,
-        Environment::Highway => Setting::Motorway,
-        Environment::Industrial => Setting::Industry,
-        Environment::Nature => Setting::Forest,
+        Environment::Downtown | Environment::Urban => RoadsideKind::City,
+        Environment::Suburban | Environment::Residential => RoadsideKind::Suburb,
+        Environment::Rural => RoadsideKind::Country,
+        Environment::Highway => RoadsideKind::Motorway,
+        Environment::Industrial => RoadsideKind::Industry,
+        Environment::Nature => RoadsideKind::Forest,
     });
     environment.or(road)
 }
 
-fn wish(side: &mut Side, s: &Said) {
+fn wish(side: &mut RoadsideStyle, s: &SceneryClause) {
     let no = s.verb == Verb::Remove;
     let many = match s.dense {
         Some(true) => 1.7,
@@ -149,24 +152,27 @@ fn wish(side: &mut Side, s: &Said) {
         None => 1.0,
     };
     match s.what {
-        What::Place(Setting::Forest) if no => side.trees = 0.0,
-        What::Place(_) if no => {}
-        What::Place(setting) => {
-            *side = Side::usual(setting);
+        SceneryKind::Place(RoadsideKind::Forest) if no => side.trees = 0.0,
+        SceneryKind::Place(_) if no => {}
+        SceneryKind::Place(setting) => {
+            *side = RoadsideStyle::usual(setting);
             side.green = many;
         }
-        What::Building(_) if no => side.built = 0.0,
-        What::Building(kind) => {
+        SceneryKind::Building(_) if no => side.built = 0.0,
+        SceneryKind::Building(kind) => {
             let bare = matches!(
                 side.setting,
-                Setting::Forest | Setting::Motorway | Setting::Country | Setting::Park
+                RoadsideKind::Forest | RoadsideKind::Motorway | RoadsideKind::Country | RoadsideKind::Park
             );
             // Houses suit an old town as well, towers do not suit a suburb.
-            let fits = matches!((kind, side.setting), (Some(Setting::Suburb), Setting::OldTown));
+            let fits = matches!(
+                (kind, side.setting),
+                (Some(RoadsideKind::Suburb), RoadsideKind::OldTown)
+            );
             if let Some(setting) = kind.filter(|_| !fits) {
                 side.setting = setting;
             } else if bare {
-                side.setting = Setting::City;
+                side.setting = RoadsideKind::City;
             }
             side.built = if s.dense.is_some() {
                 many
@@ -175,32 +181,32 @@ fn wish(side: &mut Side, s: &Said) {
             };
             side.storeys = storeys(s, side.setting).or(side.storeys);
         }
-        What::Tree(_) => side.trees = if no { 0.0 } else { many.max(0.4) * 1.2 },
-        What::Shrubs => side.shrubs = if no { 0.0 } else { many * 1.4 },
-        What::Plants if no => side.green = 0.0,
-        What::Plants => side.green = many * 1.3,
-        What::Line(_) | What::Post(_) | What::Thing => {}
+        SceneryKind::Tree(_) => side.trees = if no { 0.0 } else { many.max(0.4) * 1.2 },
+        SceneryKind::Shrubs => side.shrubs = if no { 0.0 } else { many * 1.4 },
+        SceneryKind::Plants if no => side.green = 0.0,
+        SceneryKind::Plants => side.green = many * 1.3,
+        SceneryKind::Line(_) | SceneryKind::Post(_) | SceneryKind::Thing => {}
     }
 }
 
-fn storeys(s: &Said, setting: Setting) -> Option<u32> {
+fn storeys(s: &SceneryClause, setting: RoadsideKind) -> Option<u32> {
     let said = s.height.map(|h| match h {
         Amount::Storeys(n) => n,
         Amount::Metres(m) => m / STOREY_M,
     });
     let usual = match (s.tall?, setting) {
-        (true, Setting::City) => 9,
-        (true, Setting::OldTown) => 6,
-        (true, Setting::Industry | Setting::Retail) => 4,
+        (true, RoadsideKind::City) => 9,
+        (true, RoadsideKind::OldTown) => 6,
+        (true, RoadsideKind::Industry | RoadsideKind::Retail) => 4,
         (true, _) => 4,
-        (false, Setting::City) => 2,
+        (false, RoadsideKind::City) => 2,
         (false, _) => 1,
     };
     Some(said.map_or(usual, |n| n.round().clamp(1.0, 60.0) as u32))
 }
 
 /// New things of a clause, ego frame; an error in words if there is no room or it cannot be made.
-pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>, String> {
+pub(super) fn forms(s: &SceneryClause, mut ground: FreeGround, seed: u64) -> Result<Vec<Form>, String> {
     let mut draw = Draw::new(seed, "by words");
     let sides: Vec<SideOf> = s
         .place
@@ -217,11 +223,11 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
     };
     let no_room = || format!("no room for {} beside the road", s.things());
     let mut out = Vec::new();
-    if let What::Line(kind) = s.what {
+    if let SceneryKind::Line(kind) = s.what {
         let from_paved = kind.typical_m().1 / 2.0 + 0.7;
         for side in &sides {
             for points_m in ground.lines(&s.place, *side, from_paved) {
-                let mut line = Line::typical(kind, thinned(&points_m));
+                let mut line = SceneryLine::typical(kind, thinned(&points_m));
                 line.height_m = height.unwrap_or(line.height_m * scale);
                 out.push(Form::Line(line));
             }
@@ -233,7 +239,7 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
         };
     }
     if s.row || s.place.along {
-        let spacing = if matches!(s.what, What::Tree(_)) {
+        let spacing = if matches!(s.what, SceneryKind::Tree(_)) {
             8.0
         } else {
             14.0
@@ -256,10 +262,10 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
         };
     }
     let (count, spacing) = match s.what {
-        What::Place(Setting::Forest) | What::Place(Setting::Park) => {
+        SceneryKind::Place(RoadsideKind::Forest) | SceneryKind::Place(RoadsideKind::Park) => {
             (if s.dense == Some(false) { 14 } else { 45 }, 0.0)
         }
-        What::Place(_) | What::Plants | What::Thing => {
+        SceneryKind::Place(_) | SceneryKind::Plants | SceneryKind::Thing => {
             return Err(format!(
                 "{}: only buildings, trees, shrubs, lines and posts can be put in by words",
                 s.things()
@@ -326,19 +332,23 @@ fn sound(forms: Vec<Form>) -> Result<Vec<Form>, String> {
 
 /// One thing at a place.
 fn single(
-    s: &Said,
+    s: &SceneryClause,
     p: DVec2,
     height: Option<f64>,
     scale: f64,
-    ground: &Ground,
+    ground: &FreeGround,
     draw: &mut Draw,
 ) -> Option<Form> {
     let along = ground.roads.ego_direction(p);
     let on_left = ground.roads.along_ego_lane(p).y > 0.0;
     let away = if on_left { along.perp() } else { -along.perp() };
     Some(match s.what {
-        What::Tree(_) | What::Place(_) => {
-            let named = if let What::Tree(kind) = s.what { kind } else { None };
+        SceneryKind::Tree(_) | SceneryKind::Place(_) => {
+            let named = if let SceneryKind::Tree(kind) = s.what {
+                kind
+            } else {
+                None
+            };
             let kind =
                 named.unwrap_or([TreeKind::Broadleaf, TreeKind::Conifer][usize::from(draw.chance(0.25))]);
             let height_m = height.unwrap_or_else(|| draw.range(5.0, 8.0) * scale);
@@ -354,11 +364,11 @@ fn single(
                 kind,
             })
         }
-        What::Building(kind) => {
+        SceneryKind::Building(kind) => {
             let (length, depth, storeys) = match kind {
-                Some(Setting::Suburb | Setting::Country) => (11.0, 9.0, 2.0),
-                Some(Setting::Industry | Setting::Retail) => (22.0, 14.0, 2.5),
-                Some(Setting::City) => (18.0, 11.0, 5.0),
+                Some(RoadsideKind::Suburb | RoadsideKind::Country) => (11.0, 9.0, 2.0),
+                Some(RoadsideKind::Industry | RoadsideKind::Retail) => (22.0, 14.0, 2.5),
+                Some(RoadsideKind::City) => (18.0, 11.0, 5.0),
                 _ => (12.0, 9.0, 3.0),
             };
             let height_m = height.unwrap_or(storeys * STOREY_M * scale).max(STOREY_M);
@@ -371,7 +381,7 @@ fn single(
                 height_m,
             ))
         }
-        What::Shrubs => {
+        SceneryKind::Shrubs => {
             let radius = 1.6;
             let corner =
                 |i: usize| p + away + DVec2::from_angle(i as f64 * std::f64::consts::FRAC_PI_3) * radius;
@@ -381,7 +391,7 @@ fn single(
                 per_m2: 0.9,
             })
         }
-        What::Post(kind) => {
+        SceneryKind::Post(kind) => {
             let facing = match kind {
                 PostKind::Sign | PostKind::TrafficLight => {
                     if on_left {
@@ -396,7 +406,7 @@ fn single(
             post.height_m = height.unwrap_or(post.height_m);
             Form::Post(post)
         }
-        What::Line(_) | What::Plants | What::Thing => return None,
+        SceneryKind::Line(_) | SceneryKind::Plants | SceneryKind::Thing => return None,
     })
 }
 

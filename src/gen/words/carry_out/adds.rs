@@ -3,13 +3,13 @@
 use glam::DVec3;
 
 use super::super::nouns::Noun;
-use super::super::plan::{Plan, Site, label_of};
-use super::super::reading::{Quantity, Relation, Thing};
+use super::super::plan::{AnchorResolver, PlacementPlan, label_of};
+use super::super::reading::{ObjectPhrase, Quantity, Relation};
 use super::super::remark::Remark;
 use super::super::resolve::Spare;
 use super::super::stage::Stage;
 use place::description::{Anchor, Count, Description, ObjectSpec, Stated};
-use place::holds::{Target, holds, role_of};
+use place::holds::{RelationReference, holds, role_of};
 use place::off::off;
 use place::rules::{Placement, place_from};
 use place::to_graph::to_graph;
@@ -25,8 +25,8 @@ pub(super) struct Arranged {
     pub(super) off: Vec<(RelationKind, [f64; 2])>,
 }
 
-impl Site for Stage<'_> {
-    fn find(&mut self, t: &Thing) -> Result<Vec<SceneBox>, ()> {
+impl AnchorResolver for Stage<'_> {
+    fn find(&mut self, t: &ObjectPhrase) -> Result<Vec<SceneBox>, ()> {
         let asked = self.out.questions.len();
         match self.that(t, Spare::Nearest) {
             Some(ids) => Ok(ids.iter().map(|id| self.boxes[id]).collect()),
@@ -46,14 +46,14 @@ impl Site for Stage<'_> {
 }
 
 impl Stage<'_> {
-    pub(super) fn add(&mut self, things: &[Thing]) {
-        let (there, new): (Vec<&Thing>, Vec<&Thing>) = things
+    pub(super) fn add(&mut self, things: &[ObjectPhrase]) {
+        let (there, new): (Vec<&ObjectPhrase>, Vec<&ObjectPhrase>) = things
             .iter()
             .partition(|t| t.places.iter().any(|p| p.relation == Relation::There));
         for t in there {
             self.add_there(t);
         }
-        let mut list: Vec<Thing> = Vec::new();
+        let mut list: Vec<ObjectPhrase> = Vec::new();
         for t in new {
             let bare = t.places.is_empty() && matches!(t.quantity, Quantity::N(_));
             let alike = if bare { self.joined_by(t) } else { Vec::new() };
@@ -70,7 +70,7 @@ impl Stage<'_> {
     }
 
     /// Boxes of the same kind that small things and people join if no place was stated.
-    fn joined_by(&self, t: &Thing) -> Vec<BoxId> {
+    fn joined_by(&self, t: &ObjectPhrase) -> Vec<BoxId> {
         let class = t.noun.classes()[0];
         let joins = matches!(class, Class::TrafficCone | Class::Barrier | Class::Pedestrian)
             || t.state == Some(ObjectState::Parked);
@@ -82,17 +82,17 @@ impl Stage<'_> {
         }
     }
 
-    fn plan(&mut self, things: &[Thing]) -> Plan {
-        let mut plan = Plan {
+    fn plan(&mut self, things: &[ObjectPhrase]) -> PlacementPlan {
+        let mut plan = PlacementPlan {
             follows: true,
-            ..Plan::default()
+            ..PlacementPlan::default()
         };
         plan.add(things, self);
         plan
     }
 
     /// Places the objects of a plan.
-    fn put(&mut self, plan: Plan) {
+    fn put(&mut self, plan: PlacementPlan) {
         if plan.asked {
             return;
         }
@@ -163,7 +163,7 @@ impl Stage<'_> {
 
     /// The specs of a plan in which objects next to existing boxes stand in those boxes' strip, if no other place was
     /// stated; `None` if nothing changes.
-    fn in_strips_of_neighbours(&self, plan: &Plan) -> Option<Vec<ObjectSpec>> {
+    fn in_strips_of_neighbours(&self, plan: &PlacementPlan) -> Option<Vec<ObjectSpec>> {
         let mut specs = plan.specs.clone();
         let mut any = false;
         for s in &mut specs {
@@ -275,7 +275,7 @@ impl Stage<'_> {
     }
 
     /// Adds more of a kind where all of that kind stand.
-    pub(super) fn add_like(&mut self, t: &Thing, others: &[BoxId]) {
+    pub(super) fn add_like(&mut self, t: &ObjectPhrase, others: &[BoxId]) {
         let mut plan = self.plan(std::slice::from_ref(t));
         let on = |relation, anchor| Stated {
             relation,
@@ -284,7 +284,16 @@ impl Stage<'_> {
             distance_m: None,
         };
         let crosses = |id: &BoxId| {
-            let on = |b| holds(&self.map, RelationKind::On, b, &Target::Crossing, None, None);
+            let on = |b| {
+                holds(
+                    &self.map,
+                    RelationKind::On,
+                    b,
+                    &RelationReference::Crossing,
+                    None,
+                    None,
+                )
+            };
             self.boxes.get(id).is_some_and(on)
         };
         let people = t.noun.classes()[0] == Class::Pedestrian;
@@ -309,14 +318,14 @@ impl Stage<'_> {
     }
 
     /// Adds things where others were removed; if none were, where the last named thing stands.
-    fn add_there(&mut self, t: &Thing) {
+    fn add_there(&mut self, t: &ObjectPhrase) {
         let rest: Vec<_> = t
             .places
             .iter()
             .filter(|p| p.relation != Relation::There)
             .cloned()
             .collect();
-        let t = Thing {
+        let t = ObjectPhrase {
             places: rest,
             ..t.clone()
         };
@@ -336,7 +345,7 @@ impl Stage<'_> {
         let wanted = super::super::plan::count_of(t.quantity).n as usize;
         let put = self.put_at(&t, &spots, wanted);
         if put < wanted {
-            let more = Thing {
+            let more = ObjectPhrase {
                 quantity: Quantity::N((wanted - put) as u32),
                 ..t
             };
@@ -346,7 +355,7 @@ impl Stage<'_> {
     }
 
     /// Puts new things in the places of old boxes. Returns how many.
-    pub(super) fn put_at(&mut self, t: &Thing, spots: &[SceneBox], wanted: usize) -> usize {
+    pub(super) fn put_at(&mut self, t: &ObjectPhrase, spots: &[SceneBox], wanted: usize) -> usize {
         let mut last = Vec::new();
         for old in spots.iter().take(wanted) {
             let id = self.next_id();
@@ -377,7 +386,7 @@ impl Stage<'_> {
 }
 
 /// A box of another kind in the place of an old one.
-pub(super) fn in_place_of(old: &SceneBox, t: &Thing, id: BoxId) -> Option<SceneBox> {
+pub(super) fn in_place_of(old: &SceneBox, t: &ObjectPhrase, id: BoxId) -> Option<SceneBox> {
     let class = t.noun.classes()[0];
     let factor = match t.size {
         Some(SizeHint::Large) => 1.18,

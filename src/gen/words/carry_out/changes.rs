@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::super::nouns::Noun;
-use super::super::reading::{Quantity, Thing, Traits, Turn};
+use super::super::reading::{ObjectPhrase, Quantity, Traits, Turn};
 use super::super::remark::Remark;
 use super::super::resolve::{Spare, words_of};
 use super::super::stage::Stage;
@@ -15,7 +15,7 @@ use scene::{BoxId, BoxLabel, SceneBox};
 impl Stage<'_> {
     /// Replaces one for one. If a number is stated, surplus boxes are removed and missing ones are put beside the
     /// others.
-    pub(super) fn replace(&mut self, who: &[Thing], things: &[Thing]) {
+    pub(super) fn replace(&mut self, who: &[ObjectPhrase], things: &[ObjectPhrase]) {
         let ids = match self.those(who, Spare::Farthest) {
             Some(ids) => ids,
             None => {
@@ -47,7 +47,7 @@ impl Stage<'_> {
             }
             made.extend(&mine);
             if wanted > n {
-                let more = Thing {
+                let more = ObjectPhrase {
                     quantity: Quantity::N((wanted - n) as u32),
                     ..t.clone()
                 };
@@ -65,7 +65,7 @@ impl Stage<'_> {
         self.last_noun = things.first().map(|t| t.noun);
     }
 
-    fn become_kind(&mut self, id: BoxId, t: &Thing) {
+    fn become_kind(&mut self, id: BoxId, t: &ObjectPhrase) {
         let Some(old) = self.boxes.get(&id).copied() else {
             return;
         };
@@ -97,7 +97,7 @@ impl Stage<'_> {
         }
     }
 
-    pub(super) fn set(&mut self, who: &[Thing], traits: &Traits) {
+    pub(super) fn set(&mut self, who: &[ObjectPhrase], traits: &Traits) {
         let Some(ids) = self.those(who, Spare::Nearest) else {
             return;
         };
@@ -115,14 +115,14 @@ impl Stage<'_> {
             self.set_one(id, traits, paint);
         }
         let everybody =
-            |t: &Thing| t.noun == Noun::Thing && t.quantity == Quantity::All && t.places.is_empty();
+            |t: &ObjectPhrase| t.noun == Noun::Thing && t.quantity == Quantity::All && t.places.is_empty();
         if traits.state == Some(ObjectState::Waiting) && self.ego_moves && who.iter().any(everybody) {
             self.remark(Remark::WeGoOn);
         }
     }
 
     /// The paint of a thing that is there now, or was there before the first act.
-    fn paint_of(&mut self, of: &Thing) -> Option<scene::Paint> {
+    fn paint_of(&mut self, of: &ObjectPhrase) -> Option<scene::Paint> {
         let last = self.last.clone();
         let now = self.fitting(of);
         let boxes = match now.is_empty() {
@@ -191,7 +191,7 @@ impl Stage<'_> {
         });
     }
 
-    pub(super) fn swap(&mut self, one: &Thing, other: &Thing) {
+    pub(super) fn swap(&mut self, one: &ObjectPhrase, other: &ObjectPhrase) {
         let first = self
             .that(one, Spare::Nearest)
             .and_then(|ids| ids.first().copied());
@@ -232,7 +232,7 @@ impl Stage<'_> {
         self.last = vec![a, b];
     }
 
-    pub(super) fn turned(&mut self, who: &[Thing], turn: &Turn) {
+    pub(super) fn turned(&mut self, who: &[ObjectPhrase], turn: &Turn) {
         let Some(ids) = self.those(who, Spare::Nearest) else {
             return;
         };

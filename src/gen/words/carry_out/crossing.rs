@@ -2,7 +2,9 @@
 
 use glam::DVec2;
 
-use super::super::reading::{Anchor, Destination, Feature, Place, Reading, Relation, Thing, Turn, What};
+use super::super::reading::{
+    ActKind, AnchorPhrase, Destination, Feature, ObjectPhrase, PlacePhrase, Reading, Relation, Turn,
+};
 use super::super::remark::Remark;
 use super::super::stage::Stage;
 use place::holds::overlap_m;
@@ -39,7 +41,7 @@ pub(super) fn with_crossing(
 ) -> Option<WithCrossing> {
     let map = LaneMap::new(layout);
     let (act, ahead_m) = reading.acts.iter().enumerate().find_map(|(i, a)| match &a.what {
-        What::Has {
+        ActKind::Has {
             what: Feature::Crossing,
             places,
         } => {
@@ -78,7 +80,7 @@ pub(super) fn with_crossing(
 }
 
 /// Distance ahead in metres (negative: behind) of places that state one.
-fn metres_of(places: &[Place]) -> Option<f64> {
+fn metres_of(places: &[PlacePhrase]) -> Option<f64> {
     let p = places.iter().find(|p| p.metres.is_some())?;
     let m = p.metres.filter(|m| (3.0..=36.0).contains(m))?;
     Some(if p.relation == Relation::Behind { -m } else { m })
@@ -93,16 +95,16 @@ fn is_elsewhere(map: &LaneMap<'_>, ahead_m: Option<f64>) -> bool {
 }
 
 /// True if an act puts something on a crossing or beside one.
-fn stands_on_one(what: &What) -> bool {
-    let placed = |places: &[Place]| places.iter().any(|p| p.to == Some(Anchor::Crossing));
-    let things = |list: &[Thing]| list.iter().any(|t| placed(&t.places));
+fn stands_on_one(what: &ActKind) -> bool {
+    let placed = |places: &[PlacePhrase]| places.iter().any(|p| p.to == Some(AnchorPhrase::Crossing));
+    let things = |list: &[ObjectPhrase]| list.iter().any(|t| placed(&t.places));
     match what {
-        What::Add { things: t } | What::Replace { things: t, .. } => things(t),
-        What::Move {
+        ActKind::Add { things: t } | ActKind::Replace { things: t, .. } => things(t),
+        ActKind::Move {
             to: Destination::To(places),
             ..
         }
-        | What::Turn {
+        | ActKind::Turn {
             turn: Turn::To(places),
             ..
         } => placed(places),
@@ -112,7 +114,7 @@ fn stands_on_one(what: &What) -> bool {
 
 impl Stage<'_> {
     /// Adds a remark if the map has a crossing already, or has no room for one.
-    pub(super) fn add_crossing(&mut self, places: &[Place]) {
+    pub(super) fn add_crossing(&mut self, places: &[PlacePhrase]) {
         let there = !self.map.crossings.is_empty() && !is_elsewhere(&self.map, metres_of(places));
         if !there && self.crossing_of != Some(self.act) {
             self.remark(Remark::NoCrossing);

@@ -1,8 +1,8 @@
 //! Destination of a box that moves, as relations, and the parts of its old place that are kept because they were not
 //! mentioned.
 
-use super::super::plan::Plan;
-use super::super::reading::{Anchor as Said, Place, Relation};
+use super::super::plan::PlacementPlan;
+use super::super::reading::{AnchorPhrase as Said, PlacePhrase, Relation};
 use super::super::remark::Remark;
 use super::super::resolve::kind_of;
 use super::super::stage::Stage;
@@ -15,7 +15,7 @@ use scene::{BevLayer, Class, SceneBox};
 pub(super) const CLOSE_M: f64 = 4.5;
 
 /// Destination of a box.
-pub(super) struct Found {
+pub(super) struct BoxDestination {
     pub(super) new: SceneBox,
     /// Stated relations that do not hold there.
     pub(super) unmet: Vec<RelationKind>,
@@ -24,7 +24,7 @@ pub(super) struct Found {
     pub(super) off: Vec<(RelationKind, [f64; 2])>,
 }
 
-impl Found {
+impl BoxDestination {
     /// Distance from the old place of the box, m.
     pub(super) fn moved_m(&self, b: &SceneBox) -> f64 {
         (self.new.center_m - b.center_m).truncate().length()
@@ -33,9 +33,14 @@ impl Found {
 
 impl Stage<'_> {
     /// The place that fits `spec` and is nearest to the box's old place, with most of the unmentioned relations kept.
-    pub(super) fn destination(&mut self, b: &SceneBox, spec: &ObjectSpec, plan: &Plan) -> Option<Found> {
+    pub(super) fn destination(
+        &mut self,
+        b: &SceneBox,
+        spec: &ObjectSpec,
+        plan: &PlacementPlan,
+    ) -> Option<BoxDestination> {
         let gone = self.boxes.remove(&b.id);
-        let mut found: Option<Found> = None;
+        let mut found: Option<BoxDestination> = None;
         for tried in self.with_inertia(b, spec, b.velocity_mps.length() > 0.5) {
             let mut specs = vec![tried.clone()];
             specs.extend(plan.specs.iter().cloned());
@@ -45,7 +50,7 @@ impl Stage<'_> {
             let Some(new) = a.new.first() else { continue };
             let good = a.unmet.is_empty() && a.left_out.is_empty();
             if good || found.is_none() {
-                found = Some(Found {
+                found = Some(BoxDestination {
                     new: *new,
                     unmet: a.unmet,
                     off: a.off,
@@ -65,8 +70,8 @@ impl Stage<'_> {
     pub(super) fn relations(
         &mut self,
         b: &SceneBox,
-        places: &[Place],
-        plan: &mut Plan,
+        places: &[PlacePhrase],
+        plan: &mut PlacementPlan,
     ) -> Option<Vec<Stated>> {
         let mut out = Vec::new();
         let mut state = |relation, anchor, and, distance_m| {

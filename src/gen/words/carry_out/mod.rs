@@ -12,17 +12,17 @@ mod tests;
 
 use super::check::look_again;
 use super::nouns::Noun;
-use super::reading::{Amount, Feature, Quantity, Reading, Thing, What};
+use super::reading::{ActKind, Amount, Feature, ObjectPhrase, Quantity, Reading};
 use super::remark::Remark;
 use super::resolve::{Spare, words_of};
-use super::stage::{OpenScene, Outcome, Stage};
+use super::stage::{OpenScene, ReadingOutcome, Stage};
 use scene::{BoxId, SceneBox, TimeOfDay, Weather};
 
 /// Most acts that are carried out.
 pub const MOST_ACTS: usize = 100;
 
 /// The outcome of a reading in a scene; it is the same for the same reading, scene and seed.
-pub fn carry_out(reading: &Reading, scene: &OpenScene<'_>, seed: u64) -> Outcome {
+pub fn carry_out(reading: &Reading, scene: &OpenScene<'_>, seed: u64) -> ReadingOutcome {
     let boxes: Vec<SceneBox> = scene.boxes.values().copied().collect();
     let with = crossing::with_crossing(reading, scene.layout, &boxes);
     let scene = OpenScene {
@@ -48,7 +48,7 @@ pub fn carry_out(reading: &Reading, scene: &OpenScene<'_>, seed: u64) -> Outcome
         let silent = stage.out.edits.len() == before
             && stage.out.questions.len() == asked
             && stage.out.remarks.len() == remarks;
-        if silent && asked == 0 && !matches!(act.what, What::Leave { .. }) {
+        if silent && asked == 0 && !matches!(act.what, ActKind::Leave { .. }) {
             stage.remark(Remark::Already);
         }
     }
@@ -57,13 +57,13 @@ pub fn carry_out(reading: &Reading, scene: &OpenScene<'_>, seed: u64) -> Outcome
 }
 
 impl Stage<'_> {
-    fn act(&mut self, what: &What, reading: &Reading) {
+    fn act(&mut self, what: &ActKind, reading: &Reading) {
         match what {
-            What::Add { things } => self.add(things),
-            What::Remove { who } => self.remove(who),
-            What::No { who } => {
+            ActKind::Add { things } => self.add(things),
+            ActKind::Remove { who } => self.remove(who),
+            ActKind::No { who } => {
                 for t in who {
-                    let t = Thing {
+                    let t = ObjectPhrase {
                         quantity: Quantity::All,
                         ..t.clone()
                     };
@@ -77,8 +77,8 @@ impl Stage<'_> {
                     self.take(&ids);
                 }
             }
-            What::Keep { who } => self.keep(who),
-            What::Leave { who } => {
+            ActKind::Keep { who } => self.keep(who),
+            ActKind::Leave { who } => {
                 for t in who {
                     let ids = self.fitting(t);
                     if ids.is_empty() {
@@ -88,39 +88,39 @@ impl Stage<'_> {
                     }
                 }
             }
-            What::Replace { who, things } => self.replace(who, things),
-            What::Move { who, to } => self.moved(who, to),
-            What::Turn { who, turn } => self.turned(who, turn),
-            What::Set { who, traits } => self.set(who, traits),
-            What::Count { who, amount } => {
+            ActKind::Replace { who, things } => self.replace(who, things),
+            ActKind::Move { who, to } => self.moved(who, to),
+            ActKind::Turn { who, turn } => self.turned(who, turn),
+            ActKind::Set { who, traits } => self.set(who, traits),
+            ActKind::Count { who, amount } => {
                 for t in who {
                     self.count(t, *amount);
                 }
             }
-            What::Swap { one, other } => self.swap(one, other),
-            What::Go { who, how } => self.go(who, how),
-            What::Length { seconds } => self.last_for(*seconds),
-            What::Time { what } => self.conditions(Some(*what), None),
-            What::Weather { what } => self.conditions(None, Some(*what)),
-            What::Has {
+            ActKind::Swap { one, other } => self.swap(one, other),
+            ActKind::Go { who, how } => self.go(who, how),
+            ActKind::Length { seconds } => self.last_for(*seconds),
+            ActKind::Time { what } => self.conditions(Some(*what), None),
+            ActKind::Weather { what } => self.conditions(None, Some(*what)),
+            ActKind::Has {
                 what: Feature::Crossing,
                 places,
             } => self.add_crossing(places),
-            What::Lacks {
+            ActKind::Lacks {
                 what: Feature::Crossing,
             } => self.erase_crossing(),
-            What::Has { .. }
-            | What::Lacks { .. }
-            | What::Road { .. }
-            | What::Lanes { .. }
-            | What::OneWay
-            | What::Narrow
-            | What::Wide
-            | What::OwnLane { .. } => self.change_road(what),
-            What::Env { .. } => self.remark(Remark::NotInEdits {
+            ActKind::Has { .. }
+            | ActKind::Lacks { .. }
+            | ActKind::Road { .. }
+            | ActKind::Lanes { .. }
+            | ActKind::OneWay
+            | ActKind::Narrow
+            | ActKind::Wide
+            | ActKind::OwnLane { .. } => self.change_road(what),
+            ActKind::Env { .. } => self.remark(Remark::NotInEdits {
                 what: "the surroundings",
             }),
-            What::Density { .. } => self.remark(Remark::NotInEdits {
+            ActKind::Density { .. } => self.remark(Remark::NotInEdits {
                 what: "how busy it is",
             }),
         }
@@ -135,7 +135,7 @@ impl Stage<'_> {
         }
     }
 
-    fn remove(&mut self, who: &[Thing]) {
+    fn remove(&mut self, who: &[ObjectPhrase]) {
         if let Some(ids) = self.those(who, Spare::Farthest) {
             self.take(&ids);
         }
@@ -144,10 +144,10 @@ impl Stage<'_> {
     /// Boxes that acts of the text state to stay, as far as they are known before the first act.
     fn said_to_stay(&self, reading: &Reading) -> std::collections::BTreeSet<BoxId> {
         let leaves = reading.acts.iter().filter_map(|a| match &a.what {
-            What::Leave { who } => Some(who),
+            ActKind::Leave { who } => Some(who),
             _ => None,
         });
-        let known = |t: &&Thing| !t.other && !matches!(t.noun, Noun::It | Noun::One);
+        let known = |t: &&ObjectPhrase| !t.other && !matches!(t.noun, Noun::It | Noun::One);
         leaves
             .flatten()
             .filter(known)
@@ -160,9 +160,10 @@ impl Stage<'_> {
         let mut ids = self.last.clone();
         for a in &reading.acts {
             let who = match &a.what {
-                What::Leave { who } | What::Keep { who } | What::Set { who, .. } | What::Move { who, .. } => {
-                    who
-                }
+                ActKind::Leave { who }
+                | ActKind::Keep { who }
+                | ActKind::Set { who, .. }
+                | ActKind::Move { who, .. } => who,
                 _ => continue,
             };
             ids.extend(who.iter().flat_map(|t| self.fitting(t)));
@@ -174,7 +175,7 @@ impl Stage<'_> {
         ids
     }
 
-    fn keep(&mut self, who: &[Thing]) {
+    fn keep(&mut self, who: &[ObjectPhrase]) {
         // (with a number of a kind, that many of it stay)
         let Some(ids) = self.those(who, Spare::Nearest) else {
             return;
@@ -189,8 +190,8 @@ impl Stage<'_> {
         self.last = ids;
     }
 
-    fn count(&mut self, t: &Thing, amount: Amount) {
-        let fits = self.fitting(&Thing {
+    fn count(&mut self, t: &ObjectPhrase, amount: Amount) {
+        let fits = self.fitting(&ObjectPhrase {
             quantity: Quantity::All,
             ..t.clone()
         });
@@ -207,7 +208,7 @@ impl Stage<'_> {
         }
         if fits.len() > most {
             let n = fits.len() - most;
-            let which = Thing {
+            let which = ObjectPhrase {
                 quantity: Quantity::N(n as u32),
                 ..t.clone()
             };
@@ -220,7 +221,7 @@ impl Stage<'_> {
                 .collect();
         } else if fits.len() < least {
             let n = (least - fits.len()).min(400) as u32;
-            let new = Thing {
+            let new = ObjectPhrase {
                 quantity: Quantity::N(n),
                 ..t.clone()
             };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::super::reading::{Anchor, Place, Quantity, Relation, Thing};
+use super::super::reading::{AnchorPhrase, ObjectPhrase, PlacePhrase, Quantity, Relation};
 use super::super::remark::Remark;
 use super::super::resolve::{Spare, words_of};
 use super::super::stage::Stage;
@@ -18,7 +18,7 @@ const SEEN_S: f64 = 5.0;
 
 impl Stage<'_> {
     /// Makes boxes carry out a manoeuvre, or the ego vehicle if `who` is empty.
-    pub(super) fn go(&mut self, who: &[Thing], how: &Manoeuvre) {
+    pub(super) fn go(&mut self, who: &[ObjectPhrase], how: &Manoeuvre) {
         let least_s = how.from_s.map_or(0.0, |from_s| from_s + SEEN_S);
         if least_s > self.length_s.max(USUAL_LENGTH_S) {
             self.last_for(least_s);
@@ -68,7 +68,7 @@ impl Stage<'_> {
 
     /// The boxes that are to move. If one of a kind is named and none is there, it is added first: ahead of us, if no
     /// place is stated.
-    fn movers(&mut self, who: &[Thing]) -> Option<Vec<BoxId>> {
+    fn movers(&mut self, who: &[ObjectPhrase]) -> Option<Vec<BoxId>> {
         let [thing] = who else {
             return self.those(who, Spare::Nearest);
         };
@@ -81,9 +81,9 @@ impl Stage<'_> {
         }
         let mut new = thing.clone();
         if new.places.is_empty() {
-            new.places.push(Place {
+            new.places.push(PlacePhrase {
                 relation: Relation::Ahead,
-                to: Some(Anchor::Ego),
+                to: Some(AnchorPhrase::Ego),
                 and: None,
                 metres: Some(AHEAD_M),
             });

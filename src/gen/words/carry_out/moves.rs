@@ -4,12 +4,12 @@
 use glam::DVec2;
 
 use super::super::nouns::Noun;
-use super::super::plan::Plan;
-use super::super::reading::{Anchor as Said, Destination, Place, Relation, Thing, Way};
+use super::super::plan::PlacementPlan;
+use super::super::reading::{AnchorPhrase as Said, Destination, ObjectPhrase, PlacePhrase, Relation, Way};
 use super::super::remark::Remark;
 use super::super::resolve::Spare;
 use super::super::stage::Stage;
-use super::destinations::{CLOSE_M, Found, is_aside};
+use super::destinations::{BoxDestination, CLOSE_M, is_aside};
 use place::description::{Anchor, Stated};
 use place::holds::{ego, overlap_m};
 use place::rules::stands;
@@ -20,7 +20,7 @@ use scene::{BoxId, Class, SceneBox};
 const LANE_M: f64 = 3.5;
 
 impl Stage<'_> {
-    pub(super) fn moved(&mut self, who: &[Thing], to: &Destination) {
+    pub(super) fn moved(&mut self, who: &[ObjectPhrase], to: &Destination) {
         let Some(ids) = self.those(who, Spare::Nearest) else {
             return;
         };
@@ -51,9 +51,10 @@ impl Stage<'_> {
 
     /// Places things in a row, side by side, or facing each other: each by the one before. True if the words asked for
     /// it.
-    pub(super) fn grouped(&mut self, ids: &[BoxId], places: &[Place]) -> bool {
-        let each = |p: &Place| p.to == Some(Said::EachOther);
-        let of_group = |p: &&Place| matches!(p.relation, Relation::InLine | Relation::SideBySide) || each(p);
+    pub(super) fn grouped(&mut self, ids: &[BoxId], places: &[PlacePhrase]) -> bool {
+        let each = |p: &PlacePhrase| p.to == Some(Said::EachOther);
+        let of_group =
+            |p: &&PlacePhrase| matches!(p.relation, Relation::InLine | Relation::SideBySide) || each(p);
         let Some(group) = places.iter().find(of_group).cloned() else {
             return false;
         };
@@ -63,7 +64,7 @@ impl Stage<'_> {
             return true;
         }
         // (the other places apply to the first thing)
-        let rest: Vec<Place> = places.iter().filter(|p| **p != group).cloned().collect();
+        let rest: Vec<PlacePhrase> = places.iter().filter(|p| **p != group).cloned().collect();
         if !rest.is_empty() {
             self.moved_to(ids[0], &rest);
         }
@@ -75,9 +76,9 @@ impl Stage<'_> {
                 Relation::Near | Relation::NextTo if k == 0 => continue,
                 relation => (relation, if k == 0 { ids[1] } else { ids[k - 1] }),
             };
-            let mut other = Thing::new(Noun::Thing);
+            let mut other = ObjectPhrase::new(Noun::Thing);
             other.id = Some(by.0);
-            let place = Place {
+            let place = PlacePhrase {
                 relation,
                 to: Some(Said::Thing(Box::new(other))),
                 and: None,
@@ -90,7 +91,7 @@ impl Stage<'_> {
     }
 
     /// The boxes that a thing means, other than the moved one.
-    pub(super) fn others_of(&mut self, t: &Thing, moved: BoxId) -> Option<Vec<BoxId>> {
+    pub(super) fn others_of(&mut self, t: &ObjectPhrase, moved: BoxId) -> Option<Vec<BoxId>> {
         let (spoken, noun) = (self.last.clone(), self.last_noun);
         self.skip = Some(moved);
         let ids = self.that(t, Spare::Nearest);
@@ -199,7 +200,7 @@ impl Stage<'_> {
 
     /// Moves a box to the edge of the road.
     pub(super) fn park(&mut self, id: BoxId, role: LaneRole) {
-        let place = Place {
+        let place = PlacePhrase {
             relation: Relation::On,
             to: Some(Said::Lane(role)),
             and: None,
@@ -227,7 +228,7 @@ impl Stage<'_> {
         } else {
             Relation::SameWay
         };
-        let place = Place {
+        let place = PlacePhrase {
             relation,
             to: Some(Said::Ego),
             and: None,
@@ -237,7 +238,7 @@ impl Stage<'_> {
     }
 
     /// Moves a box to where the places hold, as near to its old place as possible; true if it is there now.
-    pub(super) fn moved_to(&mut self, id: BoxId, places: &[Place]) -> bool {
+    pub(super) fn moved_to(&mut self, id: BoxId, places: &[PlacePhrase]) -> bool {
         let Some(b) = self.boxes.get(&id).copied() else {
             return false;
         };
@@ -247,7 +248,7 @@ impl Stage<'_> {
         if let Some(done) = self.only_turned(&b, places) {
             return done;
         }
-        let mut plan = Plan::default();
+        let mut plan = PlacementPlan::default();
         let mut spec = self.as_spec(&b);
         let Some(relations) = self.relations(&b, places, &mut plan) else {
             return false;
@@ -293,7 +294,7 @@ impl Stage<'_> {
             let near = open.then(|| self.destination(&b, &closer, &plan)).flatten();
             found = near.filter(|f| f.unmet.is_empty()).or(found);
         }
-        let Some(Found {
+        let Some(BoxDestination {
             new,
             unmet,
             parked,
@@ -355,7 +356,7 @@ impl Stage<'_> {
 
     /// Turns a box that is only told a direction to face. It stays at its place; `None` if it has to move for that.
     /// False after a question.
-    fn only_turned(&mut self, b: &SceneBox, places: &[Place]) -> Option<bool> {
+    fn only_turned(&mut self, b: &SceneBox, places: &[PlacePhrase]) -> Option<bool> {
         let [place] = places else { return None };
         let p = b.center_m.truncate();
         let drives = b.velocity_mps.length() > 0.5 && b.class != Class::Pedestrian;
@@ -413,8 +414,8 @@ impl Stage<'_> {
 }
 
 /// A place at a distance from the ego vehicle, on the side where the box is.
-fn range(metres: f64) -> Place {
-    Place {
+fn range(metres: f64) -> PlacePhrase {
+    PlacePhrase {
         relation: Relation::At,
         to: Some(Said::Ego),
         and: None,

@@ -2,7 +2,7 @@
 
 use scene::roads::{LaneKind, RoadWish};
 
-use super::super::reading::{Feature, What};
+use super::super::reading::{ActKind, Feature};
 use super::super::remark::Remark;
 use super::super::stage::Stage;
 use place::description::Road;
@@ -12,28 +12,28 @@ const NARROW: f64 = 0.85;
 const WIDE: f64 = 1.2;
 
 /// The change of the road that an act asks for; `None` if only a new scene can have it.
-fn wish(what: &What) -> Option<RoadWish> {
+fn wish(what: &ActKind) -> Option<RoadWish> {
     let walk = LaneKind::Walk;
     Some(match what {
-        What::Lanes { n } => RoadWish::Lanes { count: *n },
-        What::OneWay => RoadWish::OneWay {},
-        What::Narrow => RoadWish::Widths { times: NARROW },
-        What::Wide => RoadWish::Widths { times: WIDE },
-        What::Has {
+        ActKind::Lanes { n } => RoadWish::Lanes { count: *n },
+        ActKind::OneWay => RoadWish::OneWay {},
+        ActKind::Narrow => RoadWish::Widths { times: NARROW },
+        ActKind::Wide => RoadWish::Widths { times: WIDE },
+        ActKind::Has {
             what: Feature::Sidewalk,
             ..
         } => RoadWish::Beside {
             kind: walk,
             right: None,
         },
-        What::Lacks {
+        ActKind::Lacks {
             what: Feature::Sidewalk,
         } => RoadWish::Without { kind: walk },
-        What::Road { what: Road::Straight } => RoadWish::Straight {},
-        What::Road {
+        ActKind::Road { what: Road::Straight } => RoadWish::Straight {},
+        ActKind::Road {
             what: Road::Roundabout,
         } => RoadWish::Roundabout {},
-        What::Road {
+        ActKind::Road {
             what: Road::Intersection,
         } => RoadWish::Junction {},
         _ => return None,
@@ -42,7 +42,7 @@ fn wish(what: &What) -> Option<RoadWish> {
 
 impl Stage<'_> {
     /// Changes the road as an act asks.
-    pub(super) fn change_road(&mut self, what: &What) {
+    pub(super) fn change_road(&mut self, what: &ActKind) {
         match wish(what) {
             Some(wish) => self.wish_of_road(wish),
             None => self.remark(Remark::NotInEdits { what: "the road" }),

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::super::describe::described;
 use super::super::notation::parse;
 use super::super::remark::Remark;
-use super::super::stage::{OpenScene, Outcome};
+use super::super::stage::{OpenScene, ReadingOutcome};
 use super::carry_out;
 use place::road;
 use place::rules::place_with;
@@ -32,7 +32,7 @@ impl Base {
         }
     }
 
-    fn edit(&self, line: &str) -> Outcome {
+    fn edit(&self, line: &str) -> ReadingOutcome {
         let scene = OpenScene {
             boxes: &self.boxes,
             layout: &self.layout,

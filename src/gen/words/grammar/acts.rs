@@ -4,7 +4,7 @@ use super::super::lexicon::{LONGEST_PHRASE, Lexicon};
 use super::super::mode::Mode;
 use super::super::nouns::Noun;
 use super::super::reading::{
-    Amount, Destination, Feature, Place, Quantity, Relation, Thing, Traits, Turn, Way, What,
+    ActKind, Amount, Destination, Feature, ObjectPhrase, PlacePhrase, Quantity, Relation, Traits, Turn, Way,
 };
 use super::Grammar;
 use super::things::state_of;
@@ -12,16 +12,16 @@ use place::description::{Density, Environment, Road};
 use scene::graph::ObjectState;
 use scene::{TimeOfDay, Weather};
 
-type Found = Option<(What, usize)>;
+type ParsedAct = Option<(ActKind, usize)>;
 
 impl Grammar<'_> {
     /// The act that begins at a token.
-    pub(super) fn act(&self, i: usize) -> Found {
+    pub(super) fn act(&self, i: usize) -> ParsedAct {
         if let Some(end) = self.after("rest", i) {
-            return Some((What::Leave { who: Vec::new() }, end));
+            return Some((ActKind::Leave { who: Vec::new() }, end));
         }
         let edit = self.mode == Mode::Edit;
-        let ways: [&dyn Fn() -> Found; 6] = [
+        let ways: [&dyn Fn() -> ParsedAct; 6] = [
             &|| self.none(i),
             &|| self.condition(i),
             &|| self.feature(i),
@@ -34,11 +34,11 @@ impl Grammar<'_> {
     }
 
     /// "No pedestrians", "nothing else".
-    fn none(&self, i: usize) -> Found {
+    fn none(&self, i: usize) -> ParsedAct {
         if let Some((what, end)) = self.symbol("alone", i) {
-            let mut t = Thing::new(Noun::of(what)?);
+            let mut t = ObjectPhrase::new(Noun::of(what)?);
             t.other = true;
-            return Some((What::No { who: vec![t] }, end));
+            return Some((ActKind::No { who: vec![t] }, end));
         }
         let end = self.after("none", i)?;
         let (mut who, end) = self.list(end, true)?;
@@ -48,11 +48,11 @@ impl Grammar<'_> {
             }
             t.quantity = Quantity::Unsaid;
         }
-        Some((What::No { who }, end))
+        Some((ActKind::No { who }, end))
     }
 
     /// Time, weather, road, surroundings, density.
-    fn condition(&self, i: usize) -> Found {
+    fn condition(&self, i: usize) -> ParsedAct {
         let mut at = i;
         while let Some(next) = self.after("article", at) {
             at = next;
@@ -68,21 +68,21 @@ impl Grammar<'_> {
             let what = senses.iter().find_map(|s| {
                 let named = |name: &str| name.replace('-', "_") == s.symbol;
                 Some(match s.kind {
-                    "time" => What::Time {
+                    "time" => ActKind::Time {
                         what: TimeOfDay::ALL.iter().copied().find(|x| named(x.name()))?,
                     },
-                    "weather" => What::Weather {
+                    "weather" => ActKind::Weather {
                         what: Weather::ALL.iter().copied().find(|x| named(x.name()))?,
                     },
-                    "road" if prompt => What::Road {
+                    "road" if prompt => ActKind::Road {
                         what: Road::ALL.iter().copied().find(|x| named(x.name()))?,
                     },
                     // (a car park as the kind of road, not as the place of something)
-                    "place" if prompt && s.symbol == "carpark" => What::Road { what: Road::Parking },
-                    "env" if prompt => What::Env {
+                    "place" if prompt && s.symbol == "carpark" => ActKind::Road { what: Road::Parking },
+                    "env" if prompt => ActKind::Env {
                         what: Environment::ALL.iter().copied().find(|x| named(x.name()))?,
                     },
-                    "density" if prompt => What::Density {
+                    "density" if prompt => ActKind::Density {
                         what: Density::ALL.iter().copied().find(|x| named(x.name()))?,
                     },
                     _ => return None,
@@ -94,7 +94,7 @@ impl Grammar<'_> {
     }
 
     /// "A zebra crossing 20 m ahead".
-    fn feature(&self, i: usize) -> Found {
+    fn feature(&self, i: usize) -> ParsedAct {
         let i = self.after("have", i).unwrap_or(i);
         let i = match self.symbol("verb", i) {
             Some(("add", end)) => end,
@@ -107,11 +107,11 @@ impl Grammar<'_> {
             places.push(place);
             end = next;
         }
-        Some((What::Has { what, places }, end))
+        Some((ActKind::Has { what, places }, end))
     }
 
     /// New things.
-    fn new_things(&self, i: usize) -> Found {
+    fn new_things(&self, i: usize) -> ParsedAct {
         let i = self.after("have", i).unwrap_or(i);
         let (mut things, end) = self.list(i, true)?;
         let prompt = self.mode == Mode::Prompt;
@@ -136,14 +136,14 @@ impl Grammar<'_> {
                 return None;
             }
         }
-        Some((What::Add { things }, end))
+        Some((ActKind::Add { things }, end))
     }
 
     /// A verb with its objects.
-    fn command(&self, i: usize) -> Found {
+    fn command(&self, i: usize) -> ParsedAct {
         let i = self.after("polite", i).unwrap_or(i);
         let all = self.table.all_at("verb", self.tokens, i);
-        let mut best: Found = None;
+        let mut best: ParsedAct = None;
         for (verb, end) in all {
             for found in self.verb(verb, end).into_iter().flatten() {
                 if best.as_ref().is_none_or(|b| found.1 > b.1) {
@@ -175,9 +175,9 @@ impl Grammar<'_> {
         best
     }
 
-    fn verb(&self, verb: &str, i: usize) -> Vec<Found> {
+    fn verb(&self, verb: &str, i: usize) -> Vec<ParsedAct> {
         let who = |places: bool| self.list(i, places);
-        let there = |list: &[Thing]| {
+        let there = |list: &[ObjectPhrase]| {
             list.iter().all(|t| {
                 t.quantity != Quantity::Unsaid && !matches!(t.quantity, Quantity::Some | Quantity::Many)
             })
@@ -187,12 +187,12 @@ impl Grammar<'_> {
             "remove" => vec![
                 who(true)
                     .filter(|w| there(&w.0))
-                    .map(|(who, end)| (What::Remove { who }, self.after("gone", end).unwrap_or(end))),
+                    .map(|(who, end)| (ActKind::Remove { who }, self.after("gone", end).unwrap_or(end))),
             ],
             "keep" => vec![
                 who(true)
                     .filter(|w| there(&w.0))
-                    .map(|(who, end)| (What::Keep { who }, end)),
+                    .map(|(who, end)| (ActKind::Keep { who }, end)),
             ],
             "leave" => vec![who(true).filter(|w| there(&w.0)).map(|(who, end)| {
                 let tail = [
@@ -204,7 +204,7 @@ impl Grammar<'_> {
                     "there",
                 ];
                 let end = tail.iter().find_map(|t| self.exactly(t, end)).unwrap_or(end);
-                (What::Leave { who }, end)
+                (ActKind::Leave { who }, end)
             })],
             "replace" => vec![self.replaced(i, true), self.replaced(i, false)],
             "move" => vec![self.moved(i, false), self.moved(i, true), self.taken(i)],
@@ -216,7 +216,7 @@ impl Grammar<'_> {
                     state: Some(ObjectState::Waiting),
                     ..Traits::default()
                 };
-                (What::Set { who, traits }, end)
+                (ActKind::Set { who, traits }, end)
             })],
             "swap" => vec![self.swapped(i)],
             "double" => vec![self.times(i, 2.0)],
@@ -234,13 +234,13 @@ impl Grammar<'_> {
     }
 
     /// "Take the bus away".
-    fn taken(&self, i: usize) -> Found {
+    fn taken(&self, i: usize) -> ParsedAct {
         let (who, end) = self.list(i, true)?;
         let end = self.after("gone", end)?;
-        Some((What::Remove { who }, end))
+        Some((ActKind::Remove { who }, end))
     }
 
-    fn replaced(&self, i: usize, places: bool) -> Found {
+    fn replaced(&self, i: usize, places: bool) -> ParsedAct {
         let (who, end) = self.list(i, places)?;
         let end = self.after("with", end)?;
         let (mut things, end) = self.list(end, false)?;
@@ -252,7 +252,7 @@ impl Grammar<'_> {
                 _ => return None,
             }
         }
-        Some((What::Replace { who, things }, end))
+        Some((ActKind::Replace { who, things }, end))
     }
 
     fn destination(&self, i: usize) -> Option<(Destination, usize)> {
@@ -291,7 +291,7 @@ impl Grammar<'_> {
         (!places.is_empty()).then_some((Destination::To(places), end))
     }
 
-    fn moved(&self, i: usize, places: bool) -> Found {
+    fn moved(&self, i: usize, places: bool) -> ParsedAct {
         let (who, end) = self.list(i, places)?;
         if !who.iter().all(|t| {
             t.quantity.is_definite()
@@ -301,10 +301,10 @@ impl Grammar<'_> {
             return None;
         }
         let (to, end) = self.destination(end)?;
-        Some((What::Move { who, to }, end))
+        Some((ActKind::Move { who, to }, end))
     }
 
-    fn turned(&self, i: usize, places: bool) -> Found {
+    fn turned(&self, i: usize, places: bool) -> ParsedAct {
         let (who, end) = self.list(i, places)?;
         if !who.iter().all(|t| t.quantity.is_definite() || t.noun == Noun::It) {
             return None;
@@ -316,7 +316,7 @@ impl Grammar<'_> {
             "right" => Turn::Left(-90.0),
             _ => Turn::Along,
         };
-        self.is_end(end).then_some((What::Turn { who, turn }, end))
+        self.is_end(end).then_some((ActKind::Turn { who, turn }, end))
     }
 
     fn traits(&self, i: usize) -> Option<(Traits, usize)> {
@@ -339,7 +339,7 @@ impl Grammar<'_> {
         ))
     }
 
-    fn painted(&self, i: usize, places: bool) -> Found {
+    fn painted(&self, i: usize, places: bool) -> ParsedAct {
         let (who, end) = self.list(i, places)?;
         if !who
             .iter()
@@ -349,15 +349,15 @@ impl Grammar<'_> {
         }
         let end = if self.word(end) == "in" { end + 1 } else { end };
         let (traits, end) = self.traits(end)?;
-        self.is_end(end).then_some((What::Set { who, traits }, end))
+        self.is_end(end).then_some((ActKind::Set { who, traits }, end))
     }
 
-    fn parked(&self, i: usize) -> Found {
+    fn parked(&self, i: usize) -> ParsedAct {
         let (who, end) = self.list(i, false)?;
         if who.iter().all(|t| t.quantity.is_definite() || t.noun == Noun::It) {
             if let Some((Destination::To(places), end)) = self.destination(end) {
                 return Some((
-                    What::Move {
+                    ActKind::Move {
                         who,
                         to: Destination::To(places),
                     },
@@ -368,45 +368,45 @@ impl Grammar<'_> {
                 state: Some(ObjectState::Parked),
                 ..Traits::default()
             };
-            return self.is_end(end).then_some((What::Set { who, traits }, end));
+            return self.is_end(end).then_some((ActKind::Set { who, traits }, end));
         }
         let (what, end) = self.new_things(i)?;
-        let What::Add { mut things } = what else {
+        let ActKind::Add { mut things } = what else {
             return None;
         };
         things
             .iter_mut()
             .for_each(|t| t.state = Some(ObjectState::Parked));
-        Some((What::Add { things }, end))
+        Some((ActKind::Add { things }, end))
     }
 
-    fn swapped(&self, i: usize) -> Found {
+    fn swapped(&self, i: usize) -> ParsedAct {
         let (one, end) = self.thing(i, false)?;
         let joint = matches!(self.word(end), "and" | "with").then_some(end + 1)?;
         let (other, end) = self.thing(joint, true)?;
-        let both = |t: &Thing| t.quantity == Quantity::The;
+        let both = |t: &ObjectPhrase| t.quantity == Quantity::The;
         if !(both(&one) && both(&other)) {
             return None;
         }
         let (one, other) = (Box::new(one), Box::new(other));
-        Some((What::Swap { one, other }, end))
+        Some((ActKind::Swap { one, other }, end))
     }
 
-    fn times(&self, i: usize, factor: f64) -> Found {
+    fn times(&self, i: usize, factor: f64) -> ParsedAct {
         let (mut t, end) = self.thing(i, true)?;
         t.quantity = Quantity::Unsaid;
         let amount = Amount::Times(factor);
-        Some((What::Count { who: vec![t], amount }, end))
+        Some((ActKind::Count { who: vec![t], amount }, end))
     }
 
     /// A statement about something that is there: "the bus is red", "the truck should be 20 m ahead".
-    fn statement(&self, i: usize) -> Found {
-        let mut best: Found = None;
+    fn statement(&self, i: usize) -> ParsedAct {
+        let mut best: ParsedAct = None;
         for places in [false, true] {
             let Some((who, end)) = self.list(i, places) else {
                 continue;
             };
-            let there = |t: &Thing| {
+            let there = |t: &ObjectPhrase| {
                 t.quantity.is_definite()
                     || matches!(t.noun, Noun::It | Noun::One)
                     || matches!(t.quantity, Quantity::N(_)) && self.word(i + 1) == "of"
@@ -423,20 +423,20 @@ impl Grammar<'_> {
         best
     }
 
-    fn said_of(&self, who: Vec<Thing>, end: usize) -> Vec<(What, usize)> {
+    fn said_of(&self, who: Vec<ObjectPhrase>, end: usize) -> Vec<(ActKind, usize)> {
         let mut out = Vec::new();
         let gone = self.after("goes", end).or(self.after("gone", end));
         if let Some(end) = gone.filter(|e| self.is_end(*e)) {
-            out.push((What::Remove { who: who.clone() }, end));
+            out.push((ActKind::Remove { who: who.clone() }, end));
         }
         if let Some(end) = self.after("stays", end).filter(|e| self.is_end(*e)) {
-            out.push((What::Leave { who: who.clone() }, end));
+            out.push((ActKind::Leave { who: who.clone() }, end));
         }
         let is = self.after("becomes", end);
         let at = is.unwrap_or(end);
         if let Some((traits, end)) = self.traits(at).filter(|(_, e)| self.is_end(*e)) {
             out.push((
-                What::Set {
+                ActKind::Set {
                     who: who.clone(),
                     traits,
                 },
@@ -460,7 +460,7 @@ impl Grammar<'_> {
                 } => Destination::To(vec![ego_side(Relation::Ahead)]),
                 to => to,
             };
-            out.push((What::Move { who: who.clone(), to }, end));
+            out.push((ActKind::Move { who: who.clone(), to }, end));
         }
         if is.is_some()
             && let Some((things, end)) = self.list(at, false).filter(|(_, e)| self.is_end(*e))
@@ -468,12 +468,12 @@ impl Grammar<'_> {
                 .iter()
                 .all(|t| matches!(t.quantity, Quantity::N(_)) && !t.other)
         {
-            out.push((What::Replace { who, things }, end));
+            out.push((ActKind::Replace { who, things }, end));
         }
         out
     }
 }
 
-fn ego_side(relation: Relation) -> Place {
+fn ego_side(relation: Relation) -> PlacePhrase {
     super::places::to_ego(relation)
 }

@@ -13,8 +13,8 @@ use std::cell::Cell;
 use super::mode::Mode;
 use super::reading::{Act, Reading};
 use super::tokens::Token;
-use place::beside_road::Span;
-use table::Table;
+use place::beside_road::TextSpan;
+use table::PhraseTable;
 
 /// Result of the grammar for a text.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,7 +22,7 @@ pub struct Plain {
     /// The acts, with their spans.
     pub reading: Reading,
     /// Words that were not read.
-    pub left_over: Vec<Span>,
+    pub left_over: Vec<TextSpan>,
 }
 
 impl Plain {
@@ -39,7 +39,7 @@ pub fn read(tokens: &[Token], mode: Mode) -> Plain {
     for sentence in tokens.split(ends).filter(|s| !s.is_empty()) {
         let g = Grammar {
             tokens: sentence,
-            table: Table::bundled(),
+            table: PhraseTable::bundled(),
             mode,
             deep: Cell::new(0),
         };
@@ -53,18 +53,18 @@ pub fn read(tokens: &[Token], mode: Mode) -> Plain {
 
 /// Number of tokens that name something which no act can add: "dog", "traffic light".
 pub fn cannot(tokens: &[Token]) -> Option<usize> {
-    Table::bundled().at("cannot", tokens, 0).map(|f| f.1)
+    PhraseTable::bundled().at("cannot", tokens, 0).map(|f| f.1)
 }
 
 /// True if a word stands in any phrase of the grammar.
 pub fn knows(word: &str) -> bool {
-    Table::bundled().has_word(word)
+    PhraseTable::bundled().has_word(word)
 }
 
 /// One sentence.
 struct Grammar<'t> {
     tokens: &'t [Token],
-    table: &'static Table,
+    table: &'static PhraseTable,
     mode: Mode,
     /// Depth of nested exceptions at the current place.
     deep: Cell<u8>,
@@ -98,9 +98,9 @@ impl Grammar<'_> {
         }
     }
 
-    fn span(&self, from: usize, to: usize) -> Option<Span> {
+    fn span(&self, from: usize, to: usize) -> Option<TextSpan> {
         let part = self.tokens.get(from..to)?;
-        part.iter().map(|t| t.span).reduce(Span::to)
+        part.iter().map(|t| t.span).reduce(TextSpan::to)
     }
 
     fn word(&self, i: usize) -> &str {

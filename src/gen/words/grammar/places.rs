@@ -3,22 +3,22 @@
 use super::super::lexicon::Lexicon;
 use super::super::notation::anchor_of;
 use super::super::reading::Quantity;
-use super::super::reading::{Anchor, Place, Relation};
+use super::super::reading::{AnchorPhrase, PlacePhrase, Relation};
 use super::Grammar;
 use scene::graph::LaneRole;
 
-pub(super) fn to_ego(relation: Relation) -> Place {
-    Place {
+pub(super) fn to_ego(relation: Relation) -> PlacePhrase {
+    PlacePhrase {
         relation,
-        to: Some(Anchor::Ego),
+        to: Some(AnchorPhrase::Ego),
         and: None,
         metres: None,
     }
 }
 
 /// A place that needs no anchor.
-pub(super) fn alone(relation: &str) -> Option<Place> {
-    Some(Place {
+pub(super) fn alone(relation: &str) -> Option<PlacePhrase> {
+    Some(PlacePhrase {
         relation: Relation::of(relation)?,
         to: None,
         and: None,
@@ -33,13 +33,13 @@ impl Grammar<'_> {
     }
 
     /// One place.
-    pub(super) fn place(&self, i: usize) -> Option<(Place, usize)> {
+    pub(super) fn place(&self, i: usize) -> Option<(PlacePhrase, usize)> {
         // "20 m ahead of the bus", "20 m away", "at 20 m"
         let at = self.after("at", i).filter(|e| self.metres(*e).is_some());
         if let Some((metres, end)) = self.metres(at.unwrap_or(i)) {
             if let Some((mut place, end)) = self.plain_place(end)
                 && place.metres.is_none()
-                && !matches!(place.to, Some(Anchor::Lane(_)))
+                && !matches!(place.to, Some(AnchorPhrase::Lane(_)))
             {
                 place.metres = Some(metres);
                 return Some((place, end));
@@ -53,7 +53,7 @@ impl Grammar<'_> {
                 None => return None,
             };
             return Some((
-                Place {
+                PlacePhrase {
                     metres: Some(metres),
                     ..to_ego(Relation::At)
                 },
@@ -65,7 +65,7 @@ impl Grammar<'_> {
         let far = self.after("at", end).unwrap_or(end);
         if let (true, Some((metres, after))) = (far > end, self.metres(far))
             && place.metres.is_none()
-            && !matches!(place.to, Some(Anchor::Lane(_)))
+            && !matches!(place.to, Some(AnchorPhrase::Lane(_)))
             && self.plain_place(after).is_none()
         {
             place.metres = Some(metres);
@@ -74,7 +74,7 @@ impl Grammar<'_> {
         Some((place, end))
     }
 
-    fn plain_place(&self, i: usize) -> Option<(Place, usize)> {
+    fn plain_place(&self, i: usize) -> Option<(PlacePhrase, usize)> {
         let by_relation = self
             .table
             .all_at("rel", self.tokens, i)
@@ -90,14 +90,14 @@ impl Grammar<'_> {
         }
     }
 
-    fn related(&self, name: &str, end: usize) -> Option<(Place, usize)> {
+    fn related(&self, name: &str, end: usize) -> Option<(PlacePhrase, usize)> {
         let (relation, crossing) = match name {
             "on_crossing" => (Relation::On, true),
             name => (Relation::of(name)?, false),
         };
         let place = |to, end| {
             Some((
-                Place {
+                PlacePhrase {
                     relation,
                     to: Some(to),
                     and: None,
@@ -112,10 +112,10 @@ impl Grammar<'_> {
         if let Some((lane, end)) = self.symbol("lane", end) {
             let anchor = anchor_of(lane)?;
             let fits = match &anchor {
-                Anchor::Crossing => {
+                AnchorPhrase::Crossing => {
                     return match relation {
                         Relation::On | Relation::Crossing => Some((
-                            Place {
+                            PlacePhrase {
                                 relation: Relation::On,
                                 to: Some(anchor),
                                 and: None,
@@ -126,8 +126,8 @@ impl Grammar<'_> {
                         _ => place(anchor, end),
                     };
                 }
-                Anchor::Junction => true,
-                Anchor::Lane(LaneRole::Road) => {
+                AnchorPhrase::Junction => true,
+                AnchorPhrase::Lane(LaneRole::Road) => {
                     matches!(relation, Relation::On | Relation::Crossing | Relation::Blocking)
                 }
                 _ => matches!(
@@ -150,28 +150,28 @@ impl Grammar<'_> {
             return None;
         }
         if let Some(end) = self.ego(end) {
-            return place(Anchor::Ego, end);
+            return place(AnchorPhrase::Ego, end);
         }
         if self.after("each_other", end).is_some()
             && matches!(relation, Relation::Facing | Relation::Near | Relation::NextTo)
         {
             let end = self.after("each_other", end)?;
-            return place(Anchor::EachOther, end);
+            return place(AnchorPhrase::EachOther, end);
         }
         let each = matches!(self.word(end), "each" | "every");
         let (mut t, end) = self.thing(end, false)?;
         if each && t.quantity == Quantity::All {
             t.quantity = Quantity::Each;
         }
-        place(Anchor::Thing(Box::new(t)), end)
+        place(AnchorPhrase::Thing(Box::new(t)), end)
     }
 
-    fn between(&self, i: usize) -> Option<(Place, usize)> {
+    fn between(&self, i: usize) -> Option<(PlacePhrase, usize)> {
         let one = |i: usize| match self.ego(i) {
-            Some(end) => Some((Anchor::Ego, end)),
+            Some(end) => Some((AnchorPhrase::Ego, end)),
             None => self
                 .thing(i, false)
-                .map(|(t, end)| (Anchor::Thing(Box::new(t)), end)),
+                .map(|(t, end)| (AnchorPhrase::Thing(Box::new(t)), end)),
         };
         let (first, end) = one(i)?;
         let second = if self.word(end) == "and" {
@@ -180,7 +180,7 @@ impl Grammar<'_> {
             None
         };
         let place = |to, and, end| {
-            let place = Place {
+            let place = PlacePhrase {
                 relation: Relation::Between,
                 to: Some(to),
                 and,
@@ -190,11 +190,11 @@ impl Grammar<'_> {
         };
         match (first, second) {
             (first, Some((second, end))) => place(first, Some(second), end),
-            (Anchor::Thing(t), None) => {
+            (AnchorPhrase::Thing(t), None) => {
                 let several = matches!(t.quantity, Quantity::TheN(n) | Quantity::N(n) if n > 1)
                     || t.quantity == Quantity::All;
                 if several {
-                    place(Anchor::Thing(t), None, end)
+                    place(AnchorPhrase::Thing(t), None, end)
                 } else {
                     None
                 }

@@ -9,13 +9,13 @@ use super::super::tokens::Token;
 const LONGEST: usize = 9;
 
 /// Phrases by kind.
-pub(super) struct Table {
+pub(super) struct PhraseTable {
     kinds: HashMap<&'static str, HashMap<&'static str, &'static str>>,
     /// Words of all phrases, except those for things that cannot be done.
     words: HashSet<&'static str>,
 }
 
-static TABLE: LazyLock<Table> = LazyLock::new(|| {
+static TABLE: LazyLock<PhraseTable> = LazyLock::new(|| {
     let mut kinds: HashMap<&str, HashMap<&str, &str>> = HashMap::new();
     let mut words = HashSet::new();
     let text = assets::words::GRAMMAR;
@@ -35,10 +35,10 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
             }
         }
     }
-    Table { kinds, words }
+    PhraseTable { kinds, words }
 });
 
-impl Table {
+impl PhraseTable {
     pub(super) fn bundled() -> &'static Self {
         &TABLE
     }

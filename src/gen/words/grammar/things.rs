@@ -2,14 +2,14 @@
 
 use super::super::lexicon::{LONGEST_PHRASE, Lexicon};
 use super::super::nouns::Noun;
-use super::super::reading::{PaintWish, Pick, Quantity, Thing};
+use super::super::reading::{ObjectPhrase, PaintWish, Pick, Quantity};
 use super::Grammar;
 use scene::Paint;
 use scene::graph::{ObjectState, SizeHint};
 
 impl Grammar<'_> {
     /// Things joined by "and".
-    pub(super) fn list(&self, mut i: usize, places: bool) -> Option<(Vec<Thing>, usize)> {
+    pub(super) fn list(&self, mut i: usize, places: bool) -> Option<(Vec<ObjectPhrase>, usize)> {
         let (first, end) = self.thing(i, places)?;
         let mut things = vec![first];
         i = end;
@@ -33,20 +33,20 @@ impl Grammar<'_> {
         }
     }
 
-    fn alike(&self, a: &Thing, b: &Thing) -> bool {
-        let there = |t: &Thing| t.quantity.is_definite() || t.noun == Noun::It || t.id.is_some();
+    fn alike(&self, a: &ObjectPhrase, b: &ObjectPhrase) -> bool {
+        let there = |t: &ObjectPhrase| t.quantity.is_definite() || t.noun == Noun::It || t.id.is_some();
         there(a) == there(b)
     }
 
     /// One noun phrase; with the parts after the noun, if `places`.
-    pub(super) fn thing(&self, i: usize, places: bool) -> Option<(Thing, usize)> {
+    pub(super) fn thing(&self, i: usize, places: bool) -> Option<(ObjectPhrase, usize)> {
         if let Some(end) = self.after("it", i) {
             let many = matches!(self.word(i), "them" | "they" | "those" | "these");
             let quantity = if many { Quantity::All } else { Quantity::The };
-            return Some((Thing::new(Noun::It).with(quantity), end));
+            return Some((ObjectPhrase::new(Noun::It).with(quantity), end));
         }
         if let ("#", Some(n)) = (self.word(i), self.tokens.get(i + 1).and_then(|t| t.value)) {
-            let mut t = Thing::new(Noun::Thing).with(Quantity::The);
+            let mut t = ObjectPhrase::new(Noun::Thing).with(Quantity::The);
             t.id = Some(n as u32);
             return Some((t, i + 2));
         }
@@ -73,8 +73,8 @@ impl Grammar<'_> {
         Some((t, i))
     }
 
-    fn before_noun(&self, mut i: usize) -> Option<(Thing, usize)> {
-        let mut t = Thing::new(Noun::Thing);
+    fn before_noun(&self, mut i: usize) -> Option<(ObjectPhrase, usize)> {
+        let mut t = ObjectPhrase::new(Noun::Thing);
         let number = |i: usize| {
             let token = self.tokens.get(i)?;
             let v = token.value.filter(|v| {
@@ -182,7 +182,7 @@ impl Grammar<'_> {
     }
 
     /// The noun at a token, whether it is a plural, and the token after it.
-    fn noun(&self, i: usize, t: &Thing) -> Option<(Noun, bool, usize)> {
+    fn noun(&self, i: usize, t: &ObjectPhrase) -> Option<(Noun, bool, usize)> {
         let most = LONGEST_PHRASE.min(self.tokens.len().saturating_sub(i));
         let found = (1..=most).rev().find_map(|n| {
             let words: Vec<&str> = self.tokens[i..i + n].iter().map(|t| t.text.as_str()).collect();
@@ -203,7 +203,7 @@ impl Grammar<'_> {
     }
 
     /// States, places and exceptions behind the noun.
-    fn after_noun(&self, t: &mut Thing, mut i: usize) -> usize {
+    fn after_noun(&self, t: &mut ObjectPhrase, mut i: usize) -> usize {
         loop {
             let linked = self.after("link", i).unwrap_or(i);
             if let Some((state, end)) = self.symbol("state", linked).filter(|_| t.state.is_none())

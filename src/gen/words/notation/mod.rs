@@ -9,33 +9,33 @@ mod write;
 pub use parse::{LONGEST, NotationError, Prefix, parse, prefix};
 pub use write::{thing, write};
 
-use super::reading::Anchor;
+use super::reading::AnchorPhrase;
 use scene::Paint;
 use scene::clip::Pace;
 use scene::graph::{LaneRole, ObjectState, SizeHint};
 
-const ANCHORS: [(&str, Anchor); 17] = [
-    ("ego", Anchor::Ego),
-    ("crossing", Anchor::Crossing),
-    ("junction", Anchor::Junction),
-    ("ego_lane", Anchor::Lane(LaneRole::Ego)),
-    ("left_lane", Anchor::Lane(LaneRole::Left)),
-    ("right_lane", Anchor::Lane(LaneRole::Right)),
-    ("oncoming_lane", Anchor::Lane(LaneRole::Oncoming)),
-    ("cross_street", Anchor::Lane(LaneRole::Cross)),
-    ("road", Anchor::Lane(LaneRole::Road)),
-    ("roadside", Anchor::Lane(LaneRole::Roadside)),
-    ("left_roadside", Anchor::Lane(LaneRole::LeftRoadside)),
-    ("right_roadside", Anchor::Lane(LaneRole::RightRoadside)),
-    ("sidewalk", Anchor::Lane(LaneRole::Sidewalk)),
-    ("left_sidewalk", Anchor::Lane(LaneRole::LeftSidewalk)),
-    ("right_sidewalk", Anchor::Lane(LaneRole::RightSidewalk)),
-    ("carpark", Anchor::Lane(LaneRole::Carpark)),
-    ("other_side", Anchor::OtherSide),
+const ANCHORS: [(&str, AnchorPhrase); 17] = [
+    ("ego", AnchorPhrase::Ego),
+    ("crossing", AnchorPhrase::Crossing),
+    ("junction", AnchorPhrase::Junction),
+    ("ego_lane", AnchorPhrase::Lane(LaneRole::Ego)),
+    ("left_lane", AnchorPhrase::Lane(LaneRole::Left)),
+    ("right_lane", AnchorPhrase::Lane(LaneRole::Right)),
+    ("oncoming_lane", AnchorPhrase::Lane(LaneRole::Oncoming)),
+    ("cross_street", AnchorPhrase::Lane(LaneRole::Cross)),
+    ("road", AnchorPhrase::Lane(LaneRole::Road)),
+    ("roadside", AnchorPhrase::Lane(LaneRole::Roadside)),
+    ("left_roadside", AnchorPhrase::Lane(LaneRole::LeftRoadside)),
+    ("right_roadside", AnchorPhrase::Lane(LaneRole::RightRoadside)),
+    ("sidewalk", AnchorPhrase::Lane(LaneRole::Sidewalk)),
+    ("left_sidewalk", AnchorPhrase::Lane(LaneRole::LeftSidewalk)),
+    ("right_sidewalk", AnchorPhrase::Lane(LaneRole::RightSidewalk)),
+    ("carpark", AnchorPhrase::Lane(LaneRole::Carpark)),
+    ("other_side", AnchorPhrase::OtherSide),
 ];
-const MORE_ANCHORS: [(&str, Anchor); 2] = [
-    ("other_lane", Anchor::OtherLane),
-    ("each_other", Anchor::EachOther),
+const MORE_ANCHORS: [(&str, AnchorPhrase); 2] = [
+    ("other_lane", AnchorPhrase::OtherLane),
+    ("each_other", AnchorPhrase::EachOther),
 ];
 const STATES: [(&str, ObjectState); 3] = [
     ("moving", ObjectState::Moving),
@@ -45,7 +45,7 @@ const STATES: [(&str, ObjectState); 3] = [
 const PACES: [(&str, Pace); 2] = [("fast", Pace::Fast), ("slow", Pace::Slow)];
 const SIZES: [(&str, SizeHint); 2] = [("small", SizeHint::Small), ("large", SizeHint::Large)];
 
-fn anchors() -> impl Iterator<Item = (&'static str, Anchor)> {
+fn anchors() -> impl Iterator<Item = (&'static str, AnchorPhrase)> {
     ANCHORS.into_iter().chain(MORE_ANCHORS)
 }
 
@@ -59,6 +59,6 @@ fn plain(name: &str) -> String {
 }
 
 /// The anchor of a name.
-pub(super) fn anchor_of(name: &str) -> Option<Anchor> {
+pub(super) fn anchor_of(name: &str) -> Option<AnchorPhrase> {
     anchors().find(|a| a.0 == name).map(|a| a.1)
 }

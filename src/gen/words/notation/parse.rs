@@ -2,8 +2,8 @@
 
 use super::super::nouns::Noun;
 use super::super::reading::{
-    Amount, Anchor, Destination, Feature, LaneSide, PaintWish, Pick, Place, Quantity, Reading, Relation,
-    Thing, Traits, Turn, Way, What,
+    ActKind, Amount, AnchorPhrase, Destination, Feature, LaneSide, ObjectPhrase, PaintWish, Pick,
+    PlacePhrase, Quantity, Reading, Relation, Traits, Turn, Way,
 };
 use super::{PACES, SIZES, STATES, anchors, paint, plain};
 use place::description::{Density, Environment, Road};
@@ -154,7 +154,7 @@ impl<'t> Parser<'t> {
         self.maybe(|t| measure(t, "m"))
     }
 
-    fn list(&mut self) -> Parsed<Vec<Thing>> {
+    fn list(&mut self) -> Parsed<Vec<ObjectPhrase>> {
         let mut things = vec![self.thing()?];
         while self.takes("and") {
             things.push(self.thing()?);
@@ -162,47 +162,47 @@ impl<'t> Parser<'t> {
         Ok(things)
     }
 
-    fn act(&mut self) -> Parsed<What> {
+    fn act(&mut self) -> Parsed<ActKind> {
         let verb = self.peek();
         self.at += 1;
         Ok(match verb {
-            "add" => What::Add { things: self.list()? },
-            "no" => What::No { who: self.list()? },
-            "remove" => What::Remove { who: self.list()? },
-            "keep" => What::Keep { who: self.list()? },
-            "leave" if self.takes("rest") => What::Leave { who: Vec::new() },
-            "leave" => What::Leave { who: self.list()? },
+            "add" => ActKind::Add { things: self.list()? },
+            "no" => ActKind::No { who: self.list()? },
+            "remove" => ActKind::Remove { who: self.list()? },
+            "keep" => ActKind::Keep { who: self.list()? },
+            "leave" if self.takes("rest") => ActKind::Leave { who: Vec::new() },
+            "leave" => ActKind::Leave { who: self.list()? },
             "replace" => {
                 let who = self.list()?;
                 self.expect("with")?;
                 let things = self.list()?;
-                What::Replace { who, things }
+                ActKind::Replace { who, things }
             }
             "swap" => {
                 let one = Box::new(self.thing()?);
                 self.expect("and")?;
                 let other = Box::new(self.thing()?);
-                What::Swap { one, other }
+                ActKind::Swap { one, other }
             }
             "move" => {
                 let who = self.list()?;
                 let to = self.destination()?;
-                What::Move { who, to }
+                ActKind::Move { who, to }
             }
             "turn" => {
                 let who = self.list()?;
                 let turn = self.turn()?;
-                What::Turn { who, turn }
+                ActKind::Turn { who, turn }
             }
             "set" => {
                 let who = self.list()?;
                 let traits = self.traits()?;
-                What::Set { who, traits }
+                ActKind::Set { who, traits }
             }
             "count" => {
                 let who = self.list()?;
                 let amount = self.count()?;
-                What::Count { who, amount }
+                ActKind::Count { who, amount }
             }
             "go" => {
                 let who = if self.takes("ego") {
@@ -211,48 +211,48 @@ impl<'t> Parser<'t> {
                     self.list()?
                 };
                 let how = self.manoeuvre()?;
-                What::Go { who, how }
+                ActKind::Go { who, how }
             }
-            "length" => What::Length {
+            "length" => ActKind::Length {
                 seconds: self.must("seconds", |t| measure(t, "s"))?,
             },
-            "time" => What::Time {
+            "time" => ActKind::Time {
                 what: self.must("a time of day", |t| {
                     TimeOfDay::ALL.iter().copied().find(|x| x.name() == t)
                 })?,
             },
-            "weather" => What::Weather {
+            "weather" => ActKind::Weather {
                 what: self.must("a weather", |t| {
                     Weather::ALL.iter().copied().find(|x| x.name() == t)
                 })?,
             },
-            "road" => What::Road {
+            "road" => ActKind::Road {
                 what: self.must("a kind of road", |t| {
                     Road::ALL.iter().copied().find(|x| plain(x.name()) == t)
                 })?,
             },
-            "env" => What::Env {
+            "env" => ActKind::Env {
                 what: self.must("surroundings", |t| {
                     Environment::ALL.iter().copied().find(|x| x.name() == t)
                 })?,
             },
-            "density" => What::Density {
+            "density" => ActKind::Density {
                 what: self.must("a density", |t| {
                     Density::ALL.iter().copied().find(|x| x.name() == t)
                 })?,
             },
-            "has" => What::Has {
+            "has" => ActKind::Has {
                 what: self.must("crossing or sidewalk", Feature::of)?,
                 places: self.places()?,
             },
-            "lacks" => What::Lacks {
+            "lacks" => ActKind::Lacks {
                 what: self.must("crossing or sidewalk", Feature::of)?,
             },
-            "lanes" => What::Lanes { n: self.whole()? },
-            "one_way" => What::OneWay,
-            "narrow" => What::Narrow,
-            "wide" => What::Wide,
-            "own_lane" => What::OwnLane {
+            "lanes" => ActKind::Lanes { n: self.whole()? },
+            "one_way" => ActKind::OneWay,
+            "narrow" => ActKind::Narrow,
+            "wide" => ActKind::Wide,
+            "own_lane" => ActKind::OwnLane {
                 what: self.must("left, right or middle", LaneSide::of)?,
             },
             _ => {
@@ -353,7 +353,7 @@ impl<'t> Parser<'t> {
         Ok(Amount::To(least, most.max(least)))
     }
 
-    fn thing(&mut self) -> Parsed<Thing> {
+    fn thing(&mut self) -> Parsed<ObjectPhrase> {
         if self.deep >= DEEPEST {
             return self.wrong("no deeper nesting");
         }
@@ -363,8 +363,8 @@ impl<'t> Parser<'t> {
         thing
     }
 
-    fn thing_within(&mut self) -> Parsed<Thing> {
-        let mut t = Thing::new(Noun::Thing);
+    fn thing_within(&mut self) -> Parsed<ObjectPhrase> {
+        let mut t = ObjectPhrase::new(Noun::Thing);
         let the = self.takes("the");
         t.quantity = match self.peek() {
             "all" => Quantity::All,
@@ -412,7 +412,7 @@ impl<'t> Parser<'t> {
         Ok(t)
     }
 
-    fn places(&mut self) -> Parsed<Vec<Place>> {
+    fn places(&mut self) -> Parsed<Vec<PlacePhrase>> {
         let mut places = Vec::new();
         while self.peek() == "(" {
             places.push(self.place()?);
@@ -420,17 +420,17 @@ impl<'t> Parser<'t> {
         Ok(places)
     }
 
-    fn anchor(&mut self) -> Parsed<Anchor> {
+    fn anchor(&mut self) -> Parsed<AnchorPhrase> {
         match self.maybe(|t| anchors().find(|(name, _)| *name == t)) {
             Some((_, anchor)) => Ok(anchor),
-            None => Ok(Anchor::Thing(Box::new(self.thing()?))),
+            None => Ok(AnchorPhrase::Thing(Box::new(self.thing()?))),
         }
     }
 
-    fn place(&mut self) -> Parsed<Place> {
+    fn place(&mut self) -> Parsed<PlacePhrase> {
         self.expect("(")?;
         let relation = self.must("a relation", Relation::of)?;
-        let mut place = Place {
+        let mut place = PlacePhrase {
             relation,
             to: None,
             and: None,

@@ -1,7 +1,8 @@
 //! Values to notation.
 
 use super::super::reading::{
-    Amount, Anchor, Destination, PaintWish, Place, Quantity, Reading, Thing, Traits, Turn, What,
+    ActKind, Amount, AnchorPhrase, Destination, ObjectPhrase, PaintWish, PlacePhrase, Quantity, Reading,
+    Traits, Turn,
 };
 use super::{PACES, SIZES, STATES, anchors, plain};
 use scene::clip::Manoeuvre;
@@ -13,40 +14,40 @@ pub fn write(reading: &Reading) -> String {
     acts.join(" ; ")
 }
 
-fn act(what: &What) -> String {
+fn act(what: &ActKind) -> String {
     match what {
-        What::Add { things } => format!("add {}", list(things)),
-        What::No { who } => format!("no {}", list(who)),
-        What::Remove { who } => format!("remove {}", list(who)),
-        What::Keep { who } => format!("keep {}", list(who)),
-        What::Leave { who } if who.is_empty() => "leave rest".into(),
-        What::Leave { who } => format!("leave {}", list(who)),
-        What::Replace { who, things } => format!("replace {} with {}", list(who), list(things)),
-        What::Move { who, to } => format!("move {} {}", list(who), destination(to)),
-        What::Turn { who, turn } => format!("turn {} {}", list(who), turned(turn)),
-        What::Set { who, traits } => format!("set {} {}", list(who), traits_in_words(traits)),
-        What::Count { who, amount } => format!("count {} {}", list(who), count(*amount)),
-        What::Swap { one, other } => format!("swap {} and {}", thing(one), thing(other)),
-        What::Go { who, how } if who.is_empty() => format!("go ego {}", manoeuvre(how)),
-        What::Go { who, how } => format!("go {} {}", list(who), manoeuvre(how)),
-        What::Length { seconds } => format!("length {seconds}s"),
-        What::Time { what } => format!("time {}", what.name()),
-        What::Weather { what } => format!("weather {}", what.name()),
-        What::Road { what } => format!("road {}", plain(what.name())),
-        What::Env { what } => format!("env {}", what.name()),
-        What::Density { what } => format!("density {}", what.name()),
-        What::Has { what, places: at } if at.is_empty() => format!("has {}", what.name()),
-        What::Has { what, places: at } => format!("has {} {}", what.name(), places(at)),
-        What::Lacks { what } => format!("lacks {}", what.name()),
-        What::Lanes { n } => format!("lanes {n}"),
-        What::OneWay => "one_way".into(),
-        What::Narrow => "narrow".into(),
-        What::Wide => "wide".into(),
-        What::OwnLane { what } => format!("own_lane {}", what.name()),
+        ActKind::Add { things } => format!("add {}", list(things)),
+        ActKind::No { who } => format!("no {}", list(who)),
+        ActKind::Remove { who } => format!("remove {}", list(who)),
+        ActKind::Keep { who } => format!("keep {}", list(who)),
+        ActKind::Leave { who } if who.is_empty() => "leave rest".into(),
+        ActKind::Leave { who } => format!("leave {}", list(who)),
+        ActKind::Replace { who, things } => format!("replace {} with {}", list(who), list(things)),
+        ActKind::Move { who, to } => format!("move {} {}", list(who), destination(to)),
+        ActKind::Turn { who, turn } => format!("turn {} {}", list(who), turned(turn)),
+        ActKind::Set { who, traits } => format!("set {} {}", list(who), traits_in_words(traits)),
+        ActKind::Count { who, amount } => format!("count {} {}", list(who), count(*amount)),
+        ActKind::Swap { one, other } => format!("swap {} and {}", thing(one), thing(other)),
+        ActKind::Go { who, how } if who.is_empty() => format!("go ego {}", manoeuvre(how)),
+        ActKind::Go { who, how } => format!("go {} {}", list(who), manoeuvre(how)),
+        ActKind::Length { seconds } => format!("length {seconds}s"),
+        ActKind::Time { what } => format!("time {}", what.name()),
+        ActKind::Weather { what } => format!("weather {}", what.name()),
+        ActKind::Road { what } => format!("road {}", plain(what.name())),
+        ActKind::Env { what } => format!("env {}", what.name()),
+        ActKind::Density { what } => format!("density {}", what.name()),
+        ActKind::Has { what, places: at } if at.is_empty() => format!("has {}", what.name()),
+        ActKind::Has { what, places: at } => format!("has {} {}", what.name(), places(at)),
+        ActKind::Lacks { what } => format!("lacks {}", what.name()),
+        ActKind::Lanes { n } => format!("lanes {n}"),
+        ActKind::OneWay => "one_way".into(),
+        ActKind::Narrow => "narrow".into(),
+        ActKind::Wide => "wide".into(),
+        ActKind::OwnLane { what } => format!("own_lane {}", what.name()),
     }
 }
 
-fn list(things: &[Thing]) -> String {
+fn list(things: &[ObjectPhrase]) -> String {
     let things: Vec<String> = things.iter().map(thing).collect();
     things.join(" and ")
 }
@@ -120,7 +121,7 @@ fn count(amount: Amount) -> String {
 }
 
 /// A thing in notation.
-pub fn thing(t: &Thing) -> String {
+pub fn thing(t: &ObjectPhrase) -> String {
     let mut out: Vec<String> = Vec::new();
     let (before, after): (Vec<String>, Vec<String>) = match t.quantity {
         Quantity::Unsaid => (vec![], vec![]),
@@ -156,12 +157,12 @@ pub fn thing(t: &Thing) -> String {
     out.join(" ")
 }
 
-fn places(at: &[Place]) -> String {
+fn places(at: &[PlacePhrase]) -> String {
     let at: Vec<String> = at.iter().map(place).collect();
     at.join(" ")
 }
 
-fn place(p: &Place) -> String {
+fn place(p: &PlacePhrase) -> String {
     let mut out = vec!["(".to_string(), p.relation.name().into()];
     out.extend(p.to.as_ref().map(anchor));
     if let Some(second) = &p.and {
@@ -173,9 +174,9 @@ fn place(p: &Place) -> String {
     out.join(" ")
 }
 
-fn anchor(a: &Anchor) -> String {
+fn anchor(a: &AnchorPhrase) -> String {
     match a {
-        Anchor::Thing(t) => thing(t),
+        AnchorPhrase::Thing(t) => thing(t),
         other => anchors()
             .find(|(_, x)| x == other)
             .map_or("ego", |(name, _)| name)

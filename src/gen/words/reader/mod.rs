@@ -14,9 +14,9 @@ pub use super::mode::Mode;
 use super::notation;
 use super::reading::Reading;
 use super::tokens::{Speller, Token, tokens};
-use net::{Memory, Net, NetConfig, State};
+use net::{DecoderState, EncodedText, Net, NetConfig};
 use nn::weights::{WeightFile, WeightsError};
-use place::beside_road::Span;
+use place::beside_road::TextSpan;
 use symbols::{Input, Symbols};
 
 /// File name of the weights.
@@ -27,7 +27,7 @@ pub const MOST_PARTS: usize = 6;
 
 /// Output of the network for a text.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Said {
+pub struct ReaderOutput {
     /// The reading; its acts have spans and confidences.
     pub reading: Reading,
     /// Its tokens.
@@ -93,11 +93,11 @@ impl LearnedReader {
     }
 
     /// Reads a text: as a whole if it is short, else sentence by sentence, at most [`MOST_PARTS`] of them.
-    pub fn read(&self, text: &str, mode: Mode) -> Said {
+    pub fn read(&self, text: &str, mode: Mode) -> ReaderOutput {
         let mut all = tokens(text, Some(&self.speller));
         let ends = parts(&all);
         let read_to = ends.last().copied().unwrap_or(0);
-        let mut out = Said::default();
+        let mut out = ReaderOutput::default();
         let mut from = 0;
         for end in ends {
             let part = &all[from..end];
@@ -152,7 +152,14 @@ impl LearnedReader {
     }
 
     /// Completes a line greedily; only symbols that continue a valid reading are taken.
-    fn go_on(&self, spoken: &mut Spoken, state: &mut State, memory: &Memory, input: &Input, all: &[Token]) {
+    fn go_on(
+        &self,
+        spoken: &mut Spoken,
+        state: &mut DecoderState,
+        memory: &EncodedText,
+        input: &Input,
+        all: &[Token],
+    ) {
         let mut said = spoken.symbols();
         while said.len() < symbols::MOST_SYMBOLS {
             let line = self.symbols.line(&said, all);
@@ -198,7 +205,7 @@ impl LearnedReader {
         for (act, said) in reading.acts.iter_mut().zip(acts) {
             act.confidence = said.iter().fold(1.0, |least: f64, s| least.min(s.p)).max(0.0);
             let spans = said.iter().filter_map(|s| all.get(s.looked_at?)).map(|t| t.span);
-            act.span = spans.reduce(Span::to);
+            act.span = spans.reduce(TextSpan::to);
         }
         reading
     }

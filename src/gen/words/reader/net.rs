@@ -114,7 +114,7 @@ impl Attention {
     }
 }
 
-struct Layer {
+struct ReaderLayer {
     norm: Norm,
     attention: Attention,
     cross: Option<(Norm, Attention)>,
@@ -123,7 +123,7 @@ struct Layer {
     down: Linear,
 }
 
-impl Layer {
+impl ReaderLayer {
     fn new(w: &mut WeightFile<'_>, name: &str, c: &NetConfig, cross: bool) -> Result<Self, WeightsError> {
         let n = |part: &str| format!("{name}.{part}");
         Ok(Self {
@@ -159,7 +159,7 @@ impl Layer {
 }
 
 /// The encoded text, which the decoder attends to.
-pub(super) struct Memory {
+pub(super) struct EncodedText {
     rows: Vec<f32>,
     #[cfg(test)]
     places: usize,
@@ -168,7 +168,7 @@ pub(super) struct Memory {
 }
 
 #[cfg(test)]
-impl Memory {
+impl EncodedText {
     /// The first number of every row.
     pub(super) fn first_numbers(&self) -> impl Iterator<Item = f32> {
         let width = self.rows.len() / self.places;
@@ -178,13 +178,13 @@ impl Memory {
 
 /// State of the decoder after the symbols so far.
 #[derive(Clone)]
-pub(super) struct State {
+pub(super) struct DecoderState {
     keys: Vec<Vec<f32>>,
     values: Vec<Vec<f32>>,
     at: usize,
 }
 
-impl State {
+impl DecoderState {
     /// Goes back to the state after `said` symbols, to continue differently.
     pub(super) fn back_to(&mut self, said: usize, net: &Net) {
         let most = said * net.c.width;
@@ -204,10 +204,10 @@ pub(super) struct Net {
     sense: Vec<f32>,
     value: Vec<f32>,
     pointer: Vec<f32>,
-    encoder: Vec<Layer>,
+    encoder: Vec<ReaderLayer>,
     encoder_norm: Norm,
     symbol: Vec<f32>,
-    decoder: Vec<Layer>,
+    decoder: Vec<ReaderLayer>,
     decoder_norm: Norm,
     say: Linear,
     copy_sense: Linear,
@@ -219,12 +219,15 @@ impl Net {
     pub(super) fn new(w: &mut WeightFile<'_>, c: NetConfig) -> Result<Self, WeightsError> {
         let names: Vec<String> = w.config("symbols")?;
         let (width, symbols) = (c.width, names.len());
-        let layers =
-            |w: &mut WeightFile<'_>, part: &str, n: usize, cross: bool| -> Result<Vec<Layer>, WeightsError> {
-                (0..n)
-                    .map(|i| Layer::new(w, &format!("{part}.{i}"), &c, cross))
-                    .collect()
-            };
+        let layers = |w: &mut WeightFile<'_>,
+                      part: &str,
+                      n: usize,
+                      cross: bool|
+         -> Result<Vec<ReaderLayer>, WeightsError> {
+            (0..n)
+                .map(|i| ReaderLayer::new(w, &format!("{part}.{i}"), &c, cross))
+                .collect()
+        };
         Ok(Self {
             word: w.take("word.weight", &[c.words, width])?,
             gram: w.take("gram.weight", &[GRAMS, width])?,
@@ -264,7 +267,7 @@ impl Net {
         out
     }
 
-    pub(super) fn encode(&self, input: &Input) -> Memory {
+    pub(super) fn encode(&self, input: &Input) -> EncodedText {
         let width = self.c.width;
         let mut x = self.embed(input);
         let mut y = vec![0.0; x.len()];
@@ -293,7 +296,7 @@ impl Net {
                 .collect()
         };
         let (keys, values) = (of(|a| &a.k), of(|a| &a.v));
-        Memory {
+        EncodedText {
             #[cfg(test)]
             places: input.words.len(),
             rows,
@@ -302,8 +305,8 @@ impl Net {
         }
     }
 
-    pub(super) fn begin(&self) -> State {
-        State {
+    pub(super) fn begin(&self) -> DecoderState {
+        DecoderState {
             keys: vec![Vec::new(); self.decoder.len()],
             values: vec![Vec::new(); self.decoder.len()],
             at: 0,
@@ -313,8 +316,8 @@ impl Net {
     /// Probabilities of the symbols after `last` (`None`: of the first symbol), and the attention on each token.
     pub(super) fn next(
         &self,
-        state: &mut State,
-        memory: &Memory,
+        state: &mut DecoderState,
+        memory: &EncodedText,
         last: Option<usize>,
         input: &Input,
     ) -> (Vec<f32>, Vec<f32>) {

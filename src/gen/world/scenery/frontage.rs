@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::setting::{Setting, Side};
-use super::site::Site;
+use super::setting::{RoadsideKind, RoadsideStyle};
+use super::site::ScenerySite;
 use super::walk;
 use scene::Form;
 use scene::background::{Building, Facade, Roof, STOREY_M};
@@ -26,7 +26,7 @@ struct Lots {
     behind: f64,
 }
 
-fn lots(setting: Setting) -> Option<Lots> {
+fn lots(setting: RoadsideKind) -> Option<Lots> {
     let lots = |setback, width, depth, gap, storeys, share, pitched, facades, behind| Lots {
         setback,
         width,
@@ -39,7 +39,7 @@ fn lots(setting: Setting) -> Option<Lots> {
         behind,
     };
     Some(match setting {
-        Setting::OldTown => lots(
+        RoadsideKind::OldTown => lots(
             [0.3, 0.9],
             [6.0, 13.0],
             [9.0, 13.0],
@@ -50,7 +50,7 @@ fn lots(setting: Setting) -> Option<Lots> {
             [0.6, 0.08, 0.2, 0.12, 0.0],
             0.5,
         ),
-        Setting::City => lots(
+        RoadsideKind::City => lots(
             [0.5, 4.0],
             [14.0, 32.0],
             [11.0, 16.0],
@@ -61,7 +61,7 @@ fn lots(setting: Setting) -> Option<Lots> {
             [0.3, 0.35, 0.1, 0.1, 0.15],
             0.5,
         ),
-        Setting::Suburb => lots(
+        RoadsideKind::Suburb => lots(
             [3.5, 7.0],
             [9.0, 14.0],
             [8.0, 11.0],
@@ -72,7 +72,7 @@ fn lots(setting: Setting) -> Option<Lots> {
             [0.8, 0.1, 0.1, 0.0, 0.0],
             0.4,
         ),
-        Setting::Industry => lots(
+        RoadsideKind::Industry => lots(
             [4.0, 11.0],
             [18.0, 42.0],
             [16.0, 26.0],
@@ -83,7 +83,7 @@ fn lots(setting: Setting) -> Option<Lots> {
             [0.9, 0.0, 0.0, 0.0, 0.1],
             0.3,
         ),
-        Setting::Retail => lots(
+        RoadsideKind::Retail => lots(
             [3.0, 8.0],
             [22.0, 46.0],
             [16.0, 24.0],
@@ -94,7 +94,7 @@ fn lots(setting: Setting) -> Option<Lots> {
             [0.5, 0.0, 0.0, 0.2, 0.3],
             0.0,
         ),
-        Setting::Country => lots(
+        RoadsideKind::Country => lots(
             [7.0, 16.0],
             [9.0, 22.0],
             [8.0, 12.0],
@@ -105,7 +105,7 @@ fn lots(setting: Setting) -> Option<Lots> {
             [1.0, 0.0, 0.0, 0.0, 0.0],
             0.1,
         ),
-        Setting::Park => lots(
+        RoadsideKind::Park => lots(
             [8.0, 14.0],
             [7.0, 14.0],
             [6.0, 9.0],
@@ -116,17 +116,17 @@ fn lots(setting: Setting) -> Option<Lots> {
             [0.7, 0.0, 0.0, 0.3, 0.0],
             0.0,
         ),
-        Setting::Forest | Setting::Motorway => return None,
+        RoadsideKind::Forest | RoadsideKind::Motorway => return None,
     })
 }
 
 /// Puts buildings along every road.
-pub(super) fn buildings(site: &mut Site<'_>) {
+pub(super) fn buildings(site: &mut ScenerySite<'_>) {
     let mut draw = Draw::new(site.seed, "buildings");
     // The setback is the same on both sides where their settings are alike, so that one line serves both.
     let setback = draw.unit();
     for row in 0..2 {
-        for setting in Setting::ALL {
+        for setting in RoadsideKind::ALL {
             let Some(lots) = lots(setting) else { continue };
             let mut distance = lots.setback[0] + setback * (lots.setback[1] - lots.setback[0]);
             if row == 1 {
@@ -146,7 +146,14 @@ pub(super) fn buildings(site: &mut Site<'_>) {
 }
 
 /// Lots from one end of a line to the other.
-fn line_up(site: &mut Site<'_>, line: &[DVec2], lots: &Lots, setting: Setting, row: usize, draw: &mut Draw) {
+fn line_up(
+    site: &mut ScenerySite<'_>,
+    line: &[DVec2],
+    lots: &Lots,
+    setting: RoadsideKind,
+    row: usize,
+    draw: &mut Draw,
+) {
     let total = walk::length_m(line);
     // Lots of one street have an eaves height in common, more or less.
     let usual = lots.storeys[0] + draw.below((lots.storeys[1] - lots.storeys[0] + 1) as usize) as u32;
@@ -189,12 +196,12 @@ fn line_up(site: &mut Site<'_>, line: &[DVec2], lots: &Lots, setting: Setting, r
 /// A building whose front runs from `a` to `b`, if there is room; a shallower one where there is less.
 #[expect(clippy::too_many_arguments, reason = "one lot, described once")]
 fn building(
-    site: &Site<'_>,
+    site: &ScenerySite<'_>,
     a: DVec2,
     b: DVec2,
     depth: f64,
     lots: &Lots,
-    side: &Side,
+    side: &RoadsideStyle,
     usual: u32,
     storey_shift: usize,
     pick: u64,
@@ -216,7 +223,7 @@ fn building(
             .clamp(lots.storeys[0], lots.storeys[1]),
     );
     let storey_m = match side.setting {
-        Setting::Industry | Setting::Retail => draw.range(3.6, 4.6),
+        RoadsideKind::Industry | RoadsideKind::Retail => draw.range(3.6, 4.6),
         _ => STOREY_M,
     };
     // Projecting parts must not hang over the road.

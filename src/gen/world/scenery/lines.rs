@@ -2,25 +2,25 @@
 
 use glam::DVec2;
 
-use super::setting::Setting;
-use super::site::Site;
+use super::setting::RoadsideKind;
+use super::site::ScenerySite;
 use super::walk;
 use scene::Form;
-use scene::background::{Line, LineKind, Post, PostKind};
+use scene::background::{LineKind, Post, PostKind, SceneryLine};
 use scene::draw::Draw;
 
 /// Boundary along the road in a setting: weights of hedge, wall, fence, guard rail, none; and its distance, m.
-fn boundary(setting: Setting) -> ([f64; 5], [f64; 2]) {
+fn boundary(setting: RoadsideKind) -> ([f64; 5], [f64; 2]) {
     match setting {
-        Setting::Suburb => ([0.34, 0.18, 0.3, 0.0, 0.18], [0.5, 1.2]),
-        Setting::Industry => ([0.08, 0.15, 0.52, 0.0, 0.25], [0.6, 2.5]),
-        Setting::Country => ([0.25, 0.1, 0.3, 0.1, 0.25], [1.6, 4.0]),
-        Setting::Motorway => ([0.03, 0.12, 0.05, 0.7, 0.1], [0.7, 1.5]),
-        Setting::Forest => ([0.0, 0.05, 0.12, 0.25, 0.58], [0.8, 2.0]),
-        Setting::Park => ([0.2, 0.15, 0.2, 0.0, 0.45], [0.6, 1.5]),
-        Setting::City => ([0.1, 0.1, 0.08, 0.0, 0.72], [0.4, 0.8]),
-        Setting::OldTown => ([0.02, 0.12, 0.06, 0.0, 0.8], [0.3, 0.6]),
-        Setting::Retail => ([0.2, 0.05, 0.15, 0.05, 0.55], [0.6, 2.0]),
+        RoadsideKind::Suburb => ([0.34, 0.18, 0.3, 0.0, 0.18], [0.5, 1.2]),
+        RoadsideKind::Industry => ([0.08, 0.15, 0.52, 0.0, 0.25], [0.6, 2.5]),
+        RoadsideKind::Country => ([0.25, 0.1, 0.3, 0.1, 0.25], [1.6, 4.0]),
+        RoadsideKind::Motorway => ([0.03, 0.12, 0.05, 0.7, 0.1], [0.7, 1.5]),
+        RoadsideKind::Forest => ([0.0, 0.05, 0.12, 0.25, 0.58], [0.8, 2.0]),
+        RoadsideKind::Park => ([0.2, 0.15, 0.2, 0.0, 0.45], [0.6, 1.5]),
+        RoadsideKind::City => ([0.1, 0.1, 0.08, 0.0, 0.72], [0.4, 0.8]),
+        RoadsideKind::OldTown => ([0.02, 0.12, 0.06, 0.0, 0.8], [0.3, 0.6]),
+        RoadsideKind::Retail => ([0.2, 0.05, 0.15, 0.05, 0.55], [0.6, 2.0]),
     }
 }
 
@@ -33,7 +33,7 @@ const KINDS: [Option<LineKind>; 5] = [
 ];
 
 /// Puts boundaries along the roads, lot by lot, with gates between them.
-pub(super) fn lines(site: &mut Site<'_>) {
+pub(super) fn lines(site: &mut ScenerySite<'_>) {
     let mut draw = Draw::new(site.seed, "boundaries");
     let ends = [site.side(DVec2::Y * 20.0), site.side(DVec2::Y * -20.0)].map(|s| s.setting);
     for (i, setting) in ends.iter().enumerate() {
@@ -46,7 +46,7 @@ pub(super) fn lines(site: &mut Site<'_>) {
             let total = walk::length_m(&line);
             let mut at = draw.range(0.0, 6.0);
             while at < total {
-                let long = *setting == Setting::Motorway || *setting == Setting::Forest;
+                let long = *setting == RoadsideKind::Motorway || *setting == RoadsideKind::Forest;
                 let run = if long {
                     draw.range(40.0, 90.0)
                 } else {
@@ -68,9 +68,9 @@ pub(super) fn lines(site: &mut Site<'_>) {
                     .map(walk::thinned)
                     .collect();
                 for points_m in runs {
-                    let mut line = Line::typical(kind, points_m);
+                    let mut line = SceneryLine::typical(kind, points_m);
                     line.height_m *= if kind == LineKind::GuardRail { 1.0 } else { tall };
-                    if kind == LineKind::Wall && *setting == Setting::Motorway {
+                    if kind == LineKind::Wall && *setting == RoadsideKind::Motorway {
                         line.height_m *= 2.0; // against noise
                     }
                     site.put(Form::Line(line), 0.2);
@@ -92,7 +92,7 @@ fn dense(line: &[DVec2]) -> Vec<DVec2> {
 }
 
 /// Lamps, signs and furniture along the kerb, clutter behind it.
-pub(super) fn posts(site: &mut Site<'_>, draw: &mut Draw) {
+pub(super) fn posts(site: &mut ScenerySite<'_>, draw: &mut Draw) {
     // The kerb side of the sidewalk; where there is none, beside the road.
     let spacing = draw.range(9.0, 18.0);
     for line in walk::lines(site, 0.45).into_iter().chain(kerbs(site)) {
@@ -108,7 +108,10 @@ pub(super) fn posts(site: &mut Site<'_>, draw: &mut Draw) {
             }
             let mut lot = Draw::new(pick, "post");
             let setting = site.side(p).setting;
-            let rural = matches!(setting, Setting::Forest | Setting::Country | Setting::Motorway);
+            let rural = matches!(
+                setting,
+                RoadsideKind::Forest | RoadsideKind::Country | RoadsideKind::Motorway
+            );
             if rural && lot.chance(0.6) {
                 continue;
             }
@@ -144,7 +147,7 @@ pub(super) fn posts(site: &mut Site<'_>, draw: &mut Draw) {
 }
 
 /// Lines along the inner edge of sidewalks, 0.6 m from the road.
-fn kerbs(site: &Site<'_>) -> Vec<Vec<DVec2>> {
+fn kerbs(site: &ScenerySite<'_>) -> Vec<Vec<DVec2>> {
     // A sidewalk's outer edge lies at distance 0 from paved ground; its kerb is found from there inwards.
     let outer = walk::lines(site, 0.45);
     let inward = |p: DVec2| {

@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 use scene::draw::Draw;
 use scene::{Background, BevLayout, BoxId, SceneBox};
 
-pub use setting::{Setting, Side, Style};
-use site::Site;
+pub use setting::{RoadsideKind, RoadsideStyle, Style};
+use site::ScenerySite;
 pub use site::distance_cells;
 
 /// The background of `seed`: its style is drawn to suit the layout.
@@ -29,7 +29,7 @@ pub fn background_of(
     style: &Style,
     seed: u64,
 ) -> Background {
-    let mut site = Site::new(layout, boxes, style, seed);
+    let mut site = ScenerySite::new(layout, boxes, style, seed);
     // Largest first: each keeps clear of the things before it.
     structures::walls(&mut site);
     structures::bridges(&mut site, &mut Draw::new(seed, "bridges"));

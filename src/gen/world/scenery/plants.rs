@@ -2,45 +2,45 @@
 
 use glam::DVec2;
 
-use super::setting::{Setting, Side};
-use super::site::Site;
+use super::setting::{RoadsideKind, RoadsideStyle};
+use super::site::ScenerySite;
 use super::walk;
 use scene::background::{Shrubs, Tree, TreeKind};
 use scene::draw::{Draw, noise};
 use scene::{Form, Window};
 
 /// Trees per 1,000 m² of open ground, how much they gather in groves (0 to 1), and weights of [`TreeKind::ALL`].
-fn wood(setting: Setting) -> (f64, f64, [f64; 4]) {
+fn wood(setting: RoadsideKind) -> (f64, f64, [f64; 4]) {
     match setting {
-        Setting::Forest => (50.0, 0.15, [0.5, 0.38, 0.04, 0.08]),
-        Setting::Park => (19.0, 0.6, [0.7, 0.14, 0.1, 0.06]),
-        Setting::Suburb => (19.0, 0.4, [0.6, 0.18, 0.14, 0.08]),
-        Setting::Country => (15.0, 0.85, [0.66, 0.18, 0.06, 0.1]),
-        Setting::Motorway => (18.0, 0.7, [0.6, 0.24, 0.04, 0.12]),
-        Setting::City => (11.0, 0.3, [0.7, 0.04, 0.18, 0.08]),
-        Setting::OldTown => (5.0, 0.3, [0.75, 0.02, 0.15, 0.08]),
-        Setting::Industry => (9.0, 0.5, [0.6, 0.1, 0.22, 0.08]),
-        Setting::Retail => (9.0, 0.2, [0.7, 0.05, 0.2, 0.05]),
+        RoadsideKind::Forest => (50.0, 0.15, [0.5, 0.38, 0.04, 0.08]),
+        RoadsideKind::Park => (19.0, 0.6, [0.7, 0.14, 0.1, 0.06]),
+        RoadsideKind::Suburb => (19.0, 0.4, [0.6, 0.18, 0.14, 0.08]),
+        RoadsideKind::Country => (15.0, 0.85, [0.66, 0.18, 0.06, 0.1]),
+        RoadsideKind::Motorway => (18.0, 0.7, [0.6, 0.24, 0.04, 0.12]),
+        RoadsideKind::City => (11.0, 0.3, [0.7, 0.04, 0.18, 0.08]),
+        RoadsideKind::OldTown => (5.0, 0.3, [0.75, 0.02, 0.15, 0.08]),
+        RoadsideKind::Industry => (9.0, 0.5, [0.6, 0.1, 0.22, 0.08]),
+        RoadsideKind::Retail => (9.0, 0.2, [0.7, 0.05, 0.2, 0.05]),
     }
 }
 
 /// Shrub patches per 1,000 m² of open ground.
-fn undergrowth(setting: Setting) -> f64 {
+fn undergrowth(setting: RoadsideKind) -> f64 {
     match setting {
-        Setting::Forest => 20.0,
-        Setting::Park => 11.0,
-        Setting::Suburb => 13.0,
-        Setting::Country => 16.0,
-        Setting::Motorway => 18.0,
-        Setting::City => 7.0,
-        Setting::OldTown => 4.0,
-        Setting::Industry => 9.0,
-        Setting::Retail => 7.0,
+        RoadsideKind::Forest => 20.0,
+        RoadsideKind::Park => 11.0,
+        RoadsideKind::Suburb => 13.0,
+        RoadsideKind::Country => 16.0,
+        RoadsideKind::Motorway => 18.0,
+        RoadsideKind::City => 7.0,
+        RoadsideKind::OldTown => 4.0,
+        RoadsideKind::Industry => 9.0,
+        RoadsideKind::Retail => 7.0,
     }
 }
 
 /// A tree of a side at a place.
-fn tree(side: &Side, p: DVec2, draw: &mut Draw) -> Tree {
+fn tree(side: &RoadsideStyle, p: DVec2, draw: &mut Draw) -> Tree {
     let (_, _, kinds) = wood(side.setting);
     let kind = TreeKind::ALL[draw.weighted(&kinds)];
     let (height, slim) = match kind {
@@ -57,7 +57,7 @@ fn tree(side: &Side, p: DVec2, draw: &mut Draw) -> Tree {
 }
 
 /// Rows of trees in the outer half of the sidewalk or on the verge.
-pub(super) fn avenues(site: &mut Site<'_>, draw: &mut Draw) {
+pub(super) fn avenues(site: &mut ScenerySite<'_>, draw: &mut Draw) {
     let on_walk = walk::lines(site, 0.8);
     for line in on_walk {
         let spacing = draw.range(6.5, 12.0);
@@ -69,9 +69,9 @@ pub(super) fn avenues(site: &mut Site<'_>, draw: &mut Draw) {
             let Some(p) = p else { break };
             let side = *site.side(p);
             let rows = match side.setting {
-                Setting::City | Setting::Park => 0.5,
-                Setting::OldTown | Setting::Suburb | Setting::Retail => 0.3,
-                Setting::Country => 0.35,
+                RoadsideKind::City | RoadsideKind::Park => 0.5,
+                RoadsideKind::OldTown | RoadsideKind::Suburb | RoadsideKind::Retail => 0.3,
+                RoadsideKind::Country => 0.35,
                 _ => 0.1,
             };
             if chance > rows * side.green * side.trees || !site.free(p, 0.8) || site.road_m(p) < 0.6 {
@@ -88,7 +88,7 @@ pub(super) fn avenues(site: &mut Site<'_>, draw: &mut Draw) {
 }
 
 /// Trees on open ground.
-pub(super) fn trees(site: &mut Site<'_>, draw: &mut Draw) {
+pub(super) fn trees(site: &mut ScenerySite<'_>, draw: &mut Draw) {
     for _ in 0..420 {
         let p = DVec2::new(draw.range(-40.0, 40.0), draw.range(-40.0, 40.0));
         let (chance, pick) = (draw.unit(), draw.bits());
@@ -105,14 +105,18 @@ pub(super) fn trees(site: &mut Site<'_>, draw: &mut Draw) {
         // The crown may reach over the sidewalk, the trunk stays off it, and walls keep the crown away.
         if site.paved_m(p) > 0.5 && site.road_m(p) > crown * 0.7 + 0.5 && site.free(p, (crown * 0.6).min(1.5))
         {
-            let keep = if side.setting == Setting::Forest { 0.7 } else { 1.0 };
+            let keep = if side.setting == RoadsideKind::Forest {
+                0.7
+            } else {
+                1.0
+            };
             site.put(Form::Tree(new), keep);
         }
     }
 }
 
 /// Patches of shrubs and undergrowth.
-pub(super) fn shrubs(site: &mut Site<'_>, draw: &mut Draw) {
+pub(super) fn shrubs(site: &mut ScenerySite<'_>, draw: &mut Draw) {
     for _ in 0..160 {
         let p = DVec2::new(draw.range(-40.0, 40.0), draw.range(-40.0, 40.0));
         let (chance, pick) = (draw.unit(), draw.bits());

@@ -10,7 +10,7 @@ use scene::{BevLayer, BevLayout, PolylineKind};
     Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema,
 )]
 #[serde(rename_all = "kebab-case")]
-pub enum Setting {
+pub enum RoadsideKind {
     /// Old houses wall to wall.
     OldTown,
     /// Blocks of flats and offices, with balconies and shops.
@@ -31,7 +31,7 @@ pub enum Setting {
     Retail,
 }
 
-impl Setting {
+impl RoadsideKind {
     /// All settings.
     pub const ALL: [Self; 9] = [
         Self::OldTown,
@@ -46,7 +46,7 @@ impl Setting {
     ];
 }
 
-impl Setting {
+impl RoadsideKind {
     /// Name to show: `Old town`.
     pub fn label(self) -> &'static str {
         match self {
@@ -65,9 +65,9 @@ impl Setting {
 
 /// One side of the ego's road.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Side {
+pub struct RoadsideStyle {
     /// The kind of place.
-    pub setting: Setting,
+    pub setting: RoadsideKind,
     /// Number of trees and shrubs, 1 = usual for the setting; 0 is none.
     pub green: f64,
     /// Number of trees beyond that: a factor on `green`.
@@ -80,9 +80,9 @@ pub struct Side {
     pub storeys: Option<u32>,
 }
 
-impl Side {
+impl RoadsideStyle {
     /// A side that is usual for a setting.
-    pub fn usual(setting: Setting) -> Self {
+    pub fn usual(setting: RoadsideKind) -> Self {
         Self {
             setting,
             green: 1.0,
@@ -98,14 +98,14 @@ impl Side {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
     /// Left of the ego's road.
-    pub left: Side,
+    pub left: RoadsideStyle,
     /// Right of it.
-    pub right: Side,
+    pub right: RoadsideStyle,
 }
 
 impl Style {
     /// A style with the same side on the left and on the right.
-    pub fn both(side: Side) -> Self {
+    pub fn both(side: RoadsideStyle) -> Self {
         Self {
             left: side,
             right: side,
@@ -116,8 +116,8 @@ impl Style {
     pub fn drawn(layout: &BevLayout, seed: u64) -> Self {
         let mut draw = Draw::new(seed, "scenery style");
         let weights = weights(layout);
-        let side = |draw: &mut Draw| Side {
-            setting: Setting::ALL[draw.weighted(&weights)],
+        let side = |draw: &mut Draw| RoadsideStyle {
+            setting: RoadsideKind::ALL[draw.weighted(&weights)],
             green: draw.range(0.4, 1.4),
             trees: 1.0,
             shrubs: 1.0,
@@ -127,7 +127,7 @@ impl Style {
         let left = side(&mut draw);
         // Two sides of a street are mostly alike.
         let right = match draw.chance(0.6) {
-            true => Side {
+            true => RoadsideStyle {
                 green: draw.range(0.4, 1.4),
                 ..left
             },

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use super::setting::{Side, Style};
+use super::setting::{RoadsideStyle, Style};
 use scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
 use scene::road_map::RoadMap;
 use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, SceneBox, Window};
@@ -54,7 +54,7 @@ pub fn distance_cells(extent: Extent, set: impl Fn(usize) -> bool) -> Vec<f32> {
 }
 
 /// A layout with room for scenery.
-pub(super) struct Site<'a> {
+pub(super) struct ScenerySite<'a> {
     pub seed: u64,
     pub layout: &'a BevLayout,
     style: &'a Style,
@@ -66,7 +66,7 @@ pub(super) struct Site<'a> {
     pub out: Background,
 }
 
-impl<'a> Site<'a> {
+impl<'a> ScenerySite<'a> {
     pub fn new(
         layout: &'a BevLayout,
         boxes: &BTreeMap<BoxId, SceneBox>,
@@ -94,7 +94,7 @@ impl<'a> Site<'a> {
     }
 
     /// The side of the ego's road that a point lies on.
-    pub fn side(&self, p: DVec2) -> &Side {
+    pub fn side(&self, p: DVec2) -> &RoadsideStyle {
         match self.roads.along_ego_lane(p).y >= 0.0 {
             true => &self.style.left,
             false => &self.style.right,

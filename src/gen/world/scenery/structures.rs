@@ -3,10 +3,10 @@
 
 use glam::DVec2;
 
-use super::setting::Setting;
-use super::site::Site;
+use super::setting::RoadsideKind;
+use super::site::ScenerySite;
 use super::walk;
-use scene::background::{Bridge, Line, LineKind};
+use scene::background::{Bridge, LineKind, SceneryLine};
 use scene::draw::Draw;
 use scene::{BevLayer, Form, Window};
 
@@ -22,14 +22,14 @@ const FALLS_M: f64 = 1.5;
 const SHORTEST: usize = 4;
 
 /// Rise of the ground from `p` away from the road over a distance, m.
-fn rise_m(site: &Site<'_>, p: DVec2, across_m: f64) -> Option<f64> {
+fn rise_m(site: &ScenerySite<'_>, p: DVec2, across_m: f64) -> Option<f64> {
     let away = site.away(p)?;
     let relief = &site.layout.relief;
     Some(relief.height_m(p + away * across_m) - relief.height_m(p))
 }
 
 /// Runs of the line at a distance from paved ground for whose rise `enough` is true, each with its greatest rise.
-fn runs(site: &Site<'_>, distance_m: f64, enough: impl Fn(f64) -> bool) -> Vec<(Vec<DVec2>, f64)> {
+fn runs(site: &ScenerySite<'_>, distance_m: f64, enough: impl Fn(f64) -> bool) -> Vec<(Vec<DVec2>, f64)> {
     let mut out = Vec::new();
     for line in walk::lines(site, distance_m) {
         let rises: Vec<Option<f64>> = line.iter().map(|p| rise_m(site, *p, ACROSS_M)).collect();
@@ -48,7 +48,7 @@ fn runs(site: &Site<'_>, distance_m: f64, enough: impl Fn(f64) -> bool) -> Vec<(
 }
 
 /// Walls that hold back the ground beside a road, and parapets where it falls away.
-pub(super) fn walls(site: &mut Site<'_>) {
+pub(super) fn walls(site: &mut ScenerySite<'_>) {
     if site.layout.relief.is_flat() {
         return;
     }
@@ -60,27 +60,27 @@ pub(super) fn walls(site: &mut Site<'_>) {
         .into_iter()
         .max_by(|a, b| f64::total_cmp(&length(a), &length(b)));
     for (line, rise_m) in best.into_iter().flatten() {
-        let mut wall = Line::typical(LineKind::RetainingWall, walk::thinned(&line));
+        let mut wall = SceneryLine::typical(LineKind::RetainingWall, walk::thinned(&line));
         wall.height_m = rise_m + 0.25;
         site.put(Form::Line(wall), 0.2);
     }
     for (line, _) in runs(site, 0.45, |rise| rise < -FALLS_M) {
-        let mut parapet = Line::typical(LineKind::Wall, walk::thinned(&line));
+        let mut parapet = SceneryLine::typical(LineKind::Wall, walk::thinned(&line));
         parapet.height_m = 1.0;
         site.put(Form::Line(parapet), 0.2);
     }
 }
 
 /// Now and then a bridge across the road, ahead of the vehicle or behind it.
-pub(super) fn bridges(site: &mut Site<'_>, draw: &mut Draw) {
+pub(super) fn bridges(site: &mut ScenerySite<'_>, draw: &mut Draw) {
     /// Half of the widest road, sidewalks included, that fits between two piers, m.
     const HALF_SPAN_M: f64 = 6.9;
     /// From the middle of the road to the deck's first vertex: its piers then stand 7.5 m from the middle.
     const HALF_LENGTH_M: f64 = 45.0;
     let setting = site.side(DVec2::Y * 20.0).setting;
     let chance = match setting {
-        Setting::Motorway | Setting::Industry => 0.2,
-        Setting::Country | Setting::City | Setting::Park => 0.08,
+        RoadsideKind::Motorway | RoadsideKind::Industry => 0.2,
+        RoadsideKind::Country | RoadsideKind::City | RoadsideKind::Park => 0.08,
         _ => 0.0,
     };
     let (wanted, x_m) = (draw.chance(chance), draw.range(14.0, 34.0));

@@ -66,7 +66,7 @@ fn buildings_face_the_road() {
     for seed in 0..20 {
         let world = World::random(seed);
         let style = Style::drawn(&world.layout, seed);
-        let site = Site::new(&world.layout, &world.boxes, &style, seed);
+        let site = ScenerySite::new(&world.layout, &world.boxes, &style, seed);
         for thing in world.background.iter() {
             if let Form::Building(b) = &thing.form
                 && let Some(away) = site.away((b.outline_m[0] + b.outline_m[1]) / 2.0)
@@ -96,7 +96,7 @@ fn steps_are_held_by_walls_and_bridges_span_the_road() {
         let mut layout = template::layout("straight", seed).expect("listed");
         let nothing = BTreeMap::new();
         layout.relief = Terrain::Terrace.relief(&layout, seed);
-        let side = Side::usual(Setting::Motorway);
+        let side = RoadsideStyle::usual(RoadsideKind::Motorway);
         let held = background_of(&layout, &nothing, &Style::both(side), seed);
         assert!(count(&held, LineKind::RetainingWall) > 40.0, "seed {seed}");
         layout.relief = Terrain::Viaduct.relief(&layout, seed);

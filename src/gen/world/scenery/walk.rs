@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::site::Site;
+use super::site::ScenerySite;
 use scene::{Extent, Window};
 
 /// Steps along a line, m.
@@ -11,7 +11,7 @@ const STEP_M: f64 = 0.8;
 const BEYOND_M: f64 = 1.0;
 
 /// Lines at `distance_m` from paved ground, with a vertex about every 0.8 m; the road is on their right.
-pub(super) fn lines(site: &Site<'_>, distance_m: f64) -> Vec<Vec<DVec2>> {
+pub(super) fn lines(site: &ScenerySite<'_>, distance_m: f64) -> Vec<Vec<DVec2>> {
     let mut seen = vec![false; Window::COLUMNS];
     let mut out = Vec::new();
     for start in 0..Window::COLUMNS {
@@ -42,7 +42,7 @@ fn mark(p: DVec2, seen: &mut [bool]) {
     scene::raster::disc_cells(Extent::WINDOW, p, 1.3, |x, y| seen[x * Window::NY + y] = true);
 }
 
-fn walk(site: &Site<'_>, from: DVec2, distance_m: f64, sign: f64, seen: &mut [bool]) -> Vec<DVec2> {
+fn walk(site: &ScenerySite<'_>, from: DVec2, distance_m: f64, sign: f64, seen: &mut [bool]) -> Vec<DVec2> {
     let (mut p, mut out) = (from, vec![from]);
     let mut fresh: Vec<DVec2> = Vec::new();
     let half = 40.0 + BEYOND_M;

@@ -78,7 +78,7 @@ pub fn observed_labels(
 }
 
 /// One sweep: voxels that were hit and their classes, and those that rays went through.
-struct Sweep {
+struct SweepVoxels {
     hits: Vec<(u32, u8)>,
     passed: Passed,
 }
@@ -89,7 +89,7 @@ fn drive_through(
     drive: &Drive,
     seed: u64,
     with_passed: bool,
-) -> Vec<Sweep> {
+) -> Vec<SweepVoxels> {
     let stray = 0.0004; // hits that land a voxel beside their surface: speckle
     let mount = pattern.ego_from_sensor();
     poses(world, drive)
@@ -127,7 +127,7 @@ fn drive_through(
                     }
                 }
             }
-            Sweep { hits, passed }
+            SweepVoxels { hits, passed }
         })
         .collect()
 }

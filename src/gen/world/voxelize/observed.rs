@@ -96,7 +96,7 @@ fn voxels_between(from: DVec3, to: DVec3, mut visit: impl FnMut(usize) -> bool) 
 /// picture and nothing is in front of it. (Occ3D's own masks see somewhat deeper into thin things.)
 pub(super) fn seen_by_cameras(grid: &VoxelGrid, by_lidar: &[bool], rig: &SensorRig) -> Vec<bool> {
     let solid: Vec<bool> = grid.to_dense().iter().map(|l| *l != Class::FREE).collect();
-    let views: Vec<View<'_>> = rig.cameras.iter().map(View::new).collect();
+    let views: Vec<MountedCamera<'_>> = rig.cameras.iter().map(MountedCamera::new).collect();
     let sees = |voxel: usize| {
         let column = voxel / Window::NZ;
         let center = Window::center(column / Window::NY, column % Window::NY, voxel % Window::NZ);
@@ -120,14 +120,14 @@ pub(super) fn seen_by_cameras(grid: &VoxelGrid, by_lidar: &[bool], rig: &SensorR
 }
 
 /// A camera at its mount.
-struct View<'a> {
+struct MountedCamera<'a> {
     camera: &'a Camera,
     optics: Optics,
     camera_from_ego: Pose,
     at: DVec3,
 }
 
-impl<'a> View<'a> {
+impl<'a> MountedCamera<'a> {
     fn new(camera: &'a Camera) -> Self {
         let ego_from_camera = camera.ego_from_camera();
         Self {

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::columns::{Standing, closed, middle_m, parts};
-use super::rectangle::{Rectangle, split};
+use super::columns::{ClassColumns, closed, middle_m, parts};
+use super::rectangle::{SceneryRectangle, split};
 use crate::background::{Building, Facade, Roof};
 use crate::raster::polygon_cells;
 use crate::{VoxelGrid, Window};
@@ -28,7 +28,7 @@ const OPEN: f64 = 0.14;
 const STEP_M: f64 = 1.0;
 
 /// Buildings of the labels; their columns are marked in `taken`.
-pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [bool]) -> Vec<Building> {
+pub(super) fn buildings(labels: &VoxelGrid, manmade: &ClassColumns, taken: &mut [bool]) -> Vec<Building> {
     let tall: Vec<bool> = (0..Window::COLUMNS)
         .map(|c| manmade.top_m[c] >= LOWEST_M && manmade.count(c) >= 4)
         .collect();
@@ -41,13 +41,13 @@ pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [boo
                 .all(|l| *l == crate::Class::FREE)
         })
         .collect();
-    let mut pieces: Vec<(Rectangle, Vec<usize>)> = Vec::new();
+    let mut pieces: Vec<(SceneryRectangle, Vec<usize>)> = Vec::new();
     for part in parts(&closed(&tall, 1)) {
         let part: Vec<usize> = part.into_iter().filter(|c| tall[*c]).collect();
         if part.len() < FEWEST {
             continue;
         }
-        let fits = |r: &Rectangle, columns: &[usize]| {
+        let fits = |r: &SceneryRectangle, columns: &[usize]| {
             let (mut open, mut all) = (0, 0);
             polygon_cells(crate::Extent::WINDOW, &r.corners_m(), |x, y| {
                 let c = x * Window::NY + y;
@@ -95,14 +95,14 @@ pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [boo
 }
 
 /// Height below which nearly all columns stay, m.
-fn top_m(columns: &[usize], manmade: &Standing) -> f64 {
+fn top_m(columns: &[usize], manmade: &ClassColumns) -> f64 {
     let mut tops: Vec<f64> = columns.iter().map(|c| manmade.top_m[*c]).collect();
     tops.sort_by(f64::total_cmp);
     tops[(tops.len() - 1) * 9 / 10]
 }
 
 /// Place along a rectangle, from its middle, where the height changes and stays changed, m.
-fn height_step(r: &Rectangle, columns: &[usize], manmade: &Standing) -> Option<f64> {
+fn height_step(r: &SceneryRectangle, columns: &[usize], manmade: &ClassColumns) -> Option<f64> {
     let slot_m = 2.0 * Window::VOXEL_M;
     let slots = (2.0 * r.half_m.x / slot_m) as usize;
     let mut tops = vec![0.0_f64; slots + 1];
@@ -126,7 +126,11 @@ fn height_step(r: &Rectangle, columns: &[usize], manmade: &Standing) -> Option<f
 }
 
 /// Cuts a straight part where its height changes.
-fn by_height(r: Rectangle, columns: Vec<usize>, manmade: &Standing) -> Vec<(Rectangle, Vec<usize>)> {
+fn by_height(
+    r: SceneryRectangle,
+    columns: Vec<usize>,
+    manmade: &ClassColumns,
+) -> Vec<(SceneryRectangle, Vec<usize>)> {
     let mut out = Vec::new();
     let mut open = vec![(r, columns)];
     while let Some((r, columns)) = open.pop() {
@@ -139,13 +143,13 @@ fn by_height(r: Rectangle, columns: Vec<usize>, manmade: &Standing) -> Vec<(Rect
             out.push((r, columns));
             continue;
         }
-        open.extend([b, a].map(|part| (Rectangle::around(&part), part)));
+        open.extend([b, a].map(|part| (SceneryRectangle::around(&part), part)));
     }
     out
 }
 
 /// A shallow rectangle reaches back where nothing was seen: away from the ego vehicle first, up to the usual depth.
-fn deepened(r: Rectangle, may: &dyn Fn(DVec2) -> bool) -> Rectangle {
+fn deepened(r: SceneryRectangle, may: &dyn Fn(DVec2) -> bool) -> SceneryRectangle {
     let (mut low, mut high) = (-r.half_m.y, r.half_m.y);
     let away_is_high = r.middle_m.dot(r.along.perp()) >= 0.0;
     let step = Window::VOXEL_M;
@@ -171,7 +175,7 @@ fn deepened(r: Rectangle, may: &dyn Fn(DVec2) -> bool) -> Rectangle {
             if is_high { high = next } else { low = next }
         }
     }
-    Rectangle {
+    SceneryRectangle {
         middle_m: r.ground(DVec2::new(0.0, (low + high) / 2.0)),
         half_m: DVec2::new(r.half_m.x, (high - low) / 2.0),
         along: r.along,

@@ -6,14 +6,14 @@ use crate::draft::ground_bin;
 use crate::{BevLayout, Class, VoxelGrid, Window};
 
 /// Voxels of one class, column by column `[x][y]`, above the ground.
-pub(super) struct Standing {
+pub(super) struct ClassColumns {
     /// Top of the highest voxel above the ground, m; 0 where there is none.
     pub top_m: Vec<f64>,
     /// Bits of the bins above the ground that hold the class.
     bins: Vec<u16>,
 }
 
-impl Standing {
+impl ClassColumns {
     pub fn of(class: Class, labels: &VoxelGrid, layout: &BevLayout) -> Self {
         let mut out = Self {
             top_m: vec![0.0; Window::COLUMNS],

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::columns::{Standing, middle_m, parts};
-use super::rectangle::{Rectangle, split};
-use crate::background::{Line, LineKind, Post, PostKind, Shrubs};
+use super::columns::{ClassColumns, middle_m, parts};
+use super::rectangle::{SceneryRectangle, split};
+use crate::background::{LineKind, Post, PostKind, SceneryLine, Shrubs};
 use crate::{Form, Window};
 
 /// Most columns of a pole.
@@ -16,7 +16,7 @@ const WIDEST_M: f64 = 1.7;
 const FILLED: f64 = 0.62;
 
 /// Walls, fences, rails and poles of the manmade columns of `left`.
-pub(super) fn walls_and_poles(manmade: &Standing, left: &[bool]) -> Vec<Form> {
+pub(super) fn walls_and_poles(manmade: &ClassColumns, left: &[bool]) -> Vec<Form> {
     let mut out = Vec::new();
     for part in parts(left) {
         if part.len() <= POLE {
@@ -44,7 +44,7 @@ pub(super) fn walls_and_poles(manmade: &Standing, left: &[bool]) -> Vec<Form> {
 }
 
 /// Hedges and areas of shrubs of the columns of `left`.
-pub(super) fn hedges_and_shrubs(vegetation: &Standing, left: &[bool]) -> Vec<Form> {
+pub(super) fn hedges_and_shrubs(vegetation: &ClassColumns, left: &[bool]) -> Vec<Form> {
     let mut out = Vec::new();
     for part in parts(left).into_iter().filter(|p| p.len() >= 3) {
         for (r, columns) in split(part, &|r, columns| is_filled(r, columns)) {
@@ -64,28 +64,28 @@ pub(super) fn hedges_and_shrubs(vegetation: &Standing, left: &[bool]) -> Vec<For
     out
 }
 
-fn top_m(columns: &[usize], of: &Standing) -> f64 {
+fn top_m(columns: &[usize], of: &ClassColumns) -> f64 {
     let tops = columns.iter().map(|c| of.top_m[*c]);
     tops.fold(0.3, f64::max)
 }
 
-fn share(r: &Rectangle, columns: &[usize]) -> f64 {
+fn share(r: &SceneryRectangle, columns: &[usize]) -> f64 {
     columns.len() as f64 * Window::VOXEL_M.powi(2) / r.area_m2()
 }
 
-fn is_filled(r: &Rectangle, columns: &[usize]) -> bool {
+fn is_filled(r: &SceneryRectangle, columns: &[usize]) -> bool {
     share(r, columns) >= FILLED
 }
 
-fn is_dense(r: &Rectangle, columns: &[usize]) -> bool {
+fn is_dense(r: &SceneryRectangle, columns: &[usize]) -> bool {
     share(r, columns) > 0.8
 }
 
-fn line(kind: LineKind, r: &Rectangle, top_m: f64) -> Form {
+fn line(kind: LineKind, r: &SceneryRectangle, top_m: f64) -> Form {
     let end = DVec2::new(r.half_m.x, 0.0);
     // Columns are wider than most lines: half a column on either side is theirs.
     let width = (2.0 * r.half_m.y - Window::VOXEL_M).max(kind.typical_m().1);
-    Form::Line(Line {
+    Form::Line(SceneryLine {
         kind,
         points_m: vec![r.ground(-end), r.ground(end)],
         height_m: top_m,
@@ -93,7 +93,7 @@ fn line(kind: LineKind, r: &Rectangle, top_m: f64) -> Form {
     })
 }
 
-fn pole(columns: &[usize], manmade: &Standing) -> Form {
+fn pole(columns: &[usize], manmade: &ClassColumns) -> Form {
     let middle = columns.iter().map(|c| middle_m(*c)).sum::<DVec2>() / columns.len() as f64;
     let top = top_m(columns, manmade);
     let kind = match top {

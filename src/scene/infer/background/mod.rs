@@ -7,15 +7,15 @@ mod lines;
 mod rectangle;
 mod trees;
 
-use columns::{Standing, around};
+use columns::{ClassColumns, around};
 
 use crate::{Background, BevLayout, Class, Form, VoxelGrid, Window};
 
 /// Things of the labels, in the ego frame; ids count from 1, the largest kinds first. `layout` tells the height of the
 /// ground.
 pub fn background(labels: &VoxelGrid, layout: &BevLayout) -> Background {
-    let manmade = Standing::of(Class::Manmade, labels, layout);
-    let vegetation = Standing::of(Class::Vegetation, labels, layout);
+    let manmade = ClassColumns::of(Class::Manmade, labels, layout);
+    let vegetation = ClassColumns::of(Class::Vegetation, labels, layout);
     let mut forms = Vec::new();
 
     let mut taken = vec![false; Window::COLUMNS];

@@ -14,7 +14,7 @@ const STEP_M: f64 = 0.8;
 
 /// A rectangle: along its first side, and across it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rectangle {
+pub(super) struct SceneryRectangle {
     pub middle_m: DVec2,
     /// Half of the length and of the width, m.
     pub half_m: DVec2,
@@ -22,7 +22,7 @@ pub(super) struct Rectangle {
     pub along: DVec2,
 }
 
-impl Rectangle {
+impl SceneryRectangle {
     /// The one of least area, by trying headings a degree apart; half a column more on every side than the middles.
     pub fn around(columns: &[usize]) -> Self {
         let points: Vec<DVec2> = columns.iter().map(|c| middle_m(*c)).collect();
@@ -86,15 +86,15 @@ impl Rectangle {
 /// Cuts columns until `fits` takes each part with its rectangle, or no cut saves area.
 pub(super) fn split(
     columns: Vec<usize>,
-    fits: &dyn Fn(&Rectangle, &[usize]) -> bool,
-) -> Vec<(Rectangle, Vec<usize>)> {
+    fits: &dyn Fn(&SceneryRectangle, &[usize]) -> bool,
+) -> Vec<(SceneryRectangle, Vec<usize>)> {
     let mut out = Vec::new();
     let mut open = vec![(columns, 0)];
     while let Some((columns, depth)) = open.pop() {
         if columns.is_empty() {
             continue;
         }
-        let rectangle = Rectangle::around(&columns);
+        let rectangle = SceneryRectangle::around(&columns);
         let halves = match depth == DEEPEST || fits(&rectangle, &columns) {
             true => None,
             false => best_cut(&rectangle, &columns),
@@ -108,7 +108,7 @@ pub(super) fn split(
 }
 
 /// The cut across or along the rectangle whose two parts have least area.
-fn best_cut(rectangle: &Rectangle, columns: &[usize]) -> Option<(Vec<usize>, Vec<usize>)> {
+fn best_cut(rectangle: &SceneryRectangle, columns: &[usize]) -> Option<(Vec<usize>, Vec<usize>)> {
     let own: Vec<DVec2> = columns.iter().map(|c| rectangle.local(middle_m(*c))).collect();
     let mut best = (rectangle.area_m2() * WORTH, None);
     for axis in 0..2 {

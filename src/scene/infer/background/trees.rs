@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::columns::{Standing, around, middle_m};
+use super::columns::{ClassColumns, around, middle_m};
 use crate::Window;
 use crate::background::{Tree, TreeKind};
 use crate::distance::signed_distance_m;
@@ -22,7 +22,7 @@ const PASSES: usize = 3;
 const STEM: f64 = 100.0;
 
 /// Trees of the labels; the columns of their crowns are marked in `taken`.
-pub(super) fn trees(vegetation: &Standing, taken: &mut [bool]) -> Vec<Tree> {
+pub(super) fn trees(vegetation: &ClassColumns, taken: &mut [bool]) -> Vec<Tree> {
     let high: Vec<bool> = (0..Window::COLUMNS)
         .map(|c| vegetation.top_m[c] >= LOWEST_M)
         .collect();
@@ -61,7 +61,7 @@ pub(super) fn trees(vegetation: &Standing, taken: &mut [bool]) -> Vec<Tree> {
 }
 
 /// How much a column looks like the middle of a tree; 0 where there is no crown.
-fn scores(vegetation: &Standing, left: &[bool], with_stems: bool) -> Vec<f64> {
+fn scores(vegetation: &ClassColumns, left: &[bool], with_stems: bool) -> Vec<f64> {
     let deep = signed_distance_m(crate::Extent::WINDOW, |c| left[c]);
     let crown = |c: usize| match left[c] {
         // Deep inside the crown, high and dense.
@@ -87,7 +87,7 @@ fn scores(vegetation: &Standing, left: &[bool], with_stems: bool) -> Vec<f64> {
 }
 
 /// True if the column reaches the ground under a crown, and most of what is around it does not.
-fn is_stem(vegetation: &Standing, c: usize) -> bool {
+fn is_stem(vegetation: &ClassColumns, c: usize) -> bool {
     if vegetation.low(c) < 3 {
         return false;
     }
@@ -119,7 +119,7 @@ fn peaks(scores: &[f64], trees: &[Tree]) -> Vec<DVec2> {
     out
 }
 
-fn tree(place_m: DVec2, crown: &[usize], vegetation: &Standing) -> Tree {
+fn tree(place_m: DVec2, crown: &[usize], vegetation: &ClassColumns) -> Tree {
     let mut reach: Vec<f64> = crown.iter().map(|c| middle_m(*c).distance(place_m)).collect();
     reach.sort_by(f64::total_cmp);
     let radius = reach[(reach.len() - 1) * 9 / 10] + 0.5 * Window::VOXEL_M;

@@ -11,26 +11,26 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::scene;
-use crate::suite::{Found, Options, with_interval};
+use crate::suite::{Options, SuiteFigures, with_interval};
 use editor::Document;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx, Pipeline};
 use scene::{Class, Scene};
 use sensors::perceived_sweep::report;
-use voxels::Voxels;
+use voxels::VoxelFigures;
 
 /// Figures of the LiDAR network on scenes, a value per scene.
 #[derive(Default)]
-struct Seen {
+struct DetectionFigures {
     cars: Vec<f64>,
     others: Vec<f64>,
     ghosts: Vec<f64>,
     right: Vec<f64>,
 }
 
-impl Seen {
+impl DetectionFigures {
     fn add(&mut self, scene: &Scene) -> anyhow::Result<()> {
         let report = report(scene)?;
         let boxes = &scene.frame().boxes;
@@ -87,11 +87,11 @@ impl Options {
     pub(crate) fn downstream(
         &self,
         pipeline: &mut OccPipeline,
-        progress: &dyn Progress,
-    ) -> anyhow::Result<Found> {
-        let mut worlds = Seen::default();
-        let mut voxels = Voxels::default();
-        let mut made = [true, false].map(|keeps_objects| (keeps_objects, Seen::default()));
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<SuiteFigures> {
+        let mut worlds = DetectionFigures::default();
+        let mut voxels = VoxelFigures::default();
+        let mut made = [true, false].map(|keeps_objects| (keeps_objects, DetectionFigures::default()));
         for i in 0..self.frames {
             progress.at("downstream", i, self.frames);
             let world = scene(i as u64);

@@ -12,7 +12,7 @@ use nets::picture::PictureNets;
 use scene::{Conditions, Scene, TimeOfDay, Weather};
 use sensors::appearance::CameraImage;
 use sensors::painter::{PaintInput, PaintOptions, Painter};
-use sensors::perceived_voxels::{Heard, Hears, VoxelReport, report, report_of};
+use sensors::perceived_voxels::{Hears, PerceptionInput, VoxelReport, report, report_of};
 
 /// Sensors that the network gets, by name.
 const ARMS: [(&str, Hears); 3] = [
@@ -34,11 +34,11 @@ const AIR: [(&str, TimeOfDay, Weather); 7] = [
 /// Figures of some scenes, a value per scene: IoU where the LiDAR sees, share of voxels told rightly, share of boxes
 /// found.
 #[derive(Default)]
-struct Told([Vec<f64>; 3]);
+struct VoxelScores([Vec<f64>; 3]);
 
 const NAMES: [&str; 3] = ["iou", "classes_right", "boxes_found"];
 
-impl Told {
+impl VoxelScores {
     fn add(&mut self, report: &VoxelReport) {
         let boxes = report.boxes.len();
         let found = report.boxes.iter().filter(|b| !b.is_missed()).count();
@@ -72,12 +72,12 @@ impl Told {
 
 /// Figures of worlds and of generated scenes.
 #[derive(Default)]
-pub(super) struct Voxels {
-    worlds: [Told; 3],
-    generated: [Told; 3],
-    air: [Told; AIR.len()],
+pub(super) struct VoxelFigures {
+    worlds: [VoxelScores; 3],
+    generated: [VoxelScores; 3],
+    air: [VoxelScores; AIR.len()],
     /// Figures from the cameras alone, on learned pictures of worlds and of generated scenes.
-    learned: [Told; 2],
+    learned: [VoxelScores; 2],
     /// Share of the pixels that the segmenter classifies rightly: in rendered pictures of worlds and of generated
     /// scenes, then in learned pictures of each.
     pixels_right: [[Vec<f64>; 2]; 2],
@@ -96,13 +96,13 @@ fn learned_pictures(scene: &Scene) -> anyhow::Result<Vec<Arc<CameraImage>>> {
     Ok(painter.paint(&input, &mut go_on)?)
 }
 
-impl Voxels {
+impl VoxelFigures {
     /// Judges a world, also under other light and weather, and the scene generated from its layout.
     pub fn add(&mut self, world: &Scene, generated: &Scene) -> anyhow::Result<()> {
         let scenes = [(world, &mut self.worlds), (generated, &mut self.generated)];
         for (which, (scene, told)) in scenes.into_iter().enumerate() {
-            let heard = Heard::of(scene)?;
-            let learned = Heard::of_pictures(scene, &learned_pictures(scene)?)?;
+            let heard = PerceptionInput::of(scene)?;
+            let learned = PerceptionInput::of_pictures(scene, &learned_pictures(scene)?)?;
             self.learned[which].add(&report_of(scene, &learned, Hears::Cameras)?);
             for (right, heard) in self.pixels_right.iter_mut().zip([&heard, &learned]) {
                 right[which].push(heard.pixels_right);
@@ -120,7 +120,7 @@ impl Voxels {
     }
 
     pub fn report(&self) -> Value {
-        let arms = |told: &[Told; 3]| -> Map<String, Value> {
+        let arms = |told: &[VoxelScores; 3]| -> Map<String, Value> {
             let each = ARMS.iter().zip(told);
             each.map(|((name, _), told)| ((*name).to_owned(), told.report()))
                 .collect()

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::edited;
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::scene;
 use crate::suite::{Options, with_interval};
 use crate::trials::{KINDS, Trial};
@@ -33,7 +33,7 @@ impl Options {
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,
-        progress: &dyn Progress,
+        progress: &dyn MeasurementProgress,
     ) -> anyhow::Result<(Value, usize)> {
         let params = GenParams {
             steps: RANDOM_EDIT_STEPS,
@@ -79,7 +79,7 @@ impl Options {
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,
-        progress: &dyn Progress,
+        progress: &dyn MeasurementProgress,
     ) -> anyhow::Result<Value> {
         let mut rows = Vec::new();
         for (name, solver, iterations) in [
@@ -119,7 +119,7 @@ impl Options {
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,
-        progress: &dyn Progress,
+        progress: &dyn MeasurementProgress,
     ) -> anyhow::Result<Vec<f64>> {
         let mut differ = Vec::new();
         for i in 0..self.frames {
@@ -148,7 +148,7 @@ impl Options {
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,
-        progress: &dyn Progress,
+        progress: &dyn MeasurementProgress,
     ) -> anyhow::Result<Value> {
         let mut all = Confusion::default();
         let mut differ = Vec::new();

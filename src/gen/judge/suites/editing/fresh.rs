@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::tally::Tally;
+use super::tally::InventionTally;
 use super::trial_run::try_edit;
 use crate::trials::Trial;
 use job::pipeline::OccPipeline;
@@ -23,7 +23,7 @@ const MOST: usize = 2;
 
 /// Figures by kind of edit and start.
 #[derive(Default)]
-pub struct Fresh(BTreeMap<&'static str, [Tally; 3]>);
+pub struct Fresh(BTreeMap<&'static str, [InventionTally; 3]>);
 
 impl Fresh {
     /// Tries the first removals and additions of a scene from every start, with the same steps.

@@ -7,10 +7,10 @@ use anyhow::bail;
 use serde_json::{Value, json};
 
 use super::fit::{Bands, Fit};
-use super::materials::Material;
-use super::tally::{MUCH, Tally};
+use super::materials::TrialScenes;
+use super::tally::{InventionTally, MUCH};
 use super::trial_run::{STATES, try_edit};
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::suite::Options;
 use crate::trials::{Trial, vehicles};
 use job::pipeline::OccPipeline;
@@ -43,7 +43,7 @@ pub struct Invention {
 /// Figures of one preset.
 #[derive(Default)]
 struct OfPreset {
-    kinds: BTreeMap<&'static str, Tally>,
+    kinds: BTreeMap<&'static str, InventionTally>,
     added: Fit,
     moved: Fit,
 }
@@ -87,10 +87,10 @@ impl Options {
     /// Tries every edit of every scene with every preset, and compares inversion with fresh noise.
     pub(super) fn invention(
         &self,
-        material: &Material,
+        material: &TrialScenes,
         presets: &[Preset],
         pipeline: &OccPipeline,
-        progress: &dyn Progress,
+        progress: &dyn MeasurementProgress,
     ) -> anyhow::Result<Invention> {
         let base = GenParams {
             keep_objects: false,
@@ -126,7 +126,7 @@ impl Options {
             }
             fresh.add(pipeline, &scene, &trials, base.clone())?;
         }
-        if !matches!(material, Material::Files(_)) {
+        if !matches!(material, TrialScenes::Files(_)) {
             for i in material.count()..self.band_worlds {
                 progress.at("voxels of objects", i, self.band_worlds);
                 bands.add(material.scene(i)?.frame());

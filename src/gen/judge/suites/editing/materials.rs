@@ -10,7 +10,7 @@ use scene::{Frame, Scene, SensorRig, Unobserved};
 use world::voxelize::{Drive, Vertical, labelled};
 
 /// Scenes of one kind.
-pub enum Material {
+pub enum TrialScenes {
     /// Held-out worlds with all their voxels; holds their number.
     Complete(usize),
     /// Held-out worlds as a simulated labelling drive sees them, with the worlds' own layout and boxes; holds their
@@ -20,30 +20,30 @@ pub enum Material {
     Files(Vec<PathBuf>),
 }
 
-impl Material {
+impl TrialScenes {
     /// Name in reports.
     pub fn name(&self) -> &'static str {
         match self {
-            Material::Complete(_) => "complete",
-            Material::Labels(_) => "labels",
-            Material::Files(_) => "frames",
+            TrialScenes::Complete(_) => "complete",
+            TrialScenes::Labels(_) => "labels",
+            TrialScenes::Files(_) => "frames",
         }
     }
 
     /// Number of scenes.
     pub fn count(&self) -> usize {
         match self {
-            Material::Complete(n) | Material::Labels(n) => *n,
-            Material::Files(files) => files.len(),
+            TrialScenes::Complete(n) | TrialScenes::Labels(n) => *n,
+            TrialScenes::Files(files) => files.len(),
         }
     }
 
     /// Scene `index`. Errors name the file that cannot be read.
     pub fn scene(&self, index: usize) -> anyhow::Result<Scene> {
         Ok(match self {
-            Material::Complete(_) => scene(index as u64),
-            Material::Labels(_) => labelled_scene(index as u64),
-            Material::Files(files) => open::labels(&files[index])?,
+            TrialScenes::Complete(_) => scene(index as u64),
+            TrialScenes::Labels(_) => labelled_scene(index as u64),
+            TrialScenes::Files(files) => open::labels(&files[index])?,
         })
     }
 }
@@ -64,8 +64,8 @@ mod tests {
 
     #[test]
     fn labels_are_of_the_same_world_and_say_what_they_miss() {
-        let whole = Material::Complete(1).scene(0).expect("a world");
-        let seen = Material::Labels(1).scene(0).expect("a world");
+        let whole = TrialScenes::Complete(1).scene(0).expect("a world");
+        let seen = TrialScenes::Labels(1).scene(0).expect("a world");
         let (whole, seen) = (whole.frame(), seen.frame());
         assert_eq!((&whole.boxes, &whole.layout), (&seen.boxes, &seen.layout));
         assert!(seen.occupancy.count_set() < whole.occupancy.count_set());
@@ -75,7 +75,7 @@ mod tests {
             "{}",
             unobserved.total()
         );
-        let missing = Material::Files(vec![PathBuf::from("/nowhere/labels.npz")]);
+        let missing = TrialScenes::Files(vec![PathBuf::from("/nowhere/labels.npz")]);
         assert!(missing.scene(0).is_err() && missing.count() == 1);
     }
 }

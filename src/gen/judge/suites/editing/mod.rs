@@ -13,14 +13,14 @@ mod trial_run;
 use anyhow::bail;
 use serde_json::json;
 
-use crate::Progress;
-use crate::suite::{Found, Options};
+use crate::MeasurementProgress;
+use crate::suite::{Options, SuiteFigures};
 use crate::trials::Trial;
 use authoring::open;
 use editor::Document;
 use job::pipeline::OccPipeline;
 use job::{GenParams, GenReport, Job, JobCtx, Pipeline};
-use materials::Material;
+use materials::TrialScenes;
 use scene::{Scene, VoxelGrid};
 
 impl Options {
@@ -28,8 +28,8 @@ impl Options {
     pub(crate) fn editing(
         &self,
         pipeline: &mut OccPipeline,
-        progress: &dyn Progress,
-    ) -> anyhow::Result<Found> {
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<SuiteFigures> {
         if self.vehicles == 0 {
             bail!("--vehicles is 0, expected at least 1");
         }
@@ -37,18 +37,21 @@ impl Options {
         if let Some(dir) = &self.data {
             let mut files = open::files_below(dir, "npz", "Occ3D frames")?;
             files.truncate(self.frames);
-            let material = Material::Files(files);
+            let material = TrialScenes::Files(files);
             let found = self.invention(&material, &presets, pipeline, progress)?;
             let report =
                 json!({ "data": dir, "files": material.count(), "invented": { "frames": found.report } });
             return Ok((report, Vec::new()));
         }
         let (mut report, mut bars) = self.success(pipeline, progress)?;
-        for material in [Material::Complete(self.frames), Material::Labels(self.frames)] {
+        for material in [
+            TrialScenes::Complete(self.frames),
+            TrialScenes::Labels(self.frames),
+        ] {
             let found = self.invention(&material, &presets, pipeline, progress)?;
             report["invented"][material.name()] = found.report;
             let name = match material {
-                Material::Complete(_) => "removals that invent little, complete worlds",
+                TrialScenes::Complete(_) => "removals that invent little, complete worlds",
                 _ => "removals that invent little, simulated labels",
             };
             bars.extend(found.removals_clear.map(|share| (name, share, 0.95)));

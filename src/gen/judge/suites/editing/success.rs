@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::edited;
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::scene;
 use crate::suite::{Bar, Options, with_interval};
 use crate::trials::{KINDS, Reached, Trial};
@@ -18,7 +18,7 @@ use scene::Window;
 
 /// Figures of one kind of edit.
 #[derive(Default)]
-struct Kind {
+struct EditKindFigures {
     success: Vec<f64>,
     success_in_editor: Vec<f64>,
     gone: Vec<f64>,
@@ -31,7 +31,7 @@ struct Kind {
     differs_from_dense: Vec<f64>,
 }
 
-impl Kind {
+impl EditKindFigures {
     fn add(&mut self, reached: Reached, report: &GenReport) {
         self.success.push(f64::from(u8::from(reached.success())));
         self.gone.extend(reached.gone);
@@ -72,14 +72,14 @@ impl Options {
     pub(crate) fn success(
         &self,
         pipeline: &mut OccPipeline,
-        progress: &dyn Progress,
+        progress: &dyn MeasurementProgress,
     ) -> anyhow::Result<(Value, Vec<Bar>)> {
         let params = GenParams {
             keep_objects: false,
             ..self.edit_params.clone()
         };
         let ctx = JobCtx::detached();
-        let mut kinds: BTreeMap<&str, Kind> = BTreeMap::new();
+        let mut kinds: BTreeMap<&str, EditKindFigures> = BTreeMap::new();
         let (mut invert_s, mut round_trip) = (Vec::new(), Vec::new());
         let mut untouched = 0;
         for i in 0..self.frames {

@@ -14,7 +14,7 @@ pub const MUCH: usize = 20;
 
 /// Figures of one state.
 #[derive(Default)]
-struct State {
+struct StateFigures {
     success: Vec<f64>,
     invented: Vec<f64>,
     apart: Vec<f64>,
@@ -25,9 +25,9 @@ struct State {
 
 /// Edits of one kind with one preset.
 #[derive(Default)]
-pub struct Tally([State; 3]);
+pub struct InventionTally([StateFigures; 3]);
 
-impl Tally {
+impl InventionTally {
     /// Takes an edit in.
     pub fn add(&mut self, tried: &Tried) {
         for (i, state) in self.0.iter_mut().enumerate() {

@@ -10,7 +10,7 @@ use job::keep_clear::{keep_clear, keep_unobserved};
 use job::keep_grounded::keep_grounded;
 use job::keep_objects::{keep_ground, keep_objects};
 use job::pipeline::OccPipeline;
-use job::request::{Request, voxels_of};
+use job::request::{VoxelRequest, voxels_of};
 use job::{GenParams, Job, JobCtx, Pipeline};
 use scene::{BevLayout, Class, Extent, Scene, SceneBox, VoxelGrid, draft};
 
@@ -100,7 +100,7 @@ pub fn try_edit(
     };
     let networks = pipeline.clone().run(&job, &JobCtx::detached())?.occupancy;
     let frame = Arc::clone(job.scene.frame());
-    let (region, request) = (inpaint::region_of(&frame, &params), Request::of(&frame));
+    let (region, request) = (inpaint::region_of(&frame, &params), VoxelRequest::of(&frame));
     let mut kept = networks.clone();
     keep_objects(&frame, &region, false, &mut kept);
     keep_ground(&frame, &region, &mut kept);

@@ -10,9 +10,9 @@ use scene::{Class, Extent, Pose, SceneBox, VoxelGrid, Window};
 
 /// Figures of a method by name, one per drive.
 #[derive(Default)]
-pub struct Rows(pub BTreeMap<String, Vec<f64>>);
+pub struct ForecastFigures(pub BTreeMap<String, Vec<f64>>);
 
-impl Rows {
+impl ForecastFigures {
     /// Adds a value; `None` is left out.
     pub fn add(&mut self, name: &str, value: Option<f64>) {
         self.0.entry(name.to_owned()).or_default().extend(value);

@@ -29,7 +29,7 @@ pub enum Wish {
 
 /// A way to forecast.
 #[derive(Clone, Copy)]
-pub struct Method {
+pub struct ForecastMethod {
     /// Name in reports.
     pub name: &'static str,
     how: How,
@@ -48,43 +48,43 @@ enum How {
 }
 
 /// All methods.
-pub const METHODS: [Method; 8] = [
-    Method {
+pub const METHODS: [ForecastMethod; 8] = [
+    ForecastMethod {
         name: "last frame, warped",
         how: How::Warped,
     },
-    Method {
+    ForecastMethod {
         name: "constant velocity",
         how: How::ConstantVelocity,
     },
-    Method {
+    ForecastMethod {
         name: "draft of the layout",
         how: How::Draft,
     },
-    Method {
+    ForecastMethod {
         name: "single frames",
         how: How::Single,
     },
-    Method {
+    ForecastMethod {
         name: "temporal, same cell",
         how: How::SameCell,
     },
-    Method {
+    ForecastMethod {
         name: "temporal, old decoder",
         how: How::WithoutDecoder,
     },
-    Method {
+    ForecastMethod {
         name: "temporal",
         how: How::Together,
     },
-    Method {
+    ForecastMethod {
         name: "canvas, inpainted",
         how: How::Canvas,
     },
 ];
 
 /// Layout, boxes and pose of a frame to come, as far as the method knows them.
-struct Told {
+struct ForecastCondition {
     layout: BevLayout,
     boxes: BTreeMap<BoxId, SceneBox>,
     pose: Pose,
@@ -131,12 +131,12 @@ impl<'a> Drives<'a> {
     /// The frames after the known ones; `None` if the method's weights are missing.
     pub fn forecast(
         &self,
-        method: Method,
+        method: ForecastMethod,
         truth: &[DriveFrame],
         wish: Wish,
         seed: u64,
     ) -> anyhow::Result<Option<Vec<VoxelGrid>>> {
-        let told: Vec<Told> = (KNOWN..truth.len()).map(|i| told(truth, i, wish)).collect();
+        let told: Vec<ForecastCondition> = (KNOWN..truth.len()).map(|i| told(truth, i, wish)).collect();
         let last = &truth[KNOWN - 1];
         Ok(Some(match method.how {
             How::Warped => told
@@ -146,7 +146,7 @@ impl<'a> Drives<'a> {
             How::ConstantVelocity => told
                 .iter()
                 .enumerate()
-                .map(|(i, to)| moved_world(&[Seen::of(last)], last, to, i).0)
+                .map(|(i, to)| moved_world(&[PosedVoxels::of(last)], last, to, i).0)
                 .collect(),
             How::Draft => told
                 .iter()
@@ -169,7 +169,7 @@ impl<'a> Drives<'a> {
         &self,
         (time, decoder): (Option<&OccDitTime>, Option<&TimeDecoder>),
         truth: &[DriveFrame],
-        told: &[Told],
+        told: &[ForecastCondition],
         seed: u64,
     ) -> anyhow::Result<Vec<VoxelGrid>> {
         let last = &truth[KNOWN - 1];
@@ -226,10 +226,15 @@ impl<'a> Drives<'a> {
 
     /// Frames drawn on the canvas: seen or drawn places stay, moving objects go on, and the networks draw what comes
     /// into view.
-    fn on_canvas(&self, last: &DriveFrame, told: &[Told], seed: u64) -> anyhow::Result<Vec<VoxelGrid>> {
+    fn on_canvas(
+        &self,
+        last: &DriveFrame,
+        told: &[ForecastCondition],
+        seed: u64,
+    ) -> anyhow::Result<Vec<VoxelGrid>> {
         let density = Density::of(&last.dense, last.layout.cells());
         let vae = &self.models.vae;
-        let mut seen_from = vec![Seen::of(last)];
+        let mut seen_from = vec![PosedVoxels::of(last)];
         let mut out = Vec::new();
         for (i, to) in told.iter().enumerate() {
             let (world, seen) = moved_world(&seen_from, last, to, i);
@@ -254,7 +259,7 @@ impl<'a> Drives<'a> {
                 let (x, y) = (c / Window::NY, c % Window::NY);
                 *grid.column_mut(x, y) = *world.column(x, y);
             }
-            seen_from.push(Seen {
+            seen_from.push(PosedVoxels {
                 grid: grid.clone(),
                 pose: to.pose,
                 moving: moving_columns(to.boxes.values()),
@@ -293,11 +298,11 @@ impl<'a> Drives<'a> {
 }
 
 /// Layout, boxes and pose that a method knows of frame `i`. The vehicle's own path is always known.
-fn told(truth: &[DriveFrame], i: usize, wish: Wish) -> Told {
+fn told(truth: &[DriveFrame], i: usize, wish: Wish) -> ForecastCondition {
     let (last, came) = (&truth[KNOWN - 1], &truth[i]);
     let to = pose(came);
     if wish == Wish::Came {
-        return Told {
+        return ForecastCondition {
             layout: came.layout.clone(),
             boxes: came.boxes.clone(),
             pose: to,
@@ -331,7 +336,7 @@ fn told(truth: &[DriveFrame], i: usize, wish: Wish) -> Told {
             last.layout.relief.height_m(q.truncate())
         });
     }
-    Told {
+    ForecastCondition {
         layout,
         boxes,
         pose: to,
@@ -339,7 +344,7 @@ fn told(truth: &[DriveFrame], i: usize, wish: Wish) -> Told {
 }
 
 /// A frame's voxels seen from another pose; free where the frame saw nothing.
-fn warped(grid: &VoxelGrid, from: &Pose, to: &Told) -> VoxelGrid {
+fn warped(grid: &VoxelGrid, from: &Pose, to: &ForecastCondition) -> VoxelGrid {
     let mut out = VoxelGrid::new();
     for [x, y] in Extent::WINDOW.all_columns() {
         if let Some([i, j]) = column_in(Window::center(x, y, 0), &to.pose, from) {
@@ -350,14 +355,14 @@ fn warped(grid: &VoxelGrid, from: &Pose, to: &Told) -> VoxelGrid {
 }
 
 /// Voxels seen from one place.
-struct Seen {
+struct PosedVoxels {
     grid: VoxelGrid,
     pose: Pose,
     /// Columns, `[x][y]`, in which something moves.
     moving: Vec<bool>,
 }
 
-impl Seen {
+impl PosedVoxels {
     fn of(frame: &DriveFrame) -> Self {
         Self {
             grid: frame.dense.clone(),
@@ -369,7 +374,12 @@ impl Seen {
 
 /// The world `i + 1` steps after the last known frame: standing things as they were first seen, moving ones at their
 /// speed, the draft beyond; and which columns were seen.
-fn moved_world(seen_from: &[Seen], last: &DriveFrame, to: &Told, i: usize) -> (VoxelGrid, Vec<bool>) {
+fn moved_world(
+    seen_from: &[PosedVoxels],
+    last: &DriveFrame,
+    to: &ForecastCondition,
+    i: usize,
+) -> (VoxelGrid, Vec<bool>) {
     let from = pose(last);
     let drafted = draft::draft(&to.layout, to.boxes.values());
     let ground = draft::draft(&to.layout, std::iter::empty());

@@ -10,11 +10,11 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::TEST_SEED;
-use crate::suite::{Found, Options, with_interval};
+use crate::suite::{Options, SuiteFigures, with_interval};
 use authoring::drives::{FRAMES, STEP_S, drive_scene_of, frames_of};
-use figures::{Rows, flicker, shape_spread};
+use figures::{ForecastFigures, flicker, shape_spread};
 use job::pipeline::OccPipeline;
 use methods::{Drives, KNOWN, METHODS, Wish};
 use metrics::extractor::Extractor;
@@ -62,14 +62,18 @@ const COMPARISONS: [Comparison; 3] = [
 
 /// Results of a method.
 #[derive(Default)]
-struct Made {
-    rows: Rows,
+struct ForecastScores {
+    rows: ForecastFigures,
     places: Vec<Windows>,
 }
 
 impl Options {
     /// Runs all comparisons.
-    pub(crate) fn forecast(&self, pipeline: &OccPipeline, progress: &dyn Progress) -> anyhow::Result<Found> {
+    pub(crate) fn forecast(
+        &self,
+        pipeline: &OccPipeline,
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<SuiteFigures> {
         let drives = Drives::new(pipeline.models(), self.weights.as_deref())?;
         let extractor = Extractor::bundled()?;
         let mut report = serde_json::Map::new();
@@ -85,9 +89,9 @@ impl Options {
         &self,
         comparison: &Comparison,
         (drives, extractor): (&Drives<'_>, &Extractor),
-        progress: &dyn Progress,
+        progress: &dyn MeasurementProgress,
     ) -> anyhow::Result<Value> {
-        let mut made: BTreeMap<&str, Made> = BTreeMap::new();
+        let mut made: BTreeMap<&str, ForecastScores> = BTreeMap::new();
         let mut came: Vec<Windows> = Vec::new();
         let count = self.frames.div_ceil(comparison.every);
         for i in 0..count {
@@ -100,7 +104,7 @@ impl Options {
                 let Some(found) = drives.forecast(method, &truth, comparison.wish, i as u64)? else {
                     continue;
                 };
-                let Made { rows, places } = made.entry(method.name).or_default();
+                let ForecastScores { rows, places } = made.entry(method.name).or_default();
                 for (name, at) in comparison.compared {
                     let mut one = Confusion::default();
                     one.add(&truth[*at].dense, &found[at - KNOWN]);
@@ -114,7 +118,7 @@ impl Options {
                 places.push(stack.places());
             }
         }
-        let report = |made: &Made| -> anyhow::Result<Value> {
+        let report = |made: &ForecastScores| -> anyhow::Result<Value> {
             let mut row = made.rows.report();
             if count >= 2 {
                 let [frechet, kernel] = stacks::distances(&came, &made.places)?;
@@ -168,7 +172,7 @@ pub(crate) fn table(report: &Value) -> String {
 }
 
 /// Rows of a report.
-impl Rows {
+impl ForecastFigures {
     fn report(&self) -> Value {
         self.0
             .iter()

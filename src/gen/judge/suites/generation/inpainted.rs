@@ -8,7 +8,7 @@ use super::OTHER_SEED;
 use crate::suite::with_interval;
 use job::pipeline::OccPipeline;
 use job::region::Region;
-use job::{GenParams, Job, JobCtx, Named, Pipeline, RegionMode};
+use job::{ChosenDensities, GenParams, Job, JobCtx, Pipeline, RegionMode};
 use scene::{Class, Density, VoxelGrid, Window};
 
 /// Side of the square, columns; how often it is inpainted; and the step of its places.
@@ -85,7 +85,7 @@ fn inpainted_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64;
             strength: 1.0,
             keep_objects: false,
             seed: job.params.seed,
-            named: Named::default().or(&density),
+            named: ChosenDensities::default().or(&density),
             ..GenParams::default()
         },
         ..job.clone()

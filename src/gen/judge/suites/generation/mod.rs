@@ -16,11 +16,11 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use serde_json::json;
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::scene;
-use crate::suite::{Found, Options, with_interval};
+use crate::suite::{Options, SuiteFigures, with_interval};
 use agreement::Agreement;
-use authoring::scenery::{Drawer, SceneryWish};
+use authoring::scenery::{SceneryMethod, SceneryWish};
 use editor::Document;
 use follow::Follow;
 use given_background::Given;
@@ -31,7 +31,7 @@ use metrics::extractor::Extractor;
 use metrics::iou::Confusion;
 use nets::fine_vae;
 use numeric::quantile::median;
-use row::{ROWS, Row, Seen};
+use row::{ROWS, SceneFeatures, SceneSet};
 use scene::{Scene, VoxelGrid, draft};
 pub(crate) use table::{rows_table, table};
 use world::World;
@@ -46,8 +46,8 @@ const GENERATED: usize = 5;
 
 /// Figures of all frames.
 #[derive(Default)]
-struct Measured {
-    rows: [Row; ROWS.len()],
+struct GenerationFigures {
+    rows: [SceneSet; ROWS.len()],
     bare: Agreement,
     boxless: Agreement,
     likeness: Confusion,
@@ -64,14 +64,14 @@ impl Options {
     pub(crate) fn generation(
         &self,
         pipeline: &mut OccPipeline,
-        progress: &dyn Progress,
-    ) -> anyhow::Result<Found> {
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<SuiteFigures> {
         let extractor = Extractor::bundled()?;
         let params = GenParams {
             keep_objects: false,
             ..self.scene_params.clone()
         };
-        let mut measured = Measured::default();
+        let mut measured = GenerationFigures::default();
         for i in 0..self.frames {
             progress.at("generation", i, self.frames);
             self.frame(i, pipeline, params.clone(), &extractor, &mut measured)?;
@@ -113,7 +113,7 @@ impl Options {
         pipeline: &mut OccPipeline,
         mut params: GenParams,
         extractor: &Extractor,
-        measured: &mut Measured,
+        measured: &mut GenerationFigures,
     ) -> anyhow::Result<()> {
         let (world, other) = (scene(i as u64), scene((self.frames + i) as u64));
         let truth = world.frame().occupancy.clone();
@@ -145,8 +145,8 @@ impl Options {
             let result = pipeline.run(&Job { scene, params }, &JobCtx::detached())?;
             Ok(result.occupancy)
         };
-        let drawn = on_scenery(Drawer::Rules(None))?;
-        let learned = on_scenery(Drawer::Network)?;
+        let drawn = on_scenery(SceneryMethod::Rules(None))?;
+        let learned = on_scenery(SceneryMethod::Network)?;
         let mut bare = Scene::clone(&job.scene);
         bare.background = Arc::default();
         let job = Job {
@@ -204,9 +204,9 @@ impl Options {
             &undrafted,
             &naive,
         ];
-        let seen: Result<Vec<Seen>, _> = (0..ROWS.len())
+        let seen: Result<Vec<SceneFeatures>, _> = (0..ROWS.len())
             .into_par_iter()
-            .map(|r| Seen::of(of(r, &other, &job.scene), grids[r], i as u64, extractor))
+            .map(|r| SceneFeatures::of(of(r, &other, &job.scene), grids[r], i as u64, extractor))
             .collect();
         for (r, seen) in seen?.into_iter().enumerate() {
             measured.rows[r].add(of(r, &other, &job.scene), grids[r], seen);
@@ -221,7 +221,7 @@ fn of<'a>(row: usize, other: &'a Scene, world: &'a Scene) -> &'a Scene {
 }
 
 /// A scene with its scenery regenerated. The window does this by rules before it generates.
-fn with_drawn_scenery(scene: &Arc<Scene>, by: Drawer, seed: u64) -> anyhow::Result<Arc<Scene>> {
+fn with_drawn_scenery(scene: &Arc<Scene>, by: SceneryMethod, seed: u64) -> anyhow::Result<Arc<Scene>> {
     let mut document = Document::new((**scene).clone());
     let wish = SceneryWish {
         by,

@@ -51,7 +51,7 @@ pub const ROWS: [(&str, &str); 12] = [
 ];
 
 /// Features and figures kept of one scene.
-pub struct Seen {
+pub struct SceneFeatures {
     shape: ShapeFigures,
     pooled: Vec<f64>,
     cells: Windows,
@@ -62,7 +62,7 @@ pub struct Seen {
     findings: BTreeMap<&'static str, f64>,
 }
 
-impl Seen {
+impl SceneFeatures {
     /// Takes features of occupancy made for the layout and boxes of a scene; `index` seeds the choice of windows.
     pub fn of(scene: &Scene, grid: &VoxelGrid, index: u64, extractor: &Extractor) -> anyhow::Result<Self> {
         let cells = extractor.cells(grid)?;
@@ -126,19 +126,19 @@ fn findings(scene: &Scene, grid: &VoxelGrid) -> BTreeMap<&'static str, f64> {
 
 /// A set of scenes.
 #[derive(Default)]
-pub struct Row {
+pub struct SceneSet {
     pub agreement: Agreement,
-    pub scenes: Vec<Seen>,
+    pub scenes: Vec<SceneFeatures>,
 }
 
-impl Row {
+impl SceneSet {
     /// Takes one scene in.
-    pub fn add(&mut self, scene: &Scene, grid: &VoxelGrid, seen: Seen) {
+    pub fn add(&mut self, scene: &Scene, grid: &VoxelGrid, seen: SceneFeatures) {
         self.agreement.add(scene, grid);
         self.scenes.push(seen);
     }
 
-    fn each<T: Clone>(&self, of: impl Fn(&Seen) -> &T) -> Vec<T> {
+    fn each<T: Clone>(&self, of: impl Fn(&SceneFeatures) -> &T) -> Vec<T> {
         self.scenes.iter().map(|s| of(s).clone()).collect()
     }
 
@@ -166,8 +166,8 @@ impl Row {
     }
 
     /// All figures; distances only from two scenes on. `others` are the worlds that the set is compared with.
-    pub fn report(&self, others: &Row, seed: u64) -> anyhow::Result<Value> {
-        let pair = |of: fn(&Seen) -> &Windows| [others.each(of), self.each(of)];
+    pub fn report(&self, others: &SceneSet, seed: u64) -> anyhow::Result<Value> {
+        let pair = |of: fn(&SceneFeatures) -> &Windows| [others.each(of), self.each(of)];
         let mut out = json!({
             "layout_agreement": self.agreement.report(),
             "shape": self.shape(),

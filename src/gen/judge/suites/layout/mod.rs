@@ -11,10 +11,10 @@ use anyhow::Context;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::TEST_SEED;
 use crate::options::Who;
-use crate::suite::{Bar, Found, Options, with_interval};
+use crate::suite::{Bar, Options, SuiteFigures, with_interval};
 use authoring::prompting::{How, Laid, lay_out};
 use authoring::text;
 use check::Judge;
@@ -81,7 +81,7 @@ pub(super) struct Case {
     pub base: Option<String>,
     /// Number of boxes by class (or `vehicle`), exact or as least and most.
     #[serde(default)]
-    counts: BTreeMap<String, Number>,
+    counts: BTreeMap<String, ExpectedCount>,
     #[serde(default)]
     relations: Vec<Relation>,
     #[serde(default)]
@@ -103,7 +103,7 @@ pub(super) struct Case {
 
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
-enum Number {
+enum ExpectedCount {
     Exactly(usize),
     Between([usize; 2]),
 }
@@ -125,7 +125,7 @@ struct Relation {
 
 /// Shares of one group of cases.
 #[derive(Default)]
-pub(super) struct Tally {
+pub(super) struct CaseTally {
     cases: usize,
     counts: Vec<f64>,
     relations: Vec<f64>,
@@ -148,7 +148,7 @@ pub(super) struct Tally {
 
 /// Remarks of the program on a case.
 #[derive(Default)]
-pub(super) struct Told {
+pub(super) struct CaseRemarks {
     /// True if there was any remark.
     pub spoke: bool,
     /// Details for the report of a failed case.
@@ -238,7 +238,7 @@ fn in_short(scene: &Scene) -> Vec<String> {
         .collect()
 }
 
-impl Tally {
+impl CaseTally {
     /// Judges the scene of a case; `wrong` holds faults that are known already. `told` is called for a failed case
     /// only.
     pub(super) fn add(
@@ -247,7 +247,7 @@ impl Tally {
         scene: &Scene,
         wall_s: f64,
         mut wrong: Vec<String>,
-        told: impl FnOnce() -> Told,
+        told: impl FnOnce() -> CaseRemarks,
     ) {
         self.cases += 1;
         self.wall_s.push(wall_s);
@@ -263,8 +263,8 @@ impl Tally {
         for (class, number) in &case.counts {
             let found = judge.count(class);
             let (low, high) = match number {
-                Number::Exactly(n) => (*n, *n),
-                Number::Between([a, b]) => (*a, *b),
+                ExpectedCount::Exactly(n) => (*n, *n),
+                ExpectedCount::Between([a, b]) => (*a, *b),
             };
             let good = (low..=high).contains(&found);
             self.counts.push(f64::from(u8::from(good)));
@@ -406,14 +406,14 @@ impl Who {
 }
 
 /// Makes and judges a prompt.
-fn made(tally: &mut Tally, case: &Case, read: &Read, seed: u64, how: &How) {
+fn made(tally: &mut CaseTally, case: &Case, read: &Read, seed: u64, how: &How) {
     let started = Instant::now();
     let (reading, doubts) = (&read.reading, &read.doubts);
     let described = describe(reading);
     let remarks = &described.remarks;
     let (scene, laid) = place_description(&case.text, &described.description, started, seed, how);
     let short = text::shortfalls(&laid);
-    let told = || Told {
+    let told = || CaseRemarks {
         spoke: read.spoke || !(remarks.is_empty() && short.is_empty()),
         details: json!({ "reading": notation::write(reading), "doubts": doubts, "remarks": remarks, "shortfalls": short }),
         doubtful_base: false,
@@ -423,7 +423,7 @@ fn made(tally: &mut Tally, case: &Case, read: &Read, seed: u64, how: &How) {
 
 /// Carries out and judges an edit.
 fn changed(
-    tally: &mut Tally,
+    tally: &mut CaseTally,
     case: &Case,
     base: &str,
     read: &Read,
@@ -459,7 +459,7 @@ fn changed(
     document
         .apply_all("Edit by text", &at_the_start(&outcome.edits))
         .with_context(|| format!("{:?}", case.text))?;
-    let told = || Told {
+    let told = || CaseRemarks {
         // (which candidate was taken, or that the scene is so already, is no doubt)
         spoke: read.spoke
             || !outcome.questions.is_empty()
@@ -476,7 +476,7 @@ fn changed(
 
 impl Options {
     /// Judges prompts and text edits by [`Judge`].
-    pub(crate) fn layout(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
+    pub(crate) fn layout(&self, progress: &dyn MeasurementProgress) -> anyhow::Result<SuiteFigures> {
         let mut cases: Vec<Case> = Vec::new();
         for (name, text) in sets(self.prompts.as_deref().unwrap_or(Path::new(SETS)))? {
             cases.extend(cases_of(&name, &text)?);
@@ -492,7 +492,7 @@ impl Options {
             );
         }
         let how = How::default();
-        let (mut prompts, mut edits) = (Tally::default(), Tally::default());
+        let (mut prompts, mut edits) = (CaseTally::default(), CaseTally::default());
         for (i, case) in cases.iter().enumerate() {
             progress.at("layout", i, cases.len());
             let seed = TEST_SEED + case.line;
@@ -502,7 +502,7 @@ impl Options {
                 Some(base) => changed(&mut edits, case, base, &reading, seed, &how)?,
             }
         }
-        let both = |f: fn(&Tally) -> f64| f(&prompts).min(f(&edits));
+        let both = |f: fn(&CaseTally) -> f64| f(&prompts).min(f(&edits));
         let bars: Vec<Bar> = vec![
             ("counts_exact", both(|t| mean(&t.counts)), 0.96),
             ("relations_satisfied", both(|t| mean(&t.relations)), 0.88),

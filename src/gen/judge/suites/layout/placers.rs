@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::{Case, Tally, Told, place};
-use crate::Progress;
+use super::{Case, CaseRemarks, CaseTally, place};
+use crate::MeasurementProgress;
 use crate::held_out::TEST_SEED;
 use crate::suite::Options;
-use authoring::prompting::{How, Placer};
+use authoring::prompting::{How, PlacementMethod};
 use metrics::layout::{LayoutFigures, diversity};
 use numeric::quantile::median;
 use scene::SceneBox;
@@ -19,17 +19,17 @@ const DIVERSE: usize = 8;
 
 impl Options {
     /// Figures of each way to place, and the statistics beside those of real drives (`reference/real_statistics`).
-    pub(super) fn placers(&self, cases: &[Case], progress: &dyn Progress) -> Value {
+    pub(super) fn placers(&self, cases: &[Case], progress: &dyn MeasurementProgress) -> Value {
         // Spread over the sets.
         let prompts: Vec<&Case> = cases.iter().filter(|c| c.base.is_none()).collect();
         let n = self.placer_prompts.min(prompts.len());
         let chosen: Vec<&Case> = (0..n).map(|k| prompts[k * prompts.len() / n.max(1)]).collect();
         let mut out = serde_json::Map::new();
         for (placer, memory, name) in [
-            (Placer::Rules, false, "rules"),
-            (Placer::Rules, true, "rules_memory"),
-            (Placer::Diffusion, false, "diffusion"),
-            (Placer::Diffusion, true, "diffusion_memory"),
+            (PlacementMethod::Rules, false, "rules"),
+            (PlacementMethod::Rules, true, "rules_memory"),
+            (PlacementMethod::Diffusion, false, "diffusion"),
+            (PlacementMethod::Diffusion, true, "diffusion_memory"),
         ] {
             if n == 0 {
                 break;
@@ -40,7 +40,7 @@ impl Options {
                 weights: self.weights.clone(),
                 ..How::default()
             };
-            let mut tally = Tally::default();
+            let mut tally = CaseTally::default();
             let mut figures = LayoutFigures::default();
             let (mut moved, mut network_s, mut projection_s) = (Vec::new(), Vec::new(), Vec::new());
             let (mut by_rules, mut objects) = (0, 0);
@@ -49,7 +49,7 @@ impl Options {
                 progress.at(name, i, n);
                 let seed = TEST_SEED + case.line;
                 let (scene, laid) = place(&case.text, seed, &how);
-                tally.add(case, &scene, laid.wall_s, Vec::new(), Told::default);
+                tally.add(case, &scene, laid.wall_s, Vec::new(), CaseRemarks::default);
                 figures.add(&RoadMap::new(&laid.road.layout), &laid.placement.boxes);
                 objects += laid.placement.boxes.len();
                 if let Some(d) = &laid.diffused {
@@ -86,7 +86,7 @@ impl Options {
                 .collect();
             report["medians_off_real"] = json!(off.iter().sum::<f64>() / off.len().max(1) as f64);
             report["diversity"] = json!({ "footprints": mean(|s| s.0), "displacement_m": mean(|s| s.1), "prompts": spread.len() });
-            if placer == Placer::Diffusion {
+            if placer == PlacementMethod::Diffusion {
                 report["diffusion"] = json!({
                     "network_s_median": median(&network_s),
                     "projection_s_median": median(&projection_s),

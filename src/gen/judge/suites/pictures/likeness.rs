@@ -5,7 +5,7 @@
 use anyhow::Context;
 use serde_json::{Value, json};
 
-use super::{Rendered, refs_of};
+use super::{RenderedRig, refs_of};
 use dataset::picture_pairs::poses;
 use dataset::world_of;
 use metrics::scenewise::{frechet, kernel, standardised};
@@ -48,7 +48,7 @@ impl Likeness {
         let [pose, _] = poses(&frame, &mut Draw::new(seed, "learned pictures"));
         let rig = SensorRig::default().standing_at(&pose);
         let (time, weather) = light_of(light);
-        let rendered = Rendered::of(&PaintInput {
+        let rendered = RenderedRig::of(&PaintInput {
             frame: &frame,
             rig: &rig,
             background: &world.background,

@@ -12,12 +12,12 @@ use anyhow::Context;
 use serde_json::{Value, json};
 
 use self::likeness::{Likeness, light_of};
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::TEST_SEED;
-use crate::suite::{Found, Options, with_interval};
+use crate::suite::{Options, SuiteFigures, with_interval};
 use dataset::picture_pairs::poses;
 use dataset::world_of;
-use metrics::pictures::{Difference, Taken};
+use metrics::pictures::{DepthPicture, PixelDifference};
 use metrics::stats::mean_ci95;
 use nets::picture::{PictureNets, PictureSegmenter};
 use numeric::quantile::median;
@@ -49,7 +49,7 @@ const PRIORS: [(bool, NoisePrior); 6] = [
 
 /// Figures, one value per world.
 #[derive(Default)]
-struct Figures {
+struct PictureFigures {
     rendered: Vec<f64>,
     learned: Vec<f64>,
     after: Vec<f64>,
@@ -73,7 +73,7 @@ struct Figures {
 }
 
 /// Renderings of the cameras of a rig: pictures and truths, and the cameras at that size.
-struct Rendered {
+struct RenderedRig {
     cameras: Vec<Camera>,
     images: Vec<CameraImage>,
     pixels: Vec<Vec<TruthPixel>>,
@@ -81,7 +81,7 @@ struct Rendered {
     hints: Vec<PictureHints>,
 }
 
-impl Rendered {
+impl RenderedRig {
     fn of(input: &PaintInput<'_>) -> Self {
         let appearance = Appearance::with_things(input.frame, input.background, input.rig, &input.conditions);
         let mut out = Self {
@@ -106,8 +106,8 @@ impl Rendered {
         out
     }
 
-    fn taken<'a>(&'a self, i: usize, image: &'a CameraImage) -> Taken<'a> {
-        Taken {
+    fn taken<'a>(&'a self, i: usize, image: &'a CameraImage) -> DepthPicture<'a> {
+        DepthPicture {
             camera: &self.cameras[i],
             image,
             depth_m: &self.depths[i],
@@ -116,7 +116,7 @@ impl Rendered {
 
     /// Difference of pictures from those of another moment.
     fn since(&self, then: &Self, [now, before]: [&[&CameraImage]; 2]) -> f64 {
-        let mut apart = Difference::default();
+        let mut apart = PixelDifference::default();
         for (i, (now, before)) in now.iter().zip(before).enumerate() {
             apart.add(&self.taken(i, now), &then.taken(i, before));
         }
@@ -125,7 +125,7 @@ impl Rendered {
 
     /// Difference between pictures of different cameras.
     fn between(&self, images: &[&CameraImage]) -> f64 {
-        let mut apart = Difference::default();
+        let mut apart = PixelDifference::default();
         for i in 0..images.len() {
             for j in (0..images.len()).filter(|j| *j != i) {
                 apart.add(&self.taken(i, images[i]), &self.taken(j, images[j]));
@@ -136,7 +136,7 @@ impl Rendered {
 }
 
 /// Share of the pixels that the segmenter classifies rightly.
-fn agreement(net: &PictureSegmenter, rendered: &Rendered, images: &[&CameraImage]) -> anyhow::Result<f64> {
+fn agreement(net: &PictureSegmenter, rendered: &RenderedRig, images: &[&CameraImage]) -> anyhow::Result<f64> {
     let (mut right, mut all) = (0usize, 0usize);
     for (image, truth) in images.iter().zip(&rendered.pixels) {
         let classes = net.classes(&colours(image), [image.height, image.width])?;
@@ -161,13 +161,13 @@ fn frame_of(world: &World) -> Frame {
 
 /// Numbers of pixels that differ: those that show what an edit changed or lie around it, and others; and the number of
 /// all pixels.
-fn changes(before: &Rendered, after: &Rendered, [old, new]: [&[Arc<CameraImage>]; 2]) -> [usize; 3] {
+fn changes(before: &RenderedRig, after: &RenderedRig, [old, new]: [&[Arc<CameraImage>]; 2]) -> [usize; 3] {
     let [mut touched, mut elsewhere, mut all] = [0; 3];
     for (i, (old, new)) in old.iter().zip(new).enumerate() {
         let (width, height) = (old.width as i64, old.height as i64);
         let differs = |x: i64, y: i64| {
             let at = (y * width + x) as usize;
-            let shown = |r: &Rendered| {
+            let shown = |r: &RenderedRig| {
                 let (pixel, hints) = (&r.pixels[i][at], &r.hints[i]);
                 let light = [0, 1, 2].map(|c| r.images[i].rgba[at * 4 + c]);
                 (
@@ -204,7 +204,7 @@ fn changes(before: &Rendered, after: &Rendered, [old, new]: [&[Arc<CameraImage>]
 }
 
 /// Watches a painting without stopping it.
-pub(super) fn go_on(_: sensors::painter::Progress<'_>) -> ControlFlow<()> {
+pub(super) fn go_on(_: sensors::painter::PaintProgress<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -216,7 +216,7 @@ fn refs_of(images: &[CameraImage]) -> Vec<&CameraImage> {
     images.iter().collect()
 }
 
-impl Figures {
+impl PictureFigures {
     fn add(
         &mut self,
         index: u64,
@@ -239,7 +239,7 @@ impl Figures {
         let start = Instant::now();
         let first = memory.paint(&input, go_on)?;
         self.first_s.push(start.elapsed().as_secs_f64());
-        let rendered = Rendered::of(&input);
+        let rendered = RenderedRig::of(&input);
         let renders = refs_of(&rendered.images);
         self.likeness.add(segmenter, &renders, &refs(&first))?;
         self.rendered.push(agreement(segmenter, &rendered, &renders)?);
@@ -251,7 +251,7 @@ impl Figures {
             rig: &rig_ahead,
             ..input
         };
-        let now = Rendered::of(&ahead);
+        let now = RenderedRig::of(&ahead);
         let (next, alone) = (memory.paint(&ahead, go_on)?, painter().paint(&ahead, go_on)?);
         let since = |images: &[Arc<CameraImage>]| now.since(&rendered, [&refs(images), &refs(&first)]);
         let (after, without) = (since(&next), since(&alone));
@@ -293,7 +293,7 @@ impl Figures {
         let start = Instant::now();
         let painted = memory.paint(&edited, go_on)?;
         self.edit_s.push(start.elapsed().as_secs_f64());
-        let [touched, elsewhere, all] = changes(&rendered, &Rendered::of(&edited), [&first, &painted]);
+        let [touched, elsewhere, all] = changes(&rendered, &RenderedRig::of(&edited), [&first, &painted]);
         self.painted_share.push(touched as f64 / all.max(1) as f64);
         self.elsewhere_px += elsewhere;
         Ok(())
@@ -306,7 +306,7 @@ fn less(a: &[f64], b: &[f64]) -> Value {
     with_interval(&each)
 }
 
-impl Figures {
+impl PictureFigures {
     /// Differences over time by source of the noise, and how much smaller they are than with noise of the frame's own.
     fn by_noise(&self) -> Value {
         let [frames, places, surfaces, told_frames, told_places, told_surfaces] = &self.priors;
@@ -329,10 +329,10 @@ impl Figures {
 
 impl Options {
     /// Judges agreement, likeness over time and between cameras, edits and times.
-    pub(crate) fn pictures(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
+    pub(crate) fn pictures(&self, progress: &dyn MeasurementProgress) -> anyhow::Result<SuiteFigures> {
         let nets = PictureNets::bundled().context("the shipped picture networks")?;
         let segmenter = PictureSegmenter::bundled().context("the shipped segmenter")?;
-        let mut found = Figures::default();
+        let mut found = PictureFigures::default();
         for i in 0..self.frames {
             progress.at("pictures", i, self.frames);
             found.add(i as u64, &nets, &segmenter)?;

@@ -9,9 +9,9 @@ use std::path::Path;
 use anyhow::Context;
 use serde_json::{Value, json};
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::{TEST_SEED, scene};
-use crate::suite::{Found, Options, with_interval};
+use crate::suite::{Options, SuiteFigures, with_interval};
 use authoring::open;
 use dataset::occupancy_frame;
 use formats::occ3d;
@@ -30,13 +30,13 @@ const TOLD: usize = 3;
 
 /// Agreement of one mode on one kind of frames.
 #[derive(Default)]
-struct Kept {
+struct ReconstructionAgreement {
     total: Confusion,
     miou: Vec<f64>,
     iou: Vec<f64>,
 }
 
-impl Kept {
+impl ReconstructionAgreement {
     fn add(&mut self, truth: &VoxelGrid, found: &VoxelGrid) {
         let mut one = Confusion::default();
         one.add(truth, found);
@@ -72,7 +72,7 @@ pub(super) fn per_class(total: &Confusion) -> BTreeMap<&'static str, f64> {
     Class::ALL[..17].iter().filter_map(iou).collect()
 }
 
-fn report(kept: &[Kept; MODES.len()]) -> Value {
+fn report(kept: &[ReconstructionAgreement; MODES.len()]) -> Value {
     let each = MODES.iter().zip(kept);
     each.map(|(mode, kept)| ((*mode).to_owned(), kept.report()))
         .collect()
@@ -85,7 +85,7 @@ fn try_all(
     truth: &VoxelGrid,
     seed: u64,
     input: DecoderInput<'_>,
-    kept: &mut [Kept; MODES.len()],
+    kept: &mut [ReconstructionAgreement; MODES.len()],
 ) -> anyhow::Result<VoxelGrid> {
     let latent = vae.encode(truth)?;
     let mean = vae.decode(&latent)?;
@@ -98,9 +98,13 @@ fn try_all(
 
 impl Options {
     /// Judges encoding and decoding of complete worlds and simulated labels.
-    pub(crate) fn vae(&self, pipeline: &OccPipeline, progress: &dyn Progress) -> anyhow::Result<Found> {
+    pub(crate) fn vae(
+        &self,
+        pipeline: &OccPipeline,
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<SuiteFigures> {
         let (vae, fine) = (&pipeline.models().vae, fine_vae()?);
-        let [mut complete, mut labels] = <[[Kept; MODES.len()]; 2]>::default();
+        let [mut complete, mut labels] = <[[ReconstructionAgreement; MODES.len()]; 2]>::default();
         let (mut agreement, mut slopes) = (AgreementCount::default(), Slopes::default());
         for i in 0..self.frames {
             progress.at("vae", i, self.frames);
@@ -136,10 +140,13 @@ impl Options {
         &self,
         dir: &Path,
         pipeline: &OccPipeline,
-        progress: &dyn Progress,
-    ) -> anyhow::Result<Found> {
+        progress: &dyn MeasurementProgress,
+    ) -> anyhow::Result<SuiteFigures> {
         let (vae, fine) = (&pipeline.models().vae, fine_vae()?);
-        let (mut kept, mut slopes) = (<[Kept; MODES.len()]>::default(), Slopes::default());
+        let (mut kept, mut slopes) = (
+            <[ReconstructionAgreement; MODES.len()]>::default(),
+            Slopes::default(),
+        );
         let files = open::files_below(dir, "npz", "Occ3D frames")?;
         let used = &files[..files.len().min(self.frames)];
         for (i, path) in used.iter().enumerate() {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::scene;
 use crate::suite::{Options, with_interval};
 use editor::checks::{Severity, run_checks};
@@ -16,7 +16,7 @@ const MOST_WITH_ERRORS: f64 = 0.01;
 
 impl Options {
     /// Shape figures and findings of complete worlds, one per frame asked for; and whether few enough have an error.
-    pub(super) fn world_complete(&self, progress: &dyn Progress) -> (Value, bool) {
+    pub(super) fn world_complete(&self, progress: &dyn MeasurementProgress) -> (Value, bool) {
         let indices: Vec<usize> = (0..self.frames).collect();
         let mut shapes: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
         let mut findings: BTreeMap<&str, usize> = BTreeMap::new();

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{Targets, outside};
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::TEST_SEED;
 use crate::suite::Options;
 use dataset::world_of;
@@ -29,7 +29,7 @@ pub fn lidar_rows(sums: &SweepFigures) -> anyhow::Result<(Vec<Value>, [usize; 2]
 impl Options {
     /// Figures of simulated sweeps: rows, those outside the real range, and how well a trivial predictor tells which
     /// echoes are lost; and how many figures are inside.
-    pub fn world_lidar(&self, progress: &dyn Progress) -> anyhow::Result<(Value, [usize; 2])> {
+    pub fn world_lidar(&self, progress: &dyn MeasurementProgress) -> anyhow::Result<(Value, [usize; 2])> {
         let pattern = &SensorRig::default().lidars[0];
         let mut sums = SweepFigures::default();
         let frames: Vec<usize> = (0..self.frames).collect();

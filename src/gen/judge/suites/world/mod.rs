@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::Progress;
+use crate::MeasurementProgress;
 use crate::held_out::TEST_SEED;
-use crate::suite::{Found, Options};
+use crate::suite::{Options, SuiteFigures};
 use dataset::{occupancy_frame, world_of};
 use metrics::occupancy::OccupancyStatistics;
 use scene::Class;
@@ -20,12 +20,12 @@ const TARGETS: &str = assets::statistics::OCC3D;
 /// A file of `assets/statistics`.
 #[derive(Deserialize)]
 pub(super) struct Targets {
-    targets: Vec<Target>,
+    targets: Vec<ReferenceFigure>,
 }
 
 /// One figure: its measured value, and the range in which the mean of a data set is plausible.
 #[derive(Deserialize)]
-struct Target {
+struct ReferenceFigure {
     metric: String,
     value: f64,
     accept: [f64; 2],
@@ -35,7 +35,7 @@ impl Targets {
     /// One row per figure, and the number of figures inside their accepted range.
     pub(super) fn compare(&self, found: impl Fn(&str) -> Option<f64>) -> (Vec<Value>, usize) {
         let mut inside = 0;
-        let row = |target: &Target| {
+        let row = |target: &ReferenceFigure| {
             let found = found(&target.metric);
             let [low, high] = target.accept;
             let accepted = found.is_some_and(|f| (low..=high).contains(&f));
@@ -63,7 +63,7 @@ pub(super) fn outside(rows: &[Value]) -> Vec<&Value> {
 
 impl Options {
     /// Statistics of simulated labels; the bar is the share of figures inside their accepted range.
-    pub(crate) fn world(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
+    pub(crate) fn world(&self, progress: &dyn MeasurementProgress) -> anyhow::Result<SuiteFigures> {
         let targets: Targets = serde_json::from_str(TARGETS)?;
         let mut statistics = OccupancyStatistics::default();
         let frames: Vec<usize> = (0..self.frames).collect();

@@ -180,7 +180,7 @@ fn refuses_sizes_and_ids() {
         ));
     }
     assert!(nets.dit.v(&x[1..], 1.0, &told, None).is_err());
-    let sampling = |steps| Sampling {
+    let sampling = |steps| PictureSampling {
         told: &told,
         silent: None,
         before: None,

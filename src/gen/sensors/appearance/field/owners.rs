@@ -13,7 +13,7 @@ const MARGIN_M: f64 = Extent::VOXEL_M;
 
 /// Look of a thing of man-made voxels.
 #[derive(Clone, Copy, Debug)]
-pub struct Owner {
+pub struct ColumnOwner {
     /// See [`Thing::look`].
     pub look: u32,
     /// Properties of its form; `None` for a post, whose voxels are all near one another.
@@ -37,7 +37,7 @@ pub struct OwnForm {
 #[derive(Clone, Debug, Default)]
 pub struct Owners {
     /// Owners in the order of their ids.
-    pub all: Vec<Owner>,
+    pub all: Vec<ColumnOwner>,
     /// For each column of the padded field `[x][y]`: 0, or one more than the place in `all`. Empty if no column has an
     /// owner.
     pub of: Vec<u16>,
@@ -54,7 +54,7 @@ impl Owners {
             return Self::default();
         }
         let mut of = vec![0u16; shape.nx * shape.ny];
-        let mut all: Vec<Owner> = things.iter().map(|t| owner(t, layout)).collect();
+        let mut all: Vec<ColumnOwner> = things.iter().map(|t| owner(t, layout)).collect();
         // A ground plan takes precedence over a margin, a smaller thing over a larger one.
         for margin_m in [MARGIN_M, 0.0] {
             for rank in 0..3 {
@@ -86,7 +86,7 @@ fn rank(form: &Form) -> usize {
     }
 }
 
-fn owner(thing: &Thing, layout: &BevLayout) -> Owner {
+fn owner(thing: &Thing, layout: &BevLayout) -> ColumnOwner {
     let form = &thing.form;
     let points_m = form.points_m();
     let closed = matches!(form, Form::Building(_));
@@ -112,7 +112,7 @@ fn owner(thing: &Thing, layout: &BevLayout) -> Owner {
         .round()
         .clamp(1.0, Extent::NZ as f64);
     let width_m = 2.0 * form.overhang_m();
-    Owner {
+    ColumnOwner {
         look: thing.look,
         form: (!matches!(form, Form::Post(_))).then(|| OwnForm {
             axis: match sum == DVec2::ZERO {

@@ -26,13 +26,13 @@ const DEEPEST: u32 = 12;
 pub const FARTHEST_M: f64 = (REACH + AROUND) as f64 * scene::Extent::VOXEL_M;
 
 /// Columns `[x][y]` of the field that hold man-made voxels.
-struct Made<'a> {
+struct ManmadeColumns<'a> {
     shape: &'a FieldShape,
     solid: &'a [u8],
     has: Vec<bool>,
 }
 
-impl<'a> Made<'a> {
+impl<'a> ManmadeColumns<'a> {
     fn new(shape: &'a FieldShape, solid: &'a [u8]) -> Self {
         let FieldShape { nx, ny, .. } = *shape;
         let id = Class::Manmade.id();
@@ -158,7 +158,7 @@ pub fn structures(
     owners: &Owners,
     seed: u32,
 ) -> (Vec<u16>, Vec<Structure>) {
-    let made = Made::new(shape, solid);
+    let made = ManmadeColumns::new(shape, solid);
     let owned = owned(&made, owners);
     let mut of = vec![0u16; made.has.len()];
     let mut columns: BTreeMap<u16, Vec<usize>> = BTreeMap::new();
@@ -200,7 +200,7 @@ pub fn structures(
 
 /// Owner of each column that has voxels: the thing that stands there, or a thing near by whose voxels are connected
 /// with it.
-fn owned(made: &Made<'_>, owners: &Owners) -> Vec<u16> {
+fn owned(made: &ManmadeColumns<'_>, owners: &Owners) -> Vec<u16> {
     let mut owned = vec![0u16; made.has.len()];
     if owners.of.len() != owned.len() {
         return owned;
@@ -224,7 +224,7 @@ fn owned(made: &Made<'_>, owners: &Owners) -> Vec<u16> {
 
 /// For each of some columns the middle whose look it takes: the deepest of the columns that are connected with it
 /// within [`REACH`]. On a tie a hash of the place decides.
-fn middles(made: &Made<'_>, columns: &[usize]) -> Vec<usize> {
+fn middles(made: &ManmadeColumns<'_>, columns: &[usize]) -> Vec<usize> {
     let mut number = vec![u32::MAX; if columns.is_empty() { 0 } else { made.has.len() }];
     for (i, c) in columns.iter().enumerate() {
         number[*c] = i as u32;
@@ -262,7 +262,7 @@ fn middles(made: &Made<'_>, columns: &[usize]) -> Vec<usize> {
 }
 
 /// The columns without an owner that are connected with a middle within [`AROUND`] of it.
-fn near(made: &Made<'_>, owned: &[u16], middle: usize) -> Vec<usize> {
+fn near(made: &ManmadeColumns<'_>, owned: &[u16], middle: usize) -> Vec<usize> {
     let ny = made.shape.ny;
     let within =
         |c: usize| (c / ny).abs_diff(middle / ny) <= AROUND && (c % ny).abs_diff(middle % ny) <= AROUND;

@@ -4,37 +4,37 @@ use glam::{IVec3, Vec2, Vec3};
 
 use super::super::field::Structure;
 use super::super::noise::{hash1, ramp, unit, unit3, value2, value3};
-use super::super::prepared::{Appearance, Hit};
+use super::super::prepared::{Appearance, SurfaceHit};
 use super::super::things::rgb;
-use super::{Surface, band, calm, gray, visible};
+use super::{LitSurface, band, calm, gray, visible};
 use scene::Class;
 use scene::appearance::TRUNK;
 
 impl Appearance {
-    pub(super) fn voxel_surface(&self, hit: &Hit, label: u8, normal: Vec3, fp: f32) -> Surface {
+    pub(super) fn voxel_surface(&self, hit: &SurfaceHit, label: u8, normal: Vec3, fp: f32) -> LitSurface {
         let a = self.anchor(hit.p);
         let class = Class::from_id(label).unwrap_or(Class::Others);
         let mut s = match class {
             _ if label == TRUNK => {
                 let bark = value3(a * Vec3::new(14.0, 14.0, 3.0), 22);
-                Surface::matt(Vec3::new(0.105, 0.080, 0.058) * (0.55 + 0.9 * bark), normal)
+                LitSurface::matt(Vec3::new(0.105, 0.080, 0.058) * (0.55 + 0.9 * bark), normal)
             }
             Class::Vegetation => self.plant(a, normal, fp),
             Class::Manmade => self.structure(hit, a, normal, fp),
-            _ => Surface::matt(calm(class) * (0.8 + 0.4 * value3(a * 4.0, 21)), normal),
+            _ => LitSurface::matt(calm(class) * (0.8 + 0.4 * value3(a * 4.0, 21)), normal),
         };
         self.cover(&mut s, hit.p, if class == Class::Vegetation { 0.8 } else { 1.0 });
         s
     }
 
-    fn plant(&self, a: Vec3, normal: Vec3, fp: f32) -> Surface {
+    fn plant(&self, a: Vec3, normal: Vec3, fp: f32) -> LitSurface {
         let tree = value2(a.truncate() * 0.16, 23);
         let hue = Vec3::new(0.050, 0.095, 0.022).lerp(Vec3::new(0.115, 0.135, 0.030), tree);
         let hue = hue.lerp(Vec3::new(0.030, 0.065, 0.025), value2(a.truncate() * 0.07, 24));
         let fine = visible(fp, 0.10);
         let leaf = value3(a * 9.0, 25) * fine + 0.5 * (1.0 - fine);
         let clump = value3(a * 2.3, 26);
-        let mut s = Surface::matt(hue * (0.45 + 0.75 * leaf + 0.45 * clump), normal);
+        let mut s = LitSurface::matt(hue * (0.45 + 0.75 * leaf + 0.45 * clump), normal);
         let jitter = Vec3::new(
             value3(a * 13.0, 27) - 0.5,
             value3(a * 13.0, 28) - 0.5,
@@ -45,9 +45,9 @@ impl Appearance {
         s
     }
 
-    fn structure(&self, hit: &Hit, a: Vec3, normal: Vec3, fp: f32) -> Surface {
+    fn structure(&self, hit: &SurfaceHit, a: Vec3, normal: Vec3, fp: f32) -> LitSurface {
         let Some(structure) = self.field.structure_at(hit.p) else {
-            return Surface::matt(gray(0.35), normal);
+            return LitSurface::matt(gray(0.35), normal);
         };
         if structure.thin {
             let lamp = structure.height_m > 3.9;
@@ -63,7 +63,7 @@ impl Appearance {
             } else {
                 gray(if lamp { 0.11 } else { 0.24 })
             };
-            let mut s = Surface::matt(paint * (0.9 + 0.2 * value3(a * 5.0, 20)), normal);
+            let mut s = LitSurface::matt(paint * (0.9 + 0.2 * value3(a * 5.0, 20)), normal);
             (s.mirror, s.gloss) = (0.03, 0.4);
             if self.air.lamps > 0.0 && lamp && hit.p.z > structure.height_m - 0.55 {
                 s.emit = Vec3::new(1.0, 0.74, 0.42) * 3.5 * self.air.lamps;
@@ -73,7 +73,7 @@ impl Appearance {
         let mut normal = normal;
         if normal.z > 0.62 {
             let c = gray(0.20) * (0.8 + 0.4 * value2(a.truncate() * 1.2, 19));
-            return Surface::matt(c, Vec3::Z.lerp(normal, 0.4).normalize());
+            return LitSurface::matt(c, Vec3::Z.lerp(normal, 0.4).normalize());
         }
         // The wall's own direction instead of the voxels' steps.
         let flat = normal.truncate().normalize_or(Vec2::X);
@@ -96,7 +96,7 @@ impl Appearance {
         self.facade(structure, hit.p, Vec2::new(u, hit.p.z), a, normal, fp)
     }
 
-    fn facade(&self, s: &Structure, p: Vec3, at: Vec2, a: Vec3, normal: Vec3, fp: f32) -> Surface {
+    fn facade(&self, s: &Structure, p: Vec3, at: Vec2, a: Vec3, normal: Vec3, fp: f32) -> LitSurface {
         let walls = [
             rgb(198, 186, 164),
             rgb(166, 92, 70),
@@ -123,7 +123,7 @@ impl Appearance {
         } else {
             wall *= 1.0 + visible(fp, 0.05) * 0.12 * (value3(a * 24.0, 18) - 0.5);
         }
-        let mut out = Surface::matt(wall, normal);
+        let mut out = LitSurface::matt(wall, normal);
         if s.columns < 24 || s.height_m < 2.3 {
             // A wall, a shelter, a bench.
             return out;

@@ -4,20 +4,20 @@ use glam::{IVec3, Vec2, Vec3};
 
 use super::super::noise::{fbm2, ramp, unit3, value2};
 use super::super::prepared::Appearance;
-use super::{Surface, band, gray, visible};
+use super::{LitSurface, band, gray, visible};
 use scene::appearance::{KERB_EDGE_M, KERB_SEEN_M};
 use scene::truth::{self, TruthClass};
 use scene::{BevLayer, Class, PolylineKind};
 
 impl Appearance {
-    pub(super) fn ground_surface(&self, p: Vec3, normal: Vec3, fp: f32) -> Surface {
+    pub(super) fn ground_surface(&self, p: Vec3, normal: Vec3, fp: f32) -> LitSurface {
         let a = self.anchor(p).truncate();
         let p2 = p.truncate();
         let g = self.ground.at(p2, a);
         // The edge of the road, softened over a pixel.
         let edge = (fp * 0.5).max(KERB_EDGE_M);
         let road = ((g.inside_road_m + 0.014) / edge * 0.5 + 0.5).clamp(0.0, 1.0);
-        let mut s = Surface::matt(Vec3::ZERO, normal);
+        let mut s = LitSurface::matt(Vec3::ZERO, normal);
         if road > 0.0 {
             let r = self.road(p2, a, fp, g.inside_road_m);
             s.albedo += r.albedo * road;
@@ -69,7 +69,7 @@ impl Appearance {
         s
     }
 
-    fn road(&self, p: Vec2, a: Vec2, fp: f32, inside_m: f32) -> Surface {
+    fn road(&self, p: Vec2, a: Vec2, fp: f32, inside_m: f32) -> LitSurface {
         // Asphalt: patches of age, tracks of tyres, oil in the middle, grain, cracks.
         let age = fbm2(a * 0.11, 3, 51);
         let mut tone = 0.088 + 0.035 * (age - 0.5) + 0.012 * (value2(a * 0.9, 52) - 0.5);
@@ -98,7 +98,7 @@ impl Appearance {
         let worn = 0.80 + 0.25 * (value2(a * 5.0, 59) - 0.5)
             - 0.28 * ramp(0.60, 0.78, value2(a * 16.0, 60)) * visible(fp, 0.08);
         color = color.lerp(paint.0, (paint.1 * worn).clamp(0.0, 1.0));
-        let mut s = Surface::matt(color, Vec3::Z);
+        let mut s = LitSurface::matt(color, Vec3::Z);
         s.mirror = 0.012;
         s.gloss = 0.25;
         let air = &self.air;

@@ -4,13 +4,13 @@ use glam::{Vec2, Vec3};
 
 use super::super::noise::{ramp, unit, unit3, value2, value3};
 use super::super::prepared::Appearance;
-use super::super::things::{Material, Thing, rgb};
-use super::{Surface, TAIL, band, gray, visible};
+use super::super::things::{DrawnObject, PartMaterial, rgb};
+use super::{LitSurface, TAIL, band, gray, visible};
 use scene::Class;
 
 /// A place on an object.
 struct Spot<'a> {
-    t: &'a Thing,
+    t: &'a DrawnObject,
     /// In box coordinates, m.
     p: Vec3,
     /// Normal in box coordinates.
@@ -32,8 +32,15 @@ impl Spot<'_> {
 }
 
 impl Appearance {
-    pub(super) fn thing_surface(&self, t: &Thing, p: Vec3, n: Vec3, material: Material, fp: f32) -> Surface {
-        let mut out = Surface::matt(gray(0.1), n);
+    pub(super) fn thing_surface(
+        &self,
+        t: &DrawnObject,
+        p: Vec3,
+        n: Vec3,
+        material: PartMaterial,
+        fp: f32,
+    ) -> LitSurface {
+        let mut out = LitSurface::matt(gray(0.1), n);
         let spot = Spot {
             t,
             p,
@@ -43,24 +50,24 @@ impl Appearance {
             street_lamps: self.air.lamps,
         };
         match material {
-            Material::Body => body(&mut out, &spot),
-            Material::Cabin => cabin(&mut out, &spot),
-            Material::Coach => coach(&mut out, &spot),
-            Material::Cargo => cargo(&mut out, &spot),
-            Material::Wheel => wheel(&mut out, &spot),
-            Material::Dark => out.albedo = gray(0.022),
-            Material::Plain(c) => {
+            PartMaterial::Body => body(&mut out, &spot),
+            PartMaterial::Cabin => cabin(&mut out, &spot),
+            PartMaterial::Coach => coach(&mut out, &spot),
+            PartMaterial::Cargo => cargo(&mut out, &spot),
+            PartMaterial::Wheel => wheel(&mut out, &spot),
+            PartMaterial::Dark => out.albedo = gray(0.022),
+            PartMaterial::Plain(c) => {
                 out.albedo = c;
                 (out.mirror, out.gloss) = (0.03, 0.5);
             }
-            Material::Cloth(c) => {
+            PartMaterial::Cloth(c) => {
                 let fold = value3(p * Vec3::new(14.0, 14.0, 7.0), t.id);
                 out.albedo = c * (0.72 + 0.5 * fold);
             }
-            Material::Skin => {
+            PartMaterial::Skin => {
                 out.albedo = [rgb(224, 172, 136), rgb(190, 130, 96), rgb(120, 78, 54)][t.id as usize % 3]
             }
-            Material::Bands(c) => {
+            PartMaterial::Bands(c) => {
                 let (s, [_, _, z]) = (t.size, spot.shares());
                 let banded = if t.class == Class::TrafficCone {
                     (z > 0.42 && z < 0.60) || (z > 0.72 && z < 0.82)
@@ -76,7 +83,7 @@ impl Appearance {
 }
 
 /// A car's lower body: arches, sills, doors, grille, plates and lamps.
-fn body(out: &mut Surface, spot: &Spot<'_>) {
+fn body(out: &mut LitSurface, spot: &Spot<'_>) {
     let &Spot {
         t, p, n, fp, lamps, ..
     } = spot;
@@ -141,7 +148,7 @@ fn body(out: &mut Surface, spot: &Spot<'_>) {
 }
 
 /// Glass between pillars, a roof; a truck's grille and lamps.
-fn cabin(out: &mut Surface, spot: &Spot<'_>) {
+fn cabin(out: &mut LitSurface, spot: &Spot<'_>) {
     let &Spot { t, n, lamps, .. } = spot;
     let s = t.size;
     let [x, y, z] = spot.shares();
@@ -172,7 +179,7 @@ fn cabin(out: &mut Surface, spot: &Spot<'_>) {
 }
 
 /// A bus: windows in a band, its sign, its lamps.
-fn coach(out: &mut Surface, spot: &Spot<'_>) {
+fn coach(out: &mut LitSurface, spot: &Spot<'_>) {
     let &Spot { t, p, n, lamps, .. } = spot;
     let s = t.size;
     let [_, y, z] = spot.shares();
@@ -221,7 +228,7 @@ fn coach(out: &mut Surface, spot: &Spot<'_>) {
 }
 
 /// A box body: ribs, dirt, tail lamps, doors.
-fn cargo(out: &mut Surface, spot: &Spot<'_>) {
+fn cargo(out: &mut LitSurface, spot: &Spot<'_>) {
     let &Spot {
         t, p, n, fp, lamps, ..
     } = spot;
@@ -243,7 +250,7 @@ fn cargo(out: &mut Surface, spot: &Spot<'_>) {
 }
 
 /// A tyre, and a rim of five spokes inside.
-fn wheel(out: &mut Surface, spot: &Spot<'_>) {
+fn wheel(out: &mut LitSurface, spot: &Spot<'_>) {
     let &Spot { t, p, n, .. } = spot;
     let s = t.size;
     out.albedo = gray(0.010);

@@ -2,19 +2,19 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::{Material, Part};
+use super::{ObjectPart, PartMaterial};
 
 /// Collects the parts of one object.
-pub(super) struct Builder {
+pub(super) struct ObjectBuilder {
     /// Parts so far, with materials.
-    pub parts: Vec<(Part, Material)>,
+    pub parts: Vec<(ObjectPart, PartMaterial)>,
     /// Length, width, height, m.
     pub s: Vec3,
 }
 
-impl Builder {
+impl ObjectBuilder {
     /// A box from `lo` to `hi` in fractions (x, y from the middle, z from the bottom), edges bevelled by `bevel` m.
-    pub fn block(&mut self, lo: [f32; 3], hi: [f32; 3], bevel: f32, material: Material) {
+    pub fn block(&mut self, lo: [f32; 3], hi: [f32; 3], bevel: f32, material: PartMaterial) {
         let (lo, hi) = (Vec3::from(lo) * self.s, Vec3::from(hi) * self.s);
         let (mid, half) = ((lo + hi) / 2.0, (hi - lo) / 2.0);
         let bevel = bevel.min(half.min_element());
@@ -39,11 +39,11 @@ impl Builder {
                 }
             }
         }
-        self.parts.push((Part::Convex(planes), material));
+        self.parts.push((ObjectPart::Convex(planes), material));
     }
 
     /// Half spaces through points of a side view, given in fractions of length and height, mirrored in y.
-    pub fn profile(&mut self, points: &[[f32; 2]], sides: &[[f32; 2]], corner: f32, material: Material) {
+    pub fn profile(&mut self, points: &[[f32; 2]], sides: &[[f32; 2]], corner: f32, material: PartMaterial) {
         let s = self.s;
         let mut planes = Vec::new();
         let n = points.len();
@@ -69,7 +69,7 @@ impl Builder {
                 planes.push(Vec4::new(n.x, n.y, 0.0, reach));
             }
         }
-        self.parts.push((Part::Convex(planes), material));
+        self.parts.push((ObjectPart::Convex(planes), material));
     }
 
     /// A pair of wheels at each fraction of the length.
@@ -77,15 +77,15 @@ impl Builder {
         for x in at {
             for side in [1.0, -1.0] {
                 let y = side * (self.s.y / 2.0 - width / 2.0 - 0.01);
-                let part = Part::Wheel(Vec3::new(x * self.s.x, y, radius), radius, width / 2.0);
-                self.parts.push((part, Material::Wheel));
+                let part = ObjectPart::Wheel(Vec3::new(x * self.s.x, y, radius), radius, width / 2.0);
+                self.parts.push((part, PartMaterial::Wheel));
             }
         }
     }
 
     /// An ellipsoid at fractions of the size; radii in m.
-    pub fn round(&mut self, at: [f32; 3], radii: [f32; 3], material: Material) {
-        let part = Part::Round(Vec3::from(at) * self.s, Vec3::from(radii));
+    pub fn round(&mut self, at: [f32; 3], radii: [f32; 3], material: PartMaterial) {
+        let part = ObjectPart::Round(Vec3::from(at) * self.s, Vec3::from(radii));
         self.parts.push((part, material));
     }
 }

@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 
 /// A part in box coordinates: x forward, y left, z up from the bottom of the box.
 #[derive(Clone, Debug)]
-pub enum Part {
+pub enum ObjectPart {
     /// Half spaces `n.p <= w`.
     Convex(Vec<Vec4>),
     /// A wheel: middle, radius, half width; its axis is y.
@@ -37,11 +37,11 @@ fn quadratic(a: f32, b: f32, c: f32) -> Option<(f32, f32)> {
     Some(((-b - s) / a, (-b + s) / a))
 }
 
-impl Part {
+impl ObjectPart {
     /// Where a ray enters, nearer than `limit`, and the outward normal there.
     pub(super) fn cast(&self, o: Vec3, d: Vec3, limit: f32) -> Option<(f32, Vec3)> {
         match self {
-            Part::Convex(planes) => {
+            ObjectPart::Convex(planes) => {
                 let (mut near, mut far, mut normal) = (f32::NEG_INFINITY, limit, Vec3::Z);
                 for plane in planes {
                     let n = plane.truncate();
@@ -61,7 +61,7 @@ impl Part {
                 }
                 (near > 1e-4 && near < limit).then_some((near, normal))
             }
-            Part::Wheel(c, r, half) => {
+            ObjectPart::Wheel(c, r, half) => {
                 let o = o - *c;
                 let (t0, t1) = quadratic(
                     d.x * d.x + d.z * d.z,
@@ -81,13 +81,13 @@ impl Part {
                 }
                 (near <= far && near > 1e-4 && near < limit).then_some((near, normal))
             }
-            Part::Round(c, r) => {
+            ObjectPart::Round(c, r) => {
                 let (p, q) = ((o - *c) / *r, d / *r);
                 let (t, _) = quadratic(q.length_squared(), p.dot(q), p.length_squared() - 1.0)?;
                 let normal = ((p + q * t) / *r).normalize_or(Vec3::Z);
                 (t > 1e-4 && t < limit).then_some((t, normal))
             }
-            Part::Cone(foot, height, bottom, top) => {
+            ObjectPart::Cone(foot, height, bottom, top) => {
                 let o = o - *foot;
                 let k = (top - bottom) / height;
                 let m = bottom + k * o.z;

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use glam::Vec3;
 
-use super::Material;
-use super::build::Builder;
+use super::PartMaterial;
+use super::build::ObjectBuilder;
 use scene::clip::OwnShape;
 use scene::{Extent, SceneBox};
 
@@ -16,7 +16,7 @@ const BEVEL_M: f32 = 0.03;
 
 /// Adds the voxels of an object as blocks, as few as are needed; see [`scene::Edit::SetShape`] for the cells. Parts
 /// beyond the box are cut off.
-pub(super) fn voxel_shape(build: &mut Builder, b: &SceneBox, shape: &OwnShape, material: Material) {
+pub(super) fn voxel_shape(build: &mut ObjectBuilder, b: &SceneBox, shape: &OwnShape, material: PartMaterial) {
     let voxel = Extent::VOXEL_M as f32;
     let below = shape.bottom_m(b) as f32;
     let half = build.s / 2.0;
