@@ -297,7 +297,7 @@ fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<LabelValues,
             $(let npy = match npy.try_data::<$type>() {
                 Ok(values) => {
                     let all: std::io::Result<Vec<i64>> = values.map(|v| v.map(i64::from)).collect();
-                    return all.map(Values::Wide).map_err(|e| problem(e.to_string()));
+                    return all.map(LabelValues::Wide).map_err(|e| problem(e.to_string()));
                 }
                 Err(npy) => npy,
             };)+

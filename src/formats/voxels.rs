@@ -1,5 +1,5 @@
 //! Voxel grids of other data sets: where their cells lie ([`Lattice`]), the ground at its true height ([`Physical`]), and
-//! labels taken from one grid to the other ([`cells_of`], [`Cells`]).
+//! labels taken from one grid to the other ([`cells_of`], [`VoxelVotes`]).
 
 mod lattice;
 mod physical;

@@ -167,7 +167,7 @@ pub struct AppearanceData {
     pub extent: Extent,
     /// Arrays that are looked up by place, section by section.
     pub words: Vec<u32>,
-    /// Start of each [`Section`] in `words`; the last two entries are the counts.
+    /// Start of each [`AppearanceSection`] in `words`; the last two entries are the counts.
     pub at: [u32; SECTIONS],
     /// to_sun, clouds | sun, haze per m | zenith, wet | horizon, snow | ambient, dust | bounce, lamps | haze, exposure
     /// | to_sun in the ego frame, greatest height in m.

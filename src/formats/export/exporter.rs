@@ -25,7 +25,7 @@ pub struct Exporter {
     pub span: ExportSpan,
     /// Products that must be made of the scene first; the dialog shows the options for them.
     pub needs: &'static [Product],
-    /// Makes the files. With [`Span::Moment`] the scene stands still and is in the ego frame; with [`Span::Clip`] it is
+    /// Makes the files. With [`ExportSpan::Moment`] the scene stands still and is in the ego frame; with [`ExportSpan::Clip`] it is
     /// whole and in the world frame. Errors in one line; nothing is written by then.
     pub write: fn(&Scene, &mut dyn Products) -> Result<Vec<OutFile>, FormatError>,
 }
@@ -121,7 +121,7 @@ pub struct BoxVisibility {
 }
 
 /// Which voxels the rays of sensors passed or ended in, in the ego frame of the moment: per column `[x][y]` of
-/// [`Observed::EXTENT`] one bit per bin, the lowest bin in bit 0. No bit is set where the rig has no sensor of that kind.
+/// [`ObservationMasks::EXTENT`] one bit per bin, the lowest bin in bit 0. No bit is set where the rig has no sensor of that kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObservationMasks {
     /// Rays of all LiDARs, one turn each.

@@ -47,7 +47,7 @@ pub struct ImportFile<'a> {
 
 impl ImportFile<'_> {
     /// Reads a file beside this one: `relative` is a path from this file's folder, with `/` between names. Errors as
-    /// [`Source::place`] does, and if the file has more than `limit` bytes, is not there or cannot be read.
+    /// [`ImportFile::place`] does, and if the file has more than `limit` bytes, is not there or cannot be read.
     pub fn beside(&self, relative: &str, limit: u64) -> Result<Vec<u8>, FormatError> {
         let path = self.place(relative)?;
         input::read(&path, limit).map_err(FormatError::new)

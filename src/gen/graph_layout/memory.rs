@@ -212,7 +212,7 @@ pub struct RetrievalQuery {
 /// An entry that was retrieved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Retrieved {
-    /// Index in [`Memory::entries`].
+    /// Index in [`SceneMemory::entries`].
     pub entry: usize,
     /// Cosine of the texts.
     pub similarity: f64,

@@ -6,7 +6,7 @@ use super::region::Region;
 use super::request::{VoxelRequest, stands};
 use scene::{BevLayer, Class, Extent, Frame, VoxelGrid, Window, draft};
 
-/// Removes invented voxels (see [`Request::each_invented`]) from `generated` on roads and car parks, and where a box of
+/// Removes invented voxels (see [`VoxelRequest::each_invented`]) from `generated` on roads and car parks, and where a box of
 /// the source stood. If the source held a voxel there that stays, it is put back; a column without any ground left gets
 /// the layout's. Cells of `inpaint` are skipped, since new content is wanted there. Returns the number of removed
 /// voxels.

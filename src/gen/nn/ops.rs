@@ -28,7 +28,7 @@ impl OpsError {
     }
 }
 
-/// Values of a backend: `rows x columns` places of `width` channels, as [`Map`] has them.
+/// Values of a backend: `rows x columns` places of `width` channels, as [`FeatureMap`] has them.
 pub trait BackendTensor: Clone + Send + Sync {
     /// Places along x.
     fn rows(&self) -> usize;
@@ -83,7 +83,7 @@ pub struct MessageParts<L> {
     pub target: L,
     /// `[relation][width]`.
     pub relation: Vec<f32>,
-    /// [`Edge::distance`] to `width`.
+    /// [`MessageEdge::distance`] to `width`.
     pub distance: L,
     /// `width` to `width`.
     pub out: L,
@@ -294,9 +294,9 @@ pub trait Ops: Send + Sync + Sized + 'static {
     fn add(&self, x: Self::Tensor, y: &Self::Tensor) -> Result<Self::Tensor, OpsError>;
     /// x - y.
     fn subtract(&self, x: &Self::Tensor, y: &Self::Tensor) -> Result<Self::Tensor, OpsError>;
-    /// [`Map::fold`].
+    /// [`FeatureMap::fold`].
     fn fold(&self, x: &Self::Tensor) -> Result<Self::Tensor, OpsError>;
-    /// [`Map::unfold`].
+    /// [`FeatureMap::unfold`].
     fn unfold(&self, x: &Self::Tensor) -> Result<Self::Tensor, OpsError>;
 
     /// Places of `width` numbers, one after the other.

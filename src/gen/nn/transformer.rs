@@ -110,7 +110,7 @@ impl TransformerCore {
         }
     }
 
-    /// Attention of the block, see [`Block::apply`]; `then` is called with every piece of tokens.
+    /// Attention of the block, see [`TransformerBlock::apply`]; `then` is called with every piece of tokens.
     pub(crate) fn attend(
         &self,
         tokens: &mut [f32],

@@ -3,7 +3,7 @@
 //! classes through 1x1 convolutions, and attention to the neighbouring views and frames.
 //!
 //! [`Pipeline::open`] checks every name and shape before it reads a number. [`Pipeline::draw`] is a pure function of its
-//! [`Request`]. Sources: Rombach et al. 2022 (arXiv 2112.10752), Zhang et al. 2023 (ControlNet, arXiv 2302.05543), Li et al.
+//! [`PictureRequest`]. Sources: Rombach et al. 2022 (arXiv 2112.10752), Zhang et al. 2023 (ControlNet, arXiv 2302.05543), Li et al.
 //! 2024 (SyntheOcc, arXiv 2410.00337), and the layout of weights of diffusers 0.42.
 
 #![forbid(unsafe_code)]

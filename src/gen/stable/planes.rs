@@ -28,7 +28,7 @@ pub struct PlaneSpan {
     pub id: u8,
 }
 
-/// The numbers `[picture][channel][row][column]` for [`Planes`](crate::Planes), of pictures of `cells` latent cells
+/// The numbers `[picture][channel][row][column]` for [`SemanticPlanes`](crate::SemanticPlanes), of pictures of `cells` latent cells
 /// each. `channels` is [`Pipeline::plane_channels`](crate::Pipeline::plane_channels), one more than there are planes.
 /// Lines on the road become driveable surface. Errors if a run lies outside or its id is too large.
 pub fn of_runs(

@@ -190,7 +190,7 @@ impl World {
         }
     }
 
-    /// The thing of the background that an instance of a [`Surface`] is, if it is one.
+    /// The thing of the background that an instance of a [`SurfacePoint`] is, if it is one.
     pub fn thing_of(instance: u32) -> Option<ThingId> {
         (instance & THING_BIT != 0).then_some(ThingId(instance & !THING_BIT))
     }

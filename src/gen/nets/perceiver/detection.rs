@@ -109,7 +109,7 @@ impl Detection {
     }
 }
 
-/// Boxes of a map `[x][y][15]` (see [`super::Said`]) whose score is `least` or more, the surest first. They come from
+/// Boxes of a map `[x][y][15]` (see [`super::PerceiverOutput`]) whose score is `least` or more, the surest first. They come from
 /// cells of which no neighbour is surer of the same group; boxes too near a surer one are left out.
 pub fn decode(map: &FeatureMap, least: f32) -> Vec<Detection> {
     let (rows, columns) = (map.rows, map.columns);

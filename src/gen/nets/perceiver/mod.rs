@@ -61,7 +61,7 @@ impl PerceiverConfig {
 pub struct PerceiverOutput {
     /// Logits of what stands in each column, `[x][y][9]` in the order of [`Stands::ALL`].
     pub stands: FeatureMap,
-    /// Numbers of each cell of 2 x 2 columns, `[x][y][15]`: logits of centres in the order of [`Group::ALL`], then the
+    /// Numbers of each cell of 2 x 2 columns, `[x][y][15]`: logits of centres in the order of [`DetectionGroup::ALL`], then the
     /// numbers of a box.
     pub boxes: FeatureMap,
 }

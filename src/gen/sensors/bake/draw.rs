@@ -245,7 +245,7 @@ impl PreparedGaussians {
     }
 }
 
-/// See [`Ready::render`].
+/// See [`PreparedGaussians::render`].
 pub fn render(gaussians: &[SceneGaussian], camera: &Camera, size: [u32; 2]) -> Vec<[f32; 3]> {
     PreparedGaussians::new(gaussians).render(camera, size)
 }

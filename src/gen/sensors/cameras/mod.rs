@@ -228,7 +228,7 @@ pub trait PreparedCameras: Sync {
         false
     }
 
-    /// Draws the picture of a camera. Called by [`Ready::render`], which checks size and cancellation first. Errors if
+    /// Draws the picture of a camera. Called by [`PreparedSource::render`], which checks size and cancellation first. Errors if
     /// a network refuses its input.
     fn draw(
         &self,

@@ -60,7 +60,7 @@ pub(super) fn boxes_and_lanes(frame: &Frame, camera: &Camera, channels: usize) -
     (0..channels).flat_map(plane).collect()
 }
 
-/// Input of [`stable::Planes`] for some views: the label on each plane, at the size of latents.
+/// Input of [`stable::SemanticPlanes`] for some views: the label on each plane, at the size of latents.
 pub(super) fn planes(
     frame: &Frame,
     seen: &RingFrame,

@@ -61,7 +61,7 @@ impl Pipeline {
         self.control_names.get(net).map_or("", String::as_str)
     }
 
-    /// Channels of the planes that [`Request::planes`] takes; `None` if no network here takes planes.
+    /// Channels of the planes that [`PictureRequest::planes`] takes; `None` if no network here takes planes.
     pub fn plane_channels(&self) -> Option<usize> {
         let shown = || self.controls.iter().find(|c| c.takes_planes());
         let encoder = self.mpi.as_ref().map(MpiEncoder::channels);

@@ -137,7 +137,7 @@ impl Style {
     }
 }
 
-/// Weight of each of [`Setting::ALL`] beside a layout.
+/// Weight of each of [`RoadsideKind::ALL`] beside a layout.
 fn weights(layout: &BevLayout) -> [f64; 9] {
     let count = |layer: BevLayer| layout.count(layer) as f64;
     let road = count(BevLayer::DrivableArea).max(1.0);
