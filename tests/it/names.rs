@@ -219,3 +219,15 @@ fn the_measure_sees_what_it_measures() {
     assert!(!has_bare_literal("say(\"0.4 m\")"));
     assert_eq!(opened("/// A row.", "///"), None);
 }
+
+#[test]
+fn the_glossary_is_short_and_names_each_term_once() {
+    let text = read(&root().join("docs/glossary.md"));
+    let row = |l: &str| l.strip_prefix("| ").and_then(|l| l.split_once(" | ")).map(|(term, _)| term.to_owned());
+    let terms: Vec<String> = text.lines().filter_map(row).filter(|t| t != "term").collect();
+    let mut once = terms.clone();
+    once.sort();
+    once.dedup();
+    assert!((100..=150).contains(&terms.len()), "{} terms", terms.len());
+    assert_eq!(once.len(), terms.len(), "a term stands twice");
+}
