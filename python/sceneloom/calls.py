@@ -87,7 +87,7 @@ class Calls:
         receipt: types.Checked = self.call("check", args)
         return receipt
 
-    def diff(self, *, file: str | None = None, version: str | None = None) -> types.Difference:
+    def diff(self, *, file: str | None = None, version: str | None = None) -> types.DiffReceipt:
         """Counts what changed from a kept version or a file to the scene as it is now: boxes, cells of the
         map, voxels by class.
 
@@ -95,7 +95,7 @@ class Calls:
         version: Name of a version that was kept.
         """
         args = _given({'file': file, 'version': version}, [])
-        receipt: types.Difference = self.call("diff", args)
+        receipt: types.DiffReceipt = self.call("diff", args)
         return receipt
 
     def export(
@@ -189,9 +189,9 @@ class Calls:
         *,
         template: Literal['straight', 'curve', 't-junction', 'intersection', 'roundabout', 'highway', 'parking', 'suburb'],
         seed: int | None = None,
-        setting: types.Setting | None = None,
+        setting: types.RoadsideKind | None = None,
         terrain: types.Terrain | None = None,
-    ) -> types.Made:
+    ) -> types.NewSceneReceipt:
         """Replaces the scene by a new one from a procedural world: road, traffic, buildings, trees and voxels
         on a map of 80 x 80 m around the ego vehicle. It can be undone.
 
@@ -209,7 +209,7 @@ class Calls:
             },
             ['template'],
         )
-        receipt: types.Made = self.call("new", args)
+        receipt: types.NewSceneReceipt = self.call("new", args)
         return receipt
 
     def open(
@@ -220,7 +220,7 @@ class Calls:
         heading_deg: float | None = None,
         lift_m: float | None = None,
         size_m: Sequence[float] | None = None,
-    ) -> types.Opened:
+    ) -> types.OpenReceipt:
         """Replaces the scene by one from a file: a project (.loom), roads (.xodr), occupancy labels (.npz), a
         picture that this program made (.png), or another format that is read. It can be undone. list_files
         tells what is there.
@@ -245,7 +245,7 @@ class Calls:
             },
             [],
         )
-        receipt: types.Opened = self.call("open", args)
+        receipt: types.OpenReceipt = self.call("open", args)
         return receipt
 
     def place_model(
@@ -335,7 +335,7 @@ class Calls:
         source: Literal['splats', 'voxels', 'shapes', 'truth'] | None = None,
         time: types.TimeOfDay | None = None,
         weather: types.Weather | None = None,
-    ) -> types.Rendered:
+    ) -> types.RenderReceipt:
         """Renders what cameras and LiDAR of the ego vehicle see at the moment that is shown, or the map from
         above, and writes PNG pictures and data into a folder. Over MCP the first picture comes with the
         answer, at most 640 pixels wide. Look at bev to see where things are. Files that are there are
@@ -370,7 +370,7 @@ class Calls:
             },
             ['what'],
         )
-        receipt: types.Rendered = self.call("render", args)
+        receipt: types.RenderReceipt = self.call("render", args)
         return receipt
 
     def restore_version(self, *, name: str) -> types.Done:
@@ -393,17 +393,17 @@ class Calls:
         receipt: types.Saved = self.call("save", args)
         return receipt
 
-    def show(self, *, time_s: float) -> types.Shown:
+    def show(self, *, time_s: float) -> types.ShowReceipt:
         """Goes to another moment of a scene that lasts. Edits, render, check, state and export look at the
         moment that is shown. It is not an undo step.
 
         time_s: Moment of the scene, s, from 0 to its length.
         """
         args = _given({'time_s': time_s}, ['time_s'])
-        receipt: types.Shown = self.call("show", args)
+        receipt: types.ShowReceipt = self.call("show", args)
         return receipt
 
-    def state(self, *, most_boxes: int | None = None, roads: bool | None = None) -> types.State:
+    def state(self, *, most_boxes: int | None = None, roads: bool | None = None) -> types.StateReceipt:
         """Tells what is in the scene at the moment that is shown: boxes with id, class and place, lanes and
         crossings of the map, light and air, length, counts of voxels. World frame: x ahead at the start, y
         left, z up, m and degrees. Call it first, and whenever ids or places are needed.
@@ -412,7 +412,7 @@ class Calls:
         roads: List the lanes, dividers, stop lines and crossings too.
         """
         args = _given({'most_boxes': most_boxes, 'roads': roads}, [])
-        receipt: types.State = self.call("state", args)
+        receipt: types.StateReceipt = self.call("state", args)
         return receipt
 
     def undo(self, *, steps: int | None = None) -> types.Moved:

@@ -126,12 +126,25 @@ Camera = TypedDict(
     },
 )
 
+# How many came, went and changed.
+ChangeCounts = TypedDict(
+    'ChangeCounts',
+    {
+        # That came.
+        'added': 'int',
+        # That are otherwise now.
+        'changed': 'int',
+        # That went.
+        'removed': 'int',
+    },
+)
+
 # Changes by a call. Of more than 100 boxes the first are named.
-Change = TypedDict(
-    'Change',
+ChangeSummary = TypedDict(
+    'ChangeSummary',
     {
         # Boxes by what became of them.
-        'boxes': 'Counts',
+        'boxes': 'ChangeCounts',
         # Ids of boxes that came.
         'boxes_added': 'Sequence[int]',
         # Ids of boxes that moved, turned, or changed otherwise.
@@ -153,11 +166,34 @@ Change = TypedDict(
         # True if cameras or LiDARs changed.
         'rig': 'bool',
         # Things beside the road (buildings, trees, posts) by what became of them.
-        'things': 'Counts',
+        'things': 'ChangeCounts',
         # Motions by what became of them; the ego vehicle counts as one.
-        'tracks': 'Counts',
+        'tracks': 'ChangeCounts',
         # Voxels that changed, 0.4 m each way.
         'voxels': 'int',
+    },
+)
+
+# A finding of a check.
+CheckFinding = TypedDict(
+    'CheckFinding',
+    {
+        # The box that it is about.
+        'box': 'int | None',
+        # Name of the check.
+        'check': 'str',
+        # Names of repairs, the best first.
+        'fixes': 'Sequence[str]',
+        # `error`, `warning` or `info`.
+        'severity': 'str',
+        # The problem, in a line.
+        'text': 'str',
+        # Time, s; none if it is about the moment that is shown.
+        'time_s': 'float | None',
+        # Why it may stand, if it was waived.
+        'waived': 'str | None',
+        # Position, world frame, m.
+        'where_m': 'Sequence[float]',
     },
 )
 
@@ -168,7 +204,7 @@ Checked = TypedDict(
         # Open findings that are errors.
         'errors': 'int',
         # Findings, errors first; at most 200.
-        'findings': 'Sequence[Found]',
+        'findings': 'Sequence[CheckFinding]',
         # Changes by the repairs, if they were asked for.
         'fixed': 'Done | None',
         # Open findings that are worth knowing and no mistakes: boxes that no sensor sees.
@@ -221,27 +257,14 @@ Conditions = TypedDict(
     },
 )
 
-# How many came, went and changed.
-Counts = TypedDict(
-    'Counts',
-    {
-        # That came.
-        'added': 'int',
-        # That are otherwise now.
-        'changed': 'int',
-        # That went.
-        'removed': 'int',
-    },
-)
-
 # Receipt of `diff`.
-Difference = TypedDict(
-    'Difference',
+DiffReceipt = TypedDict(
+    'DiffReceipt',
     {
         # Name of the version or file it was compared with.
         'against': 'str',
         # From there to the scene as it is now.
-        'changed': 'Change',
+        'changed': 'ChangeSummary',
         # Number of the state that the scene is in.
         'revision': 'int',
     },
@@ -252,7 +275,7 @@ Done = TypedDict(
     'Done',
     {
         # Changes, in numbers.
-        'changed': 'Change',
+        'changed': 'ChangeSummary',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
         # Number of the state that the scene is in now. A state that comes back by undo has its old number.
@@ -978,7 +1001,7 @@ FormShrubs = TypedDict(
 FormLine = TypedDict(
     'FormLine',
     {
-        'line': 'Line',
+        'line': 'SceneryLine',
     },
 )
 
@@ -1001,29 +1024,6 @@ FormBridge = TypedDict(
 # Kind and place of a thing. As JSON: `{"tree": {"position_m": [8, -6], "height_m": 7, …}}`.
 Form: TypeAlias = 'FormBuilding | FormTree | FormShrubs | FormLine | FormPost | FormBridge'
 
-# A finding of a check.
-Found = TypedDict(
-    'Found',
-    {
-        # The box that it is about.
-        'box': 'int | None',
-        # Name of the check.
-        'check': 'str',
-        # Names of repairs, the best first.
-        'fixes': 'Sequence[str]',
-        # `error`, `warning` or `info`.
-        'severity': 'str',
-        # The problem, in a line.
-        'text': 'str',
-        # Time, s; none if it is about the moment that is shown.
-        'time_s': 'float | None',
-        # Why it may stand, if it was waived.
-        'waived': 'str | None',
-        # Position, world frame, m.
-        'where_m': 'Sequence[float]',
-    },
-)
-
 # How many came and went.
 Gained = TypedDict(
     'Gained',
@@ -1040,7 +1040,7 @@ Generated = TypedDict(
     'Generated',
     {
         # Changes, in numbers.
-        'changed': 'Change',
+        'changed': 'ChangeSummary',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
         # Calls of the denoising network.
@@ -1172,55 +1172,15 @@ LidarPattern = TypedDict(
     },
 )
 
-# A thing along a line.
-Line = TypedDict(
-    'Line',
-    {
-        # Height above the ground, m.
-        'height_m': 'float',
-        # Kind.
-        'kind': 'LineKind',
-        # Vertices on the ground, world frame, m; at least two.
-        'points_m': 'Sequence[Sequence[float]]',
-        # Width, m.
-        'width_m': 'float',
-    },
-)
-
 # Kind of a thing that runs along a line.
 LineKind: TypeAlias = "Literal['hedge', 'wall', 'fence', 'guard_rail', 'retaining_wall']"
-
-# Receipt of `new`.
-Made = TypedDict(
-    'Made',
-    {
-        # Boxes in it: vehicles, people, barriers, cones.
-        'boxes': 'int',
-        # Changes, in numbers.
-        'changed': 'Change',
-        # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
-        'draft_columns': 'int',
-        # Name of the scene.
-        'name': 'str',
-        # Voxels that are not free.
-        'occupied_voxels': 'int',
-        # Number of the state that the scene is in now. A state that comes back by undo has its old number.
-        'revision': 'int',
-        # Name of the undo step; empty if nothing changed.
-        'step': 'str',
-        # Things beside the road: buildings, trees, posts.
-        'things': 'int',
-        # Warnings to look at, such as findings of the checks that were not there before.
-        'warnings': 'Sequence[str]',
-    },
-)
 
 # Purpose of the words.
 Make: TypeAlias = "Literal['change', 'new']"
 
 # The area that a map covers, world frame.
-Map = TypedDict(
-    'Map',
+MapArea = TypedDict(
+    'MapArea',
     {
         # Cells along x and y, 0.4 m each.
         'cells': 'Sequence[int]',
@@ -1233,6 +1193,23 @@ Map = TypedDict(
     },
 )
 
+# Lines of the map, world frame, m; long ones are thinned out.
+MapLines = TypedDict(
+    'MapLines',
+    {
+        # Outlines of crossings.
+        'crossings': 'Sequence[Sequence[Sequence[float]]]',
+        # Middles of lanes, in driving direction.
+        'lanes': 'Sequence[Sequence[Sequence[float]]]',
+        # True if there are more lines than are listed.
+        'more': 'bool',
+        # Lines between opposite directions.
+        'road_dividers': 'Sequence[Sequence[Sequence[float]]]',
+        # Stop lines.
+        'stop_lines': 'Sequence[Sequence[Sequence[float]]]',
+    },
+)
+
 # Receipt of `place_model`.
 ModelPlaced = TypedDict(
     'ModelPlaced',
@@ -1242,7 +1219,7 @@ ModelPlaced = TypedDict(
         # Its middle, world frame, m.
         'center_m': 'Sequence[float]',
         # Changes, in numbers.
-        'changed': 'Change',
+        'changed': 'ChangeSummary',
         # Its class.
         'class': 'Class',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
@@ -1307,7 +1284,7 @@ Moved = TypedDict(
     'Moved',
     {
         # Changes, in numbers.
-        'changed': 'Change',
+        'changed': 'ChangeSummary',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
         # Number of the state that the scene is in now. A state that comes back by undo has its old number.
@@ -1316,6 +1293,31 @@ Moved = TypedDict(
         'step': 'str',
         # Names of the steps that were undone or redone, in that order.
         'steps': 'Sequence[str]',
+        # Warnings to look at, such as findings of the checks that were not there before.
+        'warnings': 'Sequence[str]',
+    },
+)
+
+# Receipt of `new`.
+NewSceneReceipt = TypedDict(
+    'NewSceneReceipt',
+    {
+        # Boxes in it: vehicles, people, barriers, cones.
+        'boxes': 'int',
+        # Changes, in numbers.
+        'changed': 'ChangeSummary',
+        # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # Name of the scene.
+        'name': 'str',
+        # Voxels that are not free.
+        'occupied_voxels': 'int',
+        # Number of the state that the scene is in now. A state that comes back by undo has its old number.
+        'revision': 'int',
+        # Name of the undo step; empty if nothing changed.
+        'step': 'str',
+        # Things beside the road: buildings, trees, posts.
+        'things': 'int',
         # Warnings to look at, such as findings of the checks that were not there before.
         'warnings': 'Sequence[str]',
     },
@@ -1374,13 +1376,13 @@ NotUnderstood = TypedDict(
 )
 
 # Receipt of `open`.
-Opened = TypedDict(
-    'Opened',
+OpenReceipt = TypedDict(
+    'OpenReceipt',
     {
         # Boxes in it.
         'boxes': 'int',
         # Changes, in numbers.
-        'changed': 'Change',
+        'changed': 'ChangeSummary',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
         # Format of the file.
@@ -1499,7 +1501,7 @@ Prompted = TypedDict(
         # Phrases about things beside the road, as they were read.
         'beside_the_road': 'Sequence[str]',
         # Changes, in numbers.
-        'changed': 'Change',
+        'changed': 'ChangeSummary',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
         # Words that had no effect.
@@ -1539,8 +1541,8 @@ Question = TypedDict(
 ReadOut: TypeAlias = "Literal['top_to_bottom', 'bottom_to_top', 'left_to_right', 'right_to_left']"
 
 # Receipt of `render`.
-Rendered = TypedDict(
-    'Rendered',
+RenderReceipt = TypedDict(
+    'RenderReceipt',
     {
         # The files.
         'files': 'Sequence[FileEntry]',
@@ -1916,22 +1918,8 @@ RoadWishJunction = TypedDict(
 # A change of a street as a whole, that is of all roads that continue each other.
 RoadWish: TypeAlias = 'RoadWishLanes | RoadWishOneWay | RoadWishWidths | RoadWishBeside | RoadWishWithout | RoadWishStraight | RoadWishRoundabout | RoadWishJunction'
 
-# Lines of the map, world frame, m; long ones are thinned out.
-Roads = TypedDict(
-    'Roads',
-    {
-        # Outlines of crossings.
-        'crossings': 'Sequence[Sequence[Sequence[float]]]',
-        # Middles of lanes, in driving direction.
-        'lanes': 'Sequence[Sequence[Sequence[float]]]',
-        # True if there are more lines than are listed.
-        'more': 'bool',
-        # Lines between opposite directions.
-        'road_dividers': 'Sequence[Sequence[Sequence[float]]]',
-        # Stop lines.
-        'stop_lines': 'Sequence[Sequence[Sequence[float]]]',
-    },
-)
+# A kind of place.
+RoadsideKind: TypeAlias = "Literal['old-town', 'city', 'suburb', 'industry', 'forest', 'country', 'motorway', 'park', 'retail']"
 
 # Shape of a roof.
 Roof: TypeAlias = "Literal['flat', 'gabled', 'hipped']"
@@ -1944,6 +1932,21 @@ Saved = TypedDict(
         'file': 'FileEntry',
         # Number of the state that was saved.
         'revision': 'int',
+    },
+)
+
+# A thing along a line.
+SceneryLine = TypedDict(
+    'SceneryLine',
+    {
+        # Height above the ground, m.
+        'height_m': 'float',
+        # Kind.
+        'kind': 'LineKind',
+        # Vertices on the ground, world frame, m; at least two.
+        'points_m': 'Sequence[Sequence[float]]',
+        # Width, m.
+        'width_m': 'float',
     },
 )
 
@@ -1968,9 +1971,6 @@ SensorRig = TypedDict(
         'name': 'str',
     },
 )
-
-# A kind of place.
-Setting: TypeAlias = "Literal['old-town', 'city', 'suburb', 'industry', 'forest', 'country', 'motorway', 'park', 'retail']"
 
 ShapeDiscArgs = TypedDict(
     'ShapeDiscArgs',
@@ -2054,8 +2054,8 @@ ShapeCells = TypedDict(
 Shape: TypeAlias = 'ShapeDisc | ShapeRect | ShapePolygon | ShapeLine | ShapeCells'
 
 # Receipt of `show`.
-Shown = TypedDict(
-    'Shown',
+ShowReceipt = TypedDict(
+    'ShowReceipt',
     {
         # Boxes that are there then.
         'boxes': 'int',
@@ -2103,45 +2103,6 @@ Speed = TypedDict(
     },
 )
 
-# Receipt of `state`.
-State = TypedDict(
-    'State',
-    {
-        # Boxes, the nearest first.
-        'boxes': 'Sequence[BoxState]',
-        # Names of the cameras.
-        'cameras': 'Sequence[str]',
-        # Time.
-        'clip': 'ClipState',
-        # Light and air.
-        'conditions': 'Conditions',
-        # How much of what there is.
-        'counts': 'StateCounts',
-        # Columns of voxels that only sketch what was edited; `generate` draws them.
-        'draft_columns': 'int',
-        # The area that the map covers.
-        'map': 'Map',
-        # True if there are more boxes than are listed.
-        'more_boxes': 'bool',
-        # Name of the scene.
-        'name': 'str',
-        # Text that describes its style; empty when none.
-        'prompt': 'str',
-        # Name of the step that redo brings back.
-        'redo': 'str | None',
-        # Number of the state that the scene is in.
-        'revision': 'int',
-        # Lines of the map, if they were asked for.
-        'roads': 'Roads | None',
-        # Name of the step that undo takes back; none if there is none.
-        'undo': 'str | None',
-        # True if there are changes that no file has.
-        'unsaved': 'bool',
-        # Words that were typed to make it and to change it.
-        'words': 'Sequence[str]',
-    },
-)
-
 # How much of what there is.
 StateCounts = TypedDict(
     'StateCounts',
@@ -2158,6 +2119,45 @@ StateCounts = TypedDict(
         'things': 'dict[str, int]',
         # Voxels by class.
         'voxels_by_class': 'dict[str, int]',
+    },
+)
+
+# Receipt of `state`.
+StateReceipt = TypedDict(
+    'StateReceipt',
+    {
+        # Boxes, the nearest first.
+        'boxes': 'Sequence[BoxState]',
+        # Names of the cameras.
+        'cameras': 'Sequence[str]',
+        # Time.
+        'clip': 'ClipState',
+        # Light and air.
+        'conditions': 'Conditions',
+        # How much of what there is.
+        'counts': 'StateCounts',
+        # Columns of voxels that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # The area that the map covers.
+        'map': 'MapArea',
+        # True if there are more boxes than are listed.
+        'more_boxes': 'bool',
+        # Name of the scene.
+        'name': 'str',
+        # Text that describes its style; empty when none.
+        'prompt': 'str',
+        # Name of the step that redo brings back.
+        'redo': 'str | None',
+        # Number of the state that the scene is in.
+        'revision': 'int',
+        # Lines of the map, if they were asked for.
+        'roads': 'MapLines | None',
+        # Name of the step that undo takes back; none if there is none.
+        'undo': 'str | None',
+        # True if there are changes that no file has.
+        'unsaved': 'bool',
+        # Words that were typed to make it and to change it.
+        'words': 'Sequence[str]',
     },
 )
 
@@ -2189,7 +2189,7 @@ TrackAdded = TypedDict(
     'TrackAdded',
     {
         # Changes, in numbers.
-        'changed': 'Change',
+        'changed': 'ChangeSummary',
         # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
         'draft_columns': 'int',
         # How long the scene lasts now, s.

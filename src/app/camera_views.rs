@@ -208,7 +208,7 @@ pub type PicturesKey = (SourceId, u32);
 
 impl Wanted {
     /// The request for the settings of the window, in a rig of `count` cameras.
-    pub fn of(cameras: &CamerasShown, lidar: &LidarShown, count: usize) -> Self {
+    pub fn from_settings(cameras: &CamerasShown, lidar: &LidarShown, count: usize) -> Self {
         Self {
             source: cameras.shown_source().id(),
             hidden: cameras.hidden & !cameras.in_panes(count),
@@ -335,7 +335,7 @@ mod tests {
         shown.own.insert(2, own(Some(ViewId::DEPTH), 0, true));
         shown.own.insert(3, own(Some(pictures::VIEW.id), 0, false));
         assert_eq!(shown.of_pane(4, 6), (1, pictures::VIEW.id));
-        let wanted = Wanted::of(&shown, &LidarShown::default(), 6);
+        let wanted = Wanted::from_settings(&shown, &LidarShown::default(), 6);
         // Depth comes with the classes of the strip; a pane that is not drawn requests no picture.
         let others: Vec<_> = wanted.others.iter().collect();
         assert_eq!(
@@ -356,7 +356,7 @@ mod tests {
             ..OwnCamera::default()
         };
         shown.own.insert(1, large);
-        let wanted = |shown: &CamerasShown| Wanted::of(shown, &LidarShown::default(), 6);
+        let wanted = |shown: &CamerasShown| Wanted::from_settings(shown, &LidarShown::default(), 6);
         let source = cameras::source_of(pictures::VIEW.id, shown.source).id();
         assert_eq!(wanted(&shown).large, Some((source, 3)));
         assert_eq!(wanted(&shown).large_of(source), Some(3));

@@ -14,7 +14,7 @@ impl SeedWish {
     pub const MOST: u64 = 999_999;
 
     /// The seed to use for a scene.
-    pub fn of(&self, scene_seed: u64) -> u64 {
+    pub fn seed_for(&self, scene_seed: u64) -> u64 {
         self.value.unwrap_or(scene_seed)
     }
 
@@ -38,13 +38,13 @@ mod tests {
     #[test]
     fn a_seed_is_the_scenes_own_until_one_is_wanted() {
         let mut seed = SeedWish::default();
-        assert_eq!(seed.of(5), 5);
+        assert_eq!(seed.seed_for(5), 5);
         let mut drawn = std::collections::BTreeSet::new();
         for _ in 0..20 {
             let before = seed.value;
             seed.roll();
             assert_ne!(seed.value, before);
-            drawn.insert(seed.of(5));
+            drawn.insert(seed.seed_for(5));
         }
         assert!(
             drawn.len() > 2 && drawn.iter().all(|n| *n <= SeedWish::MOST),

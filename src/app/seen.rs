@@ -33,7 +33,7 @@ pub struct SeenScenes {
 
 impl SeenScenes {
     /// The two scenes without hidden objects.
-    pub fn of(&mut self, shown: &Arc<Scene>, settled: &Arc<Scene>) -> SeenScene {
+    pub fn update(&mut self, shown: &Arc<Scene>, settled: &Arc<Scene>) -> SeenScene {
         let shown_seen = self.shown.seen(shown);
         let settled = match Arc::ptr_eq(shown, settled) {
             true => shown_seen.clone(),

@@ -88,7 +88,7 @@ pub struct Ties {
 
 impl Ties {
     /// Reads the motions and groups of these boxes.
-    pub fn of(scene: &Scene, ids: &[BoxId]) -> Self {
+    pub fn from_selection(scene: &Scene, ids: &[BoxId]) -> Self {
         let motion = |id: &BoxId| {
             let track = scene.clip().tracks.get(id).filter(|t| !t.stands())?;
             let now = scene.clip().moving(*id, scene.time_s())?;
@@ -121,11 +121,11 @@ pub type BoxVoxels = BTreeMap<BoxId, Vec<[i32; 3]>>;
 
 impl Clipboard {
     /// The boxes of those names that are there.
-    pub fn of(scene: &Scene, ids: &[BoxId]) -> Self {
+    pub fn from_selection(scene: &Scene, ids: &[BoxId]) -> Self {
         Self {
             boxes: boxes_of(scene.frame(), ids),
             shapes: shapes_of(scene.frame(), ids),
-            ties: Ties::of(scene, ids),
+            ties: Ties::from_selection(scene, ids),
         }
     }
 }

@@ -152,7 +152,7 @@ fn copies_get_free_names_and_a_place_of_their_own() {
     );
     assert_eq!(now.boxes[&BoxId(4)].velocity_mps, DVec2::new(5.0, 1.0));
     let scene = Scene::single("t", frame.clone(), Arc::default(), 1);
-    let clipboard = Clipboard::of(&scene, &[BoxId(1), BoxId(2)]);
+    let clipboard = Clipboard::from_selection(&scene, &[BoxId(1), BoxId(2)]);
     let pasted = paste(&frame, &clipboard, Some(DVec2::new(10.0, 10.0)));
     let now = after(&frame, &pasted.edits);
     assert_eq!(now.boxes[&BoxId(3)].center_m, DVec3::new(10.0, 7.5, 0.85));
@@ -194,7 +194,7 @@ fn copies_move_and_are_grouped_as_what_they_are_copies_of() {
     document.apply_all("x", &edits).expect("sound");
     let scene = document.scene().clone();
     let ids = [BoxId(1), BoxId(2)];
-    let added = duplicate(scene.frame(), &ids).with(&Ties::of(&scene, &ids));
+    let added = duplicate(scene.frame(), &ids).with(&Ties::from_selection(&scene, &ids));
     document.apply_all("Duplicate", &added.edits).expect("sound");
     let scene = document.scene();
     let [old, new] = [BoxId(1), added.ids[0]].map(|id| {

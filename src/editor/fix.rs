@@ -164,7 +164,7 @@ fn plan(
 /// The number of findings without a waiver, by severity.
 fn open_counts(scene: &Scene, found: &[Finding], tally: &FindingTally) -> SeverityCounts {
     let waived = found.iter().filter(|f| waive::of(scene.frame(), f).is_some());
-    let (all, waived) = (tally.counts(), SeverityCounts::of(waived));
+    let (all, waived) = (tally.counts(), SeverityCounts::from_findings(waived));
     SeverityCounts {
         errors: all.errors.saturating_sub(waived.errors),
         warnings: all.warnings.saturating_sub(waived.warnings),
@@ -273,8 +273,9 @@ impl Planning<'_, '_> {
                 .or_default() += 1;
         }
         let tally = checks::tally(&scene);
-        let new = |(kind, n): (FindingKind, usize)| kind.0 >= severity && n > self.tally.of(kind);
-        let gone = |(kind, n): (&FindingKind, &usize)| tally.of(*kind) + n <= self.tally.of(*kind);
+        let new = |(kind, n): (FindingKind, usize)| kind.0 >= severity && n > self.tally.count_of(kind);
+        let gone =
+            |(kind, n): (&FindingKind, &usize)| tally.count_of(*kind) + n <= self.tally.count_of(*kind);
         (!tally.iter().any(new) && repaired.iter().all(gone)).then_some((scene, tally))
     }
 

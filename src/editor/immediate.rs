@@ -112,7 +112,7 @@ pub(super) fn refill_ground(grid: &mut VoxelGrid, layout: &BevLayout, emptied: &
         return;
     }
     // First all classes are found, then the ground is laid, so that the order of the columns does not matter.
-    let around = NearbyGround::of(grid, layout, emptied);
+    let around = NearbyGround::from_columns(grid, layout, emptied);
     let filled: Vec<u8> = emptied
         .iter()
         .map(|&at| match ground_class(layout.cell(at[0], at[1])) {
@@ -139,7 +139,7 @@ struct NearbyGround {
 
 impl NearbyGround {
     /// Reads the ground around columns of a map, as far out as ground is searched for.
-    fn of(grid: &VoxelGrid, layout: &BevLayout, columns: &[[usize; 2]]) -> Self {
+    fn from_columns(grid: &VoxelGrid, layout: &BevLayout, columns: &[[usize; 2]]) -> Self {
         let extent = layout.extent();
         let map = [extent.nx(), extent.ny()];
         let span = |axis: usize| {
@@ -292,7 +292,7 @@ mod tests {
         for [x, y] in &emptied {
             grid.set(*x, *y, ground_bin(&layout, *x, *y), Class::FREE);
         }
-        let around = NearbyGround::of(&grid, &layout, &emptied);
+        let around = NearbyGround::from_columns(&grid, &layout, &emptied);
         for at in emptied.iter().step_by(7) {
             assert_eq!(around.ground(*at), plainly(&grid, &layout, *at), "{at:?}");
         }

@@ -83,7 +83,7 @@ pub fn row(frame: &Frame, ids: &[BoxId], row: &CopyRows) -> Added {
 pub fn row_boxes(frame: &Frame, ids: &[BoxId], row: &CopyRows) -> Vec<SceneBox> {
     let mut copies = Vec::new();
     for b in boxes_of(frame, ids) {
-        let way = RowPath::of(frame, row, b.center_m.truncate(), b.yaw_rad, LANE_REACH_M);
+        let way = RowPath::from_frame(frame, row, b.center_m.truncate(), b.yaw_rad, LANE_REACH_M);
         copies.extend(row.places().map(|by_m| {
             let (at_m, turn_rad) = way.to(frame, b.center_m.truncate(), by_m);
             SceneBox {
@@ -105,7 +105,7 @@ pub fn row_forms(scene: &Scene, forms: &[&Form], row: &CopyRows) -> Vec<Form> {
     let mut copies = Vec::new();
     for form in forms.iter().map(|f| f.in_frame(&world_from_ego.inverse())) {
         let middle_m = form.middle_m();
-        let way = RowPath::of(frame, row, middle_m, 0.0, BESIDE_REACH_M);
+        let way = RowPath::from_frame(frame, row, middle_m, 0.0, BESIDE_REACH_M);
         for by_m in row.places() {
             let (at_m, turn_rad) = way.to(frame, middle_m, by_m);
             let turn = DVec2::from_angle(turn_rad);
@@ -132,7 +132,7 @@ enum RowPath {
 }
 
 impl RowPath {
-    fn of(frame: &Frame, row: &CopyRows, at_m: DVec2, yaw_rad: f64, reach_m: f64) -> Self {
+    fn from_frame(frame: &Frame, row: &CopyRows, at_m: DVec2, yaw_rad: f64, reach_m: f64) -> Self {
         let heading = DVec2::from_angle(yaw_rad);
         let lane = || nearest_lane(&frame.layout, at_m, reach_m);
         match row.along {

@@ -14,7 +14,7 @@ pub use super::target::stdout_holds_a_file;
 /// and similar paths are written to directly; opening a pipe waits for its reader. Errors for folders, disks and
 /// sockets.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    match WriteTarget::of(path)? {
+    match WriteTarget::from_path(path)? {
         WriteTarget::File(file) => replace(&file, bytes),
         WriteTarget::Stream(path) => WriteTarget::stream(None, &path, bytes),
         WriteTarget::Open(number, path) => WriteTarget::stream(Some(number), &path, bytes),

@@ -78,7 +78,7 @@ impl<'a> NpyMatrix<'a> {
             return Err(format!("an array of shape {shape}, expected rows and columns"));
         };
         let descr = header.dtype().descr();
-        let kind = NpyType::of(&descr).ok_or_else(|| {
+        let kind = NpyType::from_descr(&descr).ok_or_else(|| {
             let found = quoted(&descr, 40);
             format!("values of type {found}, expected whole or floating point numbers")
         })?;
@@ -114,7 +114,7 @@ impl<'a> NpyMatrix<'a> {
 
 impl NpyType {
     /// From numpy's description: `'<i8'`.
-    fn of(descr: &str) -> Option<Self> {
+    fn from_descr(descr: &str) -> Option<Self> {
         let kind = match descr.trim_matches('\'').as_bytes() {
             [order @ (b'<' | b'>' | b'|' | b'='), letter, size] if size.is_ascii_digit() => Self {
                 letter: *letter,

@@ -166,11 +166,11 @@ fn write_field(group: &mut RowGroupWriter<'_>, field: &ParquetField) -> Result<(
         }
         ColumnValues::Texts(lists) => {
             let all: Vec<ByteArray> = lists.iter().flatten().map(bytes).collect();
-            column::<ByteArrayType>(group, &all, Some(NestingLevels::of(lists)))
+            column::<ByteArrayType>(group, &all, Some(NestingLevels::from_lists(lists)))
         }
         ColumnValues::Points(lists) => (0..3).try_for_each(|axis| {
             let all: Vec<f64> = lists.iter().flatten().map(|p| p[axis]).collect();
-            column::<DoubleType>(group, &all, Some(NestingLevels::of(lists)))
+            column::<DoubleType>(group, &all, Some(NestingLevels::from_lists(lists)))
         }),
     }
 }
@@ -194,7 +194,7 @@ impl NestingLevels {
         }
     }
 
-    fn of<T>(lists: &[Vec<T>]) -> Self {
+    fn from_lists<T>(lists: &[Vec<T>]) -> Self {
         let (mut definition, mut repetition) = (Vec::new(), Vec::new());
         for list in lists {
             definition.extend(std::iter::repeat_n(1, list.len()));

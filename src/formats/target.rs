@@ -26,7 +26,7 @@ pub(crate) enum WriteTarget {
 impl WriteTarget {
     /// The target of a path. Errors for folders, for block devices (a disk's contents would be lost), for sockets, and
     /// if links lead in a circle.
-    pub(crate) fn of(path: &Path) -> io::Result<Self> {
+    pub(crate) fn from_path(path: &Path) -> io::Result<Self> {
         let path = match followed(path)? {
             Self::File(path) => path,
             open => return Ok(open),
@@ -130,12 +130,12 @@ mod tests {
         // (looked at only: nothing here is written)
         if Path::new("/dev/stdout").is_symlink() {
             assert!(matches!(
-                WriteTarget::of(Path::new("/dev/stdout")),
+                WriteTarget::from_path(Path::new("/dev/stdout")),
                 Ok(WriteTarget::Open(1, _))
             ));
         }
         assert_eq!(
-            WriteTarget::of(Path::new("/dev/null")).ok(),
+            WriteTarget::from_path(Path::new("/dev/null")).ok(),
             Some(WriteTarget::Stream("/dev/null".into()))
         );
     }
@@ -149,13 +149,17 @@ mod tests {
         symlink("round", at("about")).expect("a link");
         symlink("about", at("round")).expect("a link");
         assert_eq!(
-            WriteTarget::of(&at("twice")).expect("a file"),
+            WriteTarget::from_path(&at("twice")).expect("a file"),
             WriteTarget::File(at("new"))
         );
-        let line = WriteTarget::of(&at("round")).expect_err("a circle").to_string();
+        let line = WriteTarget::from_path(&at("round"))
+            .expect_err("a circle")
+            .to_string();
         assert_eq!(line, "links lead in a circle");
         let _socket = std::os::unix::net::UnixListener::bind(at("socket")).expect("a socket");
-        let line = WriteTarget::of(&at("socket")).expect_err("a socket").to_string();
+        let line = WriteTarget::from_path(&at("socket"))
+            .expect_err("a socket")
+            .to_string();
         assert!(line.contains("expected a file or a pipe"), "{line}");
     }
 }

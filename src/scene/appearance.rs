@@ -82,7 +82,7 @@ pub struct FieldShape {
 
 impl FieldShape {
     /// The shape for a map.
-    pub fn of(extent: Extent) -> Self {
+    pub fn from_extent(extent: Extent) -> Self {
         let [nx, ny] = [extent.nx() + 2, extent.ny() + 2];
         let (low, high) = (extent.min_m(), extent.max_m());
         let corner_m = (high - low).truncate().length() / 2.0;
@@ -203,7 +203,7 @@ mod tests {
     /// The shape of a window equals the constants from before maps had an extent.
     #[test]
     fn a_window_has_the_shape_it_always_had() {
-        let shape = FieldShape::of(Extent::WINDOW);
+        let shape = FieldShape::from_extent(Extent::WINDOW);
         assert_eq!(
             (shape.nx, shape.ny, shape.blocks, shape.bins),
             (202, 202, [26; 2], [40; 2])
@@ -214,7 +214,7 @@ mod tests {
             (Vec2::splat(-40.2), Vec2::ZERO)
         );
         assert_eq!(shape.skyline, 1.0);
-        let map = FieldShape::of(Extent::new([-150, -110], [480, 321]).expect("sound"));
+        let map = FieldShape::from_extent(Extent::new([-150, -110], [480, 321]).expect("sound"));
         assert_eq!((map.blocks, map.bins), ([61, 41], [96, 65]));
         assert!(map.skyline * SKYLINE_M[0] > 120.0);
     }

@@ -21,7 +21,7 @@ pub struct Density {
 
 impl Density {
     /// The density of a frame's labels; `bev` are its layout's bits per column, `[x][y]`.
-    pub fn of(grid: &VoxelGrid, bev: &[u32]) -> Self {
+    pub fn from_grid(grid: &VoxelGrid, bev: &[u32]) -> Self {
         Self::of_columns(grid, bev, |_, _| true)
     }
 
@@ -67,7 +67,7 @@ mod tests {
         let road = BevLayer::DrivableArea.bit();
         let mut grid = VoxelGrid::new();
         assert_eq!(
-            Density::of(&grid, &vec![road; Window::COLUMNS]),
+            Density::from_grid(&grid, &vec![road; Window::COLUMNS]),
             Density::default()
         );
         let mut bev = vec![road; Window::COLUMNS];
@@ -78,13 +78,13 @@ mod tests {
             }
         }
         // A quarter of the columns off the road, an eighth of all.
-        let found = Density::of(&grid, &bev);
+        let found = Density::from_grid(&grid, &bev);
         assert_eq!((found.vegetation, found.building, found.clutter), (1.0, 0.0, 0.0));
         assert_eq!(found.completeness, 0.125);
         grid.set(150, 3, 9, Class::Manmade.id()); // on the road: not counted
         grid.set(50, 150, 9, Class::Manmade.id());
         grid.set(51, 150, 2, Class::Manmade.id());
-        let found = Density::of(&grid, &bev);
+        let found = Density::from_grid(&grid, &bev);
         let one = (1.0f32 / 20_000.0).sqrt();
         assert!((found.building - 1.6 * one).abs() < 1e-6 && (found.clutter - 6.0 * one).abs() < 1e-6);
     }

@@ -103,7 +103,7 @@ impl Camera {
 
     /// Direction of the camera.
     pub fn aim(&self) -> Aim {
-        Aim::of(self.ego_from_camera().rotation * BODY_FROM_OPTICAL.inverse())
+        Aim::from_rotation(self.ego_from_camera().rotation * BODY_FROM_OPTICAL.inverse())
     }
 
     /// Turns the camera.
@@ -145,7 +145,7 @@ pub struct Aim {
 
 impl Aim {
     /// The angles of a rotation from body to ego.
-    pub fn of(rotation: DQuat) -> Aim {
+    pub fn from_rotation(rotation: DQuat) -> Aim {
         let (yaw, down, roll) = rotation.normalize().to_euler(EulerRot::ZYX);
         // Adding 0 turns -0 into 0.
         let tidy = |v: f64| (v.to_degrees() * 1e6).round() / 1e6 + 0.0;
@@ -214,7 +214,7 @@ impl LidarPattern {
 
     /// Direction of its x axis.
     pub fn aim(&self) -> Aim {
-        Aim::of(self.ego_from_sensor().rotation)
+        Aim::from_rotation(self.ego_from_sensor().rotation)
     }
 
     /// Turns the sensor.

@@ -20,7 +20,7 @@ pub struct SpeedLimits {
 
 impl SpeedLimits {
     /// The limits of a layout. Vertices that are not finite, or far beyond the map, are left out.
-    pub fn of(layout: &BevLayout) -> Self {
+    pub fn from_layout(layout: &BevLayout) -> Self {
         let mut out = Self::default();
         let extent = layout.extent();
         let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
@@ -106,7 +106,7 @@ mod tests {
             limit(80.0, &[[f64::NAN, 0.0], [1e12, 0.0]]),
         ];
         layout.polylines = lines.to_vec().into();
-        let limits = SpeedLimits::of(&layout);
+        let limits = SpeedLimits::from_layout(&layout);
         let kph = |x: f64, y: f64| limits.at_mps(DVec2::new(x, y), 2.0).map(|v| (v * 3.6).round());
         assert_eq!(kph(10.3, 1.0), Some(50.0));
         assert_eq!(kph(-30.0, 2.5), Some(30.0));

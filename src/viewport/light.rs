@@ -219,7 +219,7 @@ mod tests {
     use scene::VoxelGrid;
 
     fn bake(grid: &VoxelGrid, origin: [usize; 2], size: [usize; 2]) -> LightBlock {
-        LightRays::new().bake(&Solidity::of(grid, Visible::ALL), origin, size)
+        LightRays::new().bake(&Solidity::from_grid(grid, Visible::ALL), origin, size)
     }
 
     #[test]

@@ -34,7 +34,7 @@ impl Solidity {
     }
 
     /// The solidity of a whole grid; see [`Visible`].
-    pub fn of(grid: &VoxelGrid, visible: Visible) -> Self {
+    pub fn from_grid(grid: &VoxelGrid, visible: Visible) -> Self {
         let mut solid = Self::empty(grid.extent());
         for (brick, voxels) in grid.bricks().iter().enumerate() {
             solid.update(brick, voxels, visible);
@@ -371,7 +371,7 @@ mod tests {
     }
 
     fn check(grid: &VoxelGrid, visible: Visible) {
-        let solid = Solidity::of(grid, visible);
+        let solid = Solidity::from_grid(grid, visible);
         let bricks: Vec<usize> = (0..grid.bricks().len()).collect();
         let mut found = std::collections::BTreeMap::new();
         for (brick, mesh) in mesh_bricks(grid, &solid, &bricks).into_iter().enumerate() {
@@ -437,7 +437,7 @@ mod tests {
         for [x, y] in grid.extent().all_columns() {
             grid.set(x, y, 0, 11);
         }
-        let solid = Solidity::of(&grid, Visible::ALL);
+        let solid = Solidity::from_grid(&grid, Visible::ALL);
         for b in 0..grid.bricks().len() {
             let mesh = mesh_brick(&grid.bricks()[b], b, &solid);
             assert_eq!(mesh.quads[4].len(), 1);
@@ -448,7 +448,7 @@ mod tests {
     fn solidity_reports_changes_of_shape_only() {
         let mut grid = VoxelGrid::new();
         grid.set(20, 20, 5, 4);
-        let mut solid = Solidity::of(&grid, Visible::ALL);
+        let mut solid = Solidity::from_grid(&grid, Visible::ALL);
         grid.set(20, 20, 5, 9);
         let brick = grid.bricks_along()[1] + 1;
         assert_eq!(solid.update(brick, &grid.bricks()[brick], Visible::ALL), None);

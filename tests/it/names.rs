@@ -223,7 +223,11 @@ fn the_measure_sees_what_it_measures() {
 #[test]
 fn the_glossary_is_short_and_names_each_term_once() {
     let text = read(&root().join("docs/glossary.md"));
-    let row = |l: &str| l.strip_prefix("| ").and_then(|l| l.split_once(" | ")).map(|(term, _)| term.to_owned());
+    let row = |l: &str| {
+        l.strip_prefix("| ")
+            .and_then(|l| l.split_once(" | "))
+            .map(|(term, _)| term.to_owned())
+    };
     let terms: Vec<String> = text.lines().filter_map(row).filter(|t| t != "term").collect();
     let mut once = terms.clone();
     once.sort();

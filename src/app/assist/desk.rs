@@ -246,7 +246,7 @@ impl Desk {
     /// The networks, read when they are first asked for.
     pub fn pipeline(&mut self) -> anyhow::Result<&mut OccPipeline> {
         if self.pipeline.is_none() {
-            let models = OccModels::of(self.weights.as_deref())?;
+            let models = OccModels::open(self.weights.as_deref())?;
             self.pipeline = Some(OccPipeline::new(models));
         }
         self.pipeline.as_mut().context("no networks")

@@ -48,7 +48,7 @@ impl Maker {
         let models = match &plan.generate {
             Some(generate) => {
                 params_of(generate, 0)?;
-                Some(OccModels::of(None)?)
+                Some(OccModels::open(None)?)
             }
             None => None,
         };

@@ -83,7 +83,7 @@ impl SceneloomApp {
             }
             ToolCommand::Row(row) => {
                 let named: Vec<&Form> = forms.iter().collect();
-                let added = rows::row(frame, &boxes, row).with(&Ties::of(&scene, &boxes));
+                let added = rows::row(frame, &boxes, row).with(&Ties::from_selection(&scene, &boxes));
                 self.add_copies("Row of {things}", rows::row_forms(&scene, &named, row), added);
                 return true;
             }
@@ -92,7 +92,8 @@ impl SceneloomApp {
                 let mirrored = |form: &Form| rows::mirrored_form(frame, form, keep);
                 if *copies {
                     let forms = forms.iter().map(mirrored).collect();
-                    let added = arrange::mirror_copy(frame, &boxes, keep).with(&Ties::of(&scene, &boxes));
+                    let added =
+                        arrange::mirror_copy(frame, &boxes, keep).with(&Ties::from_selection(&scene, &boxes));
                     self.add_copies("Mirrored copies of {things}", forms, added);
                 } else {
                     let chosen = self.state.tools.things.chosen_in(&scene.background);
@@ -140,7 +141,7 @@ impl SceneloomApp {
     fn duplicate(&mut self, scene: &Scene, boxes: &[BoxId], forms: &[Form]) {
         let by_m = beside_m(forms);
         let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
-        let added = arrange::duplicate(scene.frame(), boxes).with(&Ties::of(scene, boxes));
+        let added = arrange::duplicate(scene.frame(), boxes).with(&Ties::from_selection(scene, boxes));
         self.add_copies("Duplicate {things}", copies, added);
     }
 
@@ -158,7 +159,7 @@ impl SceneloomApp {
     }
 
     fn copy_all(&mut self, scene: &Scene, boxes: &[BoxId], forms: &[Form], ctx: &egui::Context) {
-        let clipboard = Clipboard::of(scene, boxes);
+        let clipboard = Clipboard::from_selection(scene, boxes);
         let mut edits: Vec<Edit> = clipboard.boxes.iter().map(arrange::adding).collect();
         edits.push(Edit::AddThings {
             forms: forms.to_vec(),

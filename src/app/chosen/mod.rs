@@ -38,7 +38,7 @@ impl SceneloomApp {
     pub(crate) fn tool_command(&mut self, command: ToolCommand, ctx: &Context) {
         let ids = self.state.chosen();
         let frame = self.document.settled_scene().frame().clone();
-        let ties = Ties::of(self.document.settled_scene(), &ids);
+        let ties = Ties::from_selection(self.document.settled_scene(), &ids);
         if command == ToolCommand::Delete && self.delete_road() {
             return;
         }
@@ -77,24 +77,24 @@ impl SceneloomApp {
                 }
             }
             ToolCommand::Delete => {
-                let label = of(&ids, "Delete box", "Delete boxes");
+                let label = count_noun(&ids, "Delete box", "Delete boxes");
                 self.apply_some(label, arrange::remove(&frame, &ids));
             }
             ToolCommand::Duplicate => {
-                let label = of(&ids, "Duplicate box", "Duplicate boxes");
+                let label = count_noun(&ids, "Duplicate box", "Duplicate boxes");
                 self.add_boxes(label, arrange::duplicate(&frame, &ids).with(&ties));
             }
             ToolCommand::Copy => self.copy(ctx),
             ToolCommand::Cut => {
                 self.copy(ctx);
-                let label = of(&ids, "Cut box", "Cut boxes");
+                let label = count_noun(&ids, "Cut box", "Cut boxes");
                 self.apply_some(label, arrange::remove(&frame, &ids));
             }
             ToolCommand::Paste => {
                 let over_bev = self.state.pointed.pane == Some(PaneId::BEV);
                 let at_m = self.state.tools.pointer_m.filter(|_| over_bev);
                 let added = arrange::paste(&frame, &self.state.tools.clipboard, at_m);
-                let label = of(&added.ids, "Paste box", "Paste boxes");
+                let label = count_noun(&added.ids, "Paste box", "Paste boxes");
                 self.add_boxes(label, added);
             }
             ToolCommand::PasteAt(at_m) => {
@@ -103,11 +103,11 @@ impl SceneloomApp {
                 self.tool_command(ToolCommand::Paste, ctx);
             }
             ToolCommand::Nudge(step_m) => {
-                let label = of(&ids, "Nudge box", "Nudge boxes");
+                let label = count_noun(&ids, "Nudge box", "Nudge boxes");
                 self.apply_some(label, arrange::shift(&frame, &ids, step_m));
             }
             ToolCommand::Turn(degrees) => {
-                let label = of(&ids, "Turn box", "Turn boxes");
+                let label = count_noun(&ids, "Turn box", "Turn boxes");
                 let pivot = self.state.tools.pivot;
                 self.apply_some(label, arrange::turn(&frame, &ids, degrees, pivot));
             }
@@ -126,7 +126,7 @@ impl SceneloomApp {
                         arrange::mirror_copy(&frame, &ids, keep).with(&ties),
                     );
                 } else {
-                    let label = of(&ids, "Mirror box", "Mirror boxes");
+                    let label = count_noun(&ids, "Mirror box", "Mirror boxes");
                     self.apply_some(label, arrange::mirror(&frame, &ids, keep));
                 }
             }
@@ -193,7 +193,7 @@ impl SceneloomApp {
     /// Copies the chosen boxes, and puts the edits that add them on the system's clipboard. Without a text there the
     /// window system would not report the chord that pastes.
     fn copy(&mut self, ctx: &egui::Context) {
-        let clipboard = Clipboard::of(self.document.settled_scene(), &self.state.chosen());
+        let clipboard = Clipboard::from_selection(self.document.settled_scene(), &self.state.chosen());
         if !clipboard.boxes.is_empty() {
             let edits: Vec<Edit> = clipboard.boxes.iter().map(arrange::adding).collect();
             ctx.copy_text(serde_json::to_string(&edits).unwrap_or_default());
@@ -240,7 +240,7 @@ impl SceneloomApp {
 }
 
 /// The name of an undo step for one object or for several.
-pub(crate) fn of<T>(ids: &[T], one: &'static str, several: &'static str) -> &'static str {
+pub(crate) fn count_noun<T>(ids: &[T], one: &'static str, several: &'static str) -> &'static str {
     if ids.len() > 1 { several } else { one }
 }
 

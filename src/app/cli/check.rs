@@ -72,7 +72,7 @@ impl CheckArgs {
         if self.output.is_some() && !self.fix {
             return Err(anyhow!("-o is given without --fix: check alone writes no scene").into());
         }
-        let mut scene = self.moment.of(open::scene(&self.scene)?)?;
+        let mut scene = self.moment.apply_to(open::scene(&self.scene)?)?;
         let start = Instant::now();
         let mut findings = self.findings(&scene);
         let (mut repairs, mut files) = (Vec::new(), Vec::new());
@@ -86,7 +86,7 @@ impl CheckArgs {
         }
         let wall_s = start.elapsed().as_secs_f64();
         let open: Vec<Finding> = waive::open(scene.frame(), &findings).cloned().collect();
-        let counts = SeverityCounts::of(&open);
+        let counts = SeverityCounts::from_findings(&open);
         let mut kinds = BTreeMap::<&str, usize>::new();
         open.iter().for_each(|f| *kinds.entry(f.check).or_default() += 1);
         let report = json!({

@@ -93,7 +93,7 @@ impl Gen {
     /// The networks that a generation takes. Errors in one line if the folder of weights lacks or damages a network
     /// that was asked for by name.
     pub(super) fn models(&self, weights: &Weights) -> anyhow::Result<Arc<OccModels>> {
-        let models = OccModels::of(weights.folder.as_deref())?;
+        let models = OccModels::open(weights.folder.as_deref())?;
         if let (Some(n @ 1..), None, Some(folder)) = (self.fine_steps, &models.refiner, &weights.folder) {
             anyhow::bail!(
                 "--fine-steps {n}: {} has no refiner.safetensors, expected it beside the other weights",
@@ -178,7 +178,7 @@ pub struct Moment {
 
 impl Moment {
     /// The scene at that moment. Errors in one line if it has no such moment.
-    pub fn of(&self, scene: scene::Scene) -> anyhow::Result<scene::Scene> {
+    pub fn apply_to(&self, scene: scene::Scene) -> anyhow::Result<scene::Scene> {
         let Some(at_s) = self.at_s else {
             return Ok(scene);
         };

@@ -176,7 +176,7 @@ impl Dataset {
         let (extension, what) = if self.kind == "pictures" { tables } else { labels };
         let made = |dir: &Option<PathBuf>, extension, what| {
             dir.as_ref()
-                .map(|dir| SourceFolder::of(dir, extension, what))
+                .map(|dir| SourceFolder::read_from(dir, extension, what))
                 .transpose()
         };
         Ok(Recipe {

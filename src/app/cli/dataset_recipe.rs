@@ -27,7 +27,7 @@ pub(super) struct SourceFolder {
 impl SourceFolder {
     /// Reads the files of an extension below a folder, without recipes of data that were written into it. Errors if
     /// there is none.
-    pub(super) fn of(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Self> {
+    pub(super) fn read_from(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Self> {
         let place = dir.canonicalize().unwrap_or_else(|_| dir.into());
         let mut files = open::files_below(&place, extension, what)?;
         files.retain(|file| !file.ends_with(FILE));
@@ -131,7 +131,7 @@ mod tests {
 
     fn recipe(from: &Path) -> Recipe {
         let arguments = Map::from_iter([("seed".to_owned(), json!(3))]);
-        let made = SourceFolder::of(from, "npz", "labels").expect("files");
+        let made = SourceFolder::read_from(from, "npz", "labels").expect("files");
         Recipe {
             arguments,
             folders: vec![("from", Some(made)), ("roads", None)],

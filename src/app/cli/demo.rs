@@ -168,7 +168,7 @@ impl Demo {
         std::fs::create_dir_all(&dir).with_context(|| format!("create {}", dir.display()))?;
         let progress = ProgressLine::new(&self.common);
         let start = Instant::now();
-        let mut pipeline = OccPipeline::new(OccModels::of(self.weights.folder.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::open(self.weights.folder.as_deref())?);
         let mut document = Document::new(open::bundled()?);
         let mut sink = Sink {
             dir: &dir,

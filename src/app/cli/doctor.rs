@@ -49,7 +49,7 @@ impl Doctor {
             }
             Err(error) => json!({ "error": error.to_string() }),
         };
-        let weights = match OccModels::of(self.weights.folder.as_deref()) {
+        let weights = match OccModels::open(self.weights.folder.as_deref()) {
             Ok(models) => json!({ "name": models.card.name, "ok": true }),
             Err(error) => json!({ "ok": false, "error": output::one_line(&error.into()) }),
         };

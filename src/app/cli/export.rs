@@ -130,7 +130,7 @@ impl Export {
             .context("-o PATH is missing: where should the files go?")?;
         let scene = self
             .moment
-            .of(open::scene(&self.scene.context("the scene to read is missing")?)?)?;
+            .apply_to(open::scene(&self.scene.context("the scene to read is missing")?)?)?;
         let options = ExportOptions {
             camera_size: self.size,
             source: self.source,

@@ -42,7 +42,7 @@ pub struct Perceive {
 
 impl Perceive {
     pub(super) fn run(self) -> CommandResult {
-        let scene = self.moment.of(open::scene(&self.scene)?)?;
+        let scene = self.moment.apply_to(open::scene(&self.scene)?)?;
         match (self.of, self.vary) {
             (Some(id), Some(vary)) => self.search(&scene, BoxId(id), vary, self.by.unwrap_or_default()),
             _ if self.by.is_some() => {
@@ -57,7 +57,7 @@ impl Perceive {
         let placed = scene.with_rig_in_world();
         let found = perceived::report(&placed)?;
         let swept = perceived_sweep::report(scene)?;
-        let heard = PerceptionInput::of(scene)?;
+        let heard = PerceptionInput::from_scene(scene)?;
         let told = |hears| perceived_voxels::report_of(scene, &heard, hears);
         let (both, alone) = (told(Hears::Both)?, [told(Hears::Lidar)?, told(Hears::Cameras)?]);
         let name = |camera: usize| &placed.rig.cameras[camera].name;

@@ -122,7 +122,7 @@ impl PromptArgs {
         mut document: Document,
         params: GenParams,
     ) -> anyhow::Result<(Scene, serde_json::Value)> {
-        let mut pipeline = OccPipeline::new(OccModels::of(self.weights.folder.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::open(self.weights.folder.as_deref())?);
         let params = GenParams {
             seed: self.seed,
             ..params

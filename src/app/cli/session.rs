@@ -41,7 +41,7 @@ impl On {
         };
         // Weights that are asked for by name are refused now, not at the first call that needs them.
         if self.weights.is_some() {
-            OccModels::of(self.weights.as_deref()).context("--weights")?;
+            OccModels::open(self.weights.as_deref()).context("--weights")?;
         }
         let document = Box::new(Document::new(scene));
         Ok(Desk::new(Holder::Own(document), folder, self.weights))

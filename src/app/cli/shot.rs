@@ -54,7 +54,7 @@ pub struct Shot {
 
 impl Shot {
     pub(super) fn run(self) -> CommandResult {
-        let scene = self.moment.of(open::scene(&self.scene)?)?;
+        let scene = self.moment.apply_to(open::scene(&self.scene)?)?;
         let options = self.options(&scene)?;
         let start = Instant::now();
         let (shot, adapter) = match options.subject {

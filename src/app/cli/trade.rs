@@ -111,7 +111,7 @@ impl Trade {
         let plan = self.plan();
         plan.check()?;
         let load = self.look_at_load()?;
-        let models = OccModels::of(self.weights.folder.as_deref())?;
+        let models = OccModels::open(self.weights.folder.as_deref())?;
         let progress = ProgressLine::new(&self.common);
         let processes = self.processes.unwrap_or(if self.suite == "full" { 3 } else { 1 });
         let raw = if processes > 1 && !self.raw {

@@ -82,7 +82,7 @@ struct Room {
 }
 
 impl Room {
-    fn of<T>(ui: &Ui, choices: &[(T, &str, &str)], sources: usize, lit: bool, view: ViewId) -> Self {
+    fn measure<T>(ui: &Ui, choices: &[(T, &str, &str)], sources: usize, lit: bool, view: ViewId) -> Self {
         let news = match view == learned::VIEW.id {
             true => PAINTING,
             false => UPDATING,
@@ -119,7 +119,7 @@ pub fn header(
         let choices: Vec<_> = views.iter().map(|v| (v.id, t(v.title), t(v.hint))).collect();
         let sources = cameras::sources_of(shown.view);
         let lit = shown.shown_source().about().needs.conditions;
-        let room = Room::of(ui, &choices, sources.len(), lit, shown.view);
+        let room = Room::measure(ui, &choices, sources.len(), lit, shown.view);
         ui.scope(|ui| {
             ui.set_max_width(room.views);
             icons::choice(ui, &mut shown.view, &choices, t("Cameras"));

@@ -76,7 +76,12 @@ pub struct CamerasInput<'a> {
 
 impl<'a> CamerasInput<'a> {
     /// The input for a scene and the results of its sensors. `rev` is the state that they should show.
-    pub(crate) fn of(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing, shown: &CamerasShown) -> Self {
+    pub(crate) fn from_scene(
+        scene: &'a Scene,
+        rev: SceneRev,
+        sensing: &'a Sensing,
+        shown: &CamerasShown,
+    ) -> Self {
         Self {
             scene,
             rig: scene.with_rig_in_world().rig.clone(),

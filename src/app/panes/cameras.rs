@@ -35,7 +35,8 @@ impl Pane for Cameras {
     }
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
-        let cameras = CamerasInput::of(cx.scene, cx.document.scene().rev, cx.sensing, &cx.state.cameras);
+        let cameras =
+            CamerasInput::from_scene(cx.scene, cx.document.scene().rev, cx.sensing, &cx.state.cameras);
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             cx.strip.controls(ui, &cameras, &mut cx.state.cameras, commands);
         });
@@ -74,7 +75,7 @@ pub(super) fn compared(
         .as_ref()
         .map_or((cameras.view, None), |o| (o.view, Some(o.camera)));
     let of = |scene, rev, sensing| {
-        CamerasInput::of(scene, rev, sensing, &cameras).of_view(rev, sensing, &cameras, view)
+        CamerasInput::from_scene(scene, rev, sensing, &cameras).of_view(rev, sensing, &cameras, view)
     };
     let now = of(cx.scene, rev, cx.sensing);
     let before = cx.compare.before.clone();

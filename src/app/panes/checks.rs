@@ -144,7 +144,7 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
     let (open, waived): (Vec<&Finding>, Vec<&Finding>) = findings
         .iter()
         .partition(|f| waive::of(input.frame(), f).is_none());
-    let counts = SeverityCounts::of(open.iter().copied());
+    let counts = SeverityCounts::from_findings(open.iter().copied());
     if open.is_empty() {
         all_is_well(ui, counts, &waived);
         ui.weak(t(
@@ -205,7 +205,7 @@ fn bar(
     triage: &mut Triage,
     commands: &mut Vec<Command>,
 ) {
-    let counts = SeverityCounts::of(open.iter().copied());
+    let counts = SeverityCounts::from_findings(open.iter().copied());
     ui.horizontal(|ui| {
         for (severity, hidden) in Severity::ALL.into_iter().zip(&mut triage.hidden) {
             let n = counts.count(severity);

@@ -135,7 +135,7 @@ impl SweepDifference {
             return;
         };
         let rings = lidar.elevations_deg.len().max(1);
-        let mount = Mount::of(scene, lidar);
+        let mount = Mount::from_scene(scene, lidar);
         let known =
             |(a, b, _): &(Arc<LidarSweep>, Arc<LidarSweep>, _)| Arc::ptr_eq(a, now) && Arc::ptr_eq(b, before);
         if !self.texture.as_ref().is_some_and(known) {

@@ -13,7 +13,7 @@ const LONGEST: usize = 24;
 
 /// The default name of a brush: its settings in words.
 fn named(held: &BrushSettings) -> String {
-    fn of<T: PartialEq>(all: &[(T, &'static str, &'static str)], value: &T) -> &'static str {
+    fn display_name<T: PartialEq>(all: &[(T, &'static str, &'static str)], value: &T) -> &'static str {
         all.iter()
             .find(|(v, ..)| v == value)
             .map_or("", |(_, name, _)| *name)
@@ -26,7 +26,7 @@ fn named(held: &BrushSettings) -> String {
             erase,
         } => {
             let layer = theme::sentence(t(&layer.label()));
-            let shape = t(of(&PaintShape::ALL, shape)).to_lowercase();
+            let shape = t(display_name(&PaintShape::ALL, shape)).to_lowercase();
             match erase {
                 true => tf!(
                     "Erase {layer}, {shape}, {size} m",
@@ -45,7 +45,10 @@ fn named(held: &BrushSettings) -> String {
         BrushSettings::Voxels {
             mode, verb, class, ..
         } => {
-            let (mode, verb) = (t(of(&VoxelMode::ALL, mode)), t(of(&VoxelVerb::ALL, verb)));
+            let (mode, verb) = (
+                t(display_name(&VoxelMode::ALL, mode)),
+                t(display_name(&VoxelVerb::ALL, verb)),
+            );
             tf!(
                 "{verb} {class}, {mode}",
                 verb = verb,

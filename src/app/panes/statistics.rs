@@ -43,7 +43,7 @@ struct SceneCounts {
 }
 
 impl SceneCounts {
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let frame = scene.frame();
         let counts = frame.occupancy.class_counts();
         let count = |class: Class| counts[usize::from(class.id())];
@@ -92,7 +92,7 @@ impl Pane for Statistics {
         let counts = match &self.counted {
             Some((of, counts)) if Arc::ptr_eq(of, cx.scene) => counts,
             _ => {
-                let counts = SceneCounts::of(cx.scene);
+                let counts = SceneCounts::from_scene(cx.scene);
                 &self.counted.insert((cx.scene.clone(), counts)).1
             }
         };
@@ -200,7 +200,7 @@ mod tests {
             label: Default::default(),
         };
         let frame = Frame::new(layout, [(BoxId(1), car)].into(), grid);
-        let counts = SceneCounts::of(&Scene::single("test", frame, Arc::default(), 1));
+        let counts = SceneCounts::from_scene(&Scene::single("test", frame, Arc::default(), 1));
         assert_eq!(counts.voxels, [(Class::Vegetation, 3), (Class::Car, 1)]);
         assert_eq!(counts.boxes, [(Class::Car, 1)].into());
         assert!((counts.drivable_m2 - 10.0 * 0.16).abs() < 1e-9);

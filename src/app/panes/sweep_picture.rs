@@ -35,7 +35,7 @@ pub struct Mount {
 
 impl Mount {
     /// The mount of a sensor on the scene's vehicle.
-    pub fn of(scene: &Scene, lidar: &LidarPattern) -> Self {
+    pub fn from_scene(scene: &Scene, lidar: &LidarPattern) -> Self {
         Self {
             ego_from_world: scene.frame().world_from_ego.inverse(),
             at_m: DVec3::from_array(lidar.translation_m),
@@ -121,7 +121,7 @@ impl SweepPicture {
             );
             return;
         };
-        let (rings, mount) = (lidar.elevations_deg.len().max(1), Mount::of(scene, lidar));
+        let (rings, mount) = (lidar.elevations_deg.len().max(1), Mount::from_scene(scene, lidar));
         let mode = state.lidar.colors;
         let known = |(of, m, n, _): &(Arc<LidarSweep>, LidarColorMode, usize, _)| {
             Arc::ptr_eq(of, sweep) && *m == mode && *n == rings

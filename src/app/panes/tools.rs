@@ -151,7 +151,7 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
 fn seed_row(ui: &mut Ui, wish: &mut SeedWish, scene_seed: u64) {
     ui.horizontal_wrapped(|ui| {
         ui.label(t("Seed"));
-        let mut seed = wish.of(scene_seed);
+        let mut seed = wish.seed_for(scene_seed);
         let field = egui::DragValue::new(&mut seed).speed(1.0);
         let field = ui
             .add(field)

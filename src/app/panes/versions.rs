@@ -209,7 +209,7 @@ impl VersionEntry {
         }
         ui.separator();
         if ui.button(t("Name…")).clicked()
-            && let Some(i) = versions.of(self.rev)
+            && let Some(i) = versions.index_of(self.rev)
         {
             versions.renaming = Some((self.rev, title(&versions.list()[i]).to_owned()));
         }

@@ -24,7 +24,7 @@ pub enum Packing {
 impl Packing {
     /// Reads the packing of a request. Quality is a percentage, or a share up to 1; 0 stands for 95. Errors in one line
     /// if the format is not served or the quality is beyond 100.
-    pub fn of(image_format: i32, quality: f32) -> Result<Self, Status> {
+    pub fn from_format(image_format: i32, quality: f32) -> Result<Self, Status> {
         const SERVED: &str = "expected PNG (1), JPEG (2) or RGB_UINT8_PLANAR (4)";
         match ImageFormat::try_from(image_format) {
             Ok(ImageFormat::Png) => Ok(Self::Png),
@@ -104,11 +104,11 @@ mod tests {
 
     #[test]
     fn formats_and_qualities_are_checked() {
-        assert_eq!(Packing::of(2, 95.0).expect("JPEG"), Packing::Jpeg(95));
-        assert_eq!(Packing::of(2, 0.9).expect("JPEG"), Packing::Jpeg(90));
-        assert_eq!(Packing::of(2, 0.0).expect("JPEG"), Packing::Jpeg(95));
-        assert_eq!(Packing::of(1, f32::NAN).expect("PNG"), Packing::Png);
-        let code = |format, quality| Packing::of(format, quality).expect_err("refused").code();
+        assert_eq!(Packing::from_format(2, 95.0).expect("JPEG"), Packing::Jpeg(95));
+        assert_eq!(Packing::from_format(2, 0.9).expect("JPEG"), Packing::Jpeg(90));
+        assert_eq!(Packing::from_format(2, 0.0).expect("JPEG"), Packing::Jpeg(95));
+        assert_eq!(Packing::from_format(1, f32::NAN).expect("PNG"), Packing::Png);
+        let code = |format, quality| Packing::from_format(format, quality).expect_err("refused").code();
         assert_eq!(code(2, f32::NAN), tonic::Code::InvalidArgument);
         assert_eq!(code(2, 101.0), tonic::Code::InvalidArgument);
         assert_eq!(code(0, 1.0), tonic::Code::InvalidArgument);

@@ -41,7 +41,7 @@ pub fn size_of(request: &RgbRenderRequest) -> Result<[u32; 2], Status> {
 
 /// Renders a picture. Errors in one line.
 pub fn render(renderer: &Renderer, request: &RgbRenderRequest) -> Result<RgbRenderReturn, Status> {
-    let packing = Packing::of(request.image_format, request.image_quality)?;
+    let packing = Packing::from_format(request.image_format, request.image_quality)?;
     let size = size_of(request)?;
     if request.insert_ego_mask {
         return Err(Status::invalid_argument(

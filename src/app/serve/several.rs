@@ -47,7 +47,7 @@ fn check<'a>(items: usize, pictures: impl Iterator<Item = &'a RgbRenderRequest>)
 }
 
 /// An error of one of several.
-fn of(place: &str, i: usize, error: Status) -> Status {
+fn prefix_error(place: &str, i: usize, error: Status) -> Status {
     Status::new(error.code(), format!("{place}[{i}]: {}", error.message()))
 }
 
@@ -60,12 +60,12 @@ pub fn aggregated(
     check(pictures.len() + sweeps.len(), pictures.iter())?;
     let (mut out, mut bytes) = (AggregatedRenderReturn::default(), Bytes::default());
     for (i, one) in pictures.iter().enumerate() {
-        let made = picture::render(renderer, one).map_err(|e| of("rgb_requests", i, e))?;
+        let made = picture::render(renderer, one).map_err(|e| prefix_error("rgb_requests", i, e))?;
         bytes.add(made.image_bytes.len())?;
         out.rgb_returns.push(made);
     }
     for (i, one) in sweeps.iter().enumerate() {
-        let made = lidar::render(renderer, one).map_err(|e| of("lidar_requests", i, e))?;
+        let made = lidar::render(renderer, one).map_err(|e| prefix_error("lidar_requests", i, e))?;
         bytes.add(2 * (made.point_xyzs_buffer.len() + made.point_intensities_buffer.len()))?;
         out.lidar_returns.push(made);
     }

@@ -178,8 +178,8 @@ impl SceneloomApp {
             made,
             notes: _,
         } = match &config.picture {
-            Some(picture) => VersionedScene::of(config.scene).told_by(picture),
-            None => VersionedScene::of(config.scene),
+            Some(picture) => VersionedScene::from_scene(config.scene).told_by(picture),
+            None => VersionedScene::from_scene(config.scene),
         };
         let mut versions = Versions::default();
         versions.replace(kept);

@@ -31,7 +31,7 @@ pub struct Bookmark {
 
 impl Bookmark {
     /// The present viewpoints.
-    pub fn of(camera: &ViewCamera, canvas: &BevCanvas) -> Self {
+    pub fn from_camera(camera: &ViewCamera, canvas: &BevCanvas) -> Self {
         let (bev_center_m, bev_scale) = canvas.place();
         Self {
             target_m: camera.target_m,
@@ -63,7 +63,7 @@ impl SceneloomApp {
     /// Keeps the viewpoints of both views.
     pub(crate) fn keep_bookmark(&mut self, slot: u8) {
         if SLOTS.contains(&slot) {
-            let bookmark = Bookmark::of(&self.views.view3d.camera, &self.views.canvas);
+            let bookmark = Bookmark::from_camera(&self.views.view3d.camera, &self.views.canvas);
             self.preferences.settings.bookmarks.insert(slot, bookmark);
             self.tell(tf!("View {n} is kept: F{n} comes back to it", n = slot));
         }
@@ -99,7 +99,7 @@ mod tests {
             pitch_rad: -0.3,
             ..ViewCamera::default()
         };
-        let bookmark = Bookmark::of(&camera, &BevCanvas::default());
+        let bookmark = Bookmark::from_camera(&camera, &BevCanvas::default());
         let text = serde_json::to_string(&bookmark).expect("JSON");
         let again: Bookmark = serde_json::from_str(&text).expect("read");
         assert_eq!(again, bookmark);

@@ -304,7 +304,7 @@ impl SceneloomApp {
             panes: &mut views.panes,
             cx: PaneContext {
                 scene,
-                seen: views.seen.of(scene, self.document.settled_scene()),
+                seen: views.seen.update(scene, self.document.settled_scene()),
                 document: &self.document,
                 state: &mut self.state,
                 canvas: &mut views.canvas,

@@ -33,7 +33,7 @@ impl SceneloomApp {
                 }
             }
             GenerationCommand::RestoreVersion(rev) => {
-                if let Some(i) = self.generation.versions.of(rev) {
+                if let Some(i) = self.generation.versions.index_of(rev) {
                     let scene = self.generation.versions.list()[i].scene.clone();
                     self.restore(&scene);
                 }
@@ -93,7 +93,7 @@ impl SceneloomApp {
         let mut params = self.generation.live.params_for(&scene, full);
         if inpaints {
             self.state.tools.inpaint_region(&mut params);
-            params.seed = self.state.seed.of(params.seed);
+            params.seed = self.state.seed.seed_for(params.seed);
         }
         if full && self.draws_scenery_first() {
             return self.generate_on_scenery(params);

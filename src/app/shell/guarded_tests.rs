@@ -113,7 +113,7 @@ fn scenery() {
 #[test]
 fn checks_and_sensors() {
     let mut app = app();
-    let wanted = crate::camera_views::Wanted::of(&app.state.cameras, &app.state.lidar, 6);
+    let wanted = crate::camera_views::Wanted::from_settings(&app.state.cameras, &app.state.lidar, 6);
     panic_next("checks");
     wait_for(
         &mut app,

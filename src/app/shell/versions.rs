@@ -102,20 +102,20 @@ impl From<authoring::open::OpenedScene> for VersionedScene {
     fn from(found: authoring::open::OpenedScene) -> Self {
         Self {
             notes: found.notes,
-            ..Self::of(found.scene)
+            ..Self::from_scene(found.scene)
         }
     }
 }
 
 impl From<Scene> for VersionedScene {
     fn from(scene: Scene) -> Self {
-        Self::of(scene)
+        Self::from_scene(scene)
     }
 }
 
 impl VersionedScene {
     /// Opens all versions; takes about 10 ms for each.
-    pub fn of(scene: Scene) -> Self {
+    pub fn from_scene(scene: Scene) -> Self {
         let own = match scene.kept.versions.is_empty() {
             true => None,
             false => loom::alone_to_bytes(&scene).ok(),
@@ -179,7 +179,7 @@ impl Versions {
 
     /// Notes the findings of a state, if it is a version.
     pub fn note_findings(&mut self, rev: SceneRev, counts: SeverityCounts) {
-        if let Some(i) = self.of(rev) {
+        if let Some(i) = self.index_of(rev) {
             self.list[i].findings = Some(counts);
         }
     }
@@ -250,7 +250,7 @@ impl Versions {
     pub(crate) fn keep(&mut self, scene: &Arc<Scene>) {
         let rev = scene.content();
         self.push(KEPT.to_owned(), String::new(), scene.clone());
-        if let Some(i) = self.of(rev) {
+        if let Some(i) = self.index_of(rev) {
             self.list[i].starred = true;
             self.changed = true;
             self.renaming = Some((rev, self.list[i].name.clone()));
@@ -294,7 +294,7 @@ impl Versions {
 
     /// Renames a version; an empty name removes its name.
     pub fn rename(&mut self, rev: SceneRev, name: &str) {
-        if let Some(i) = self.of(rev) {
+        if let Some(i) = self.index_of(rev) {
             let name: String = name.trim().chars().take(Self::LONGEST_NAME).collect();
             self.changed |= self.list[i].name != name;
             self.list[i].name = name;
@@ -303,7 +303,7 @@ impl Versions {
 
     /// Stars a version, or removes its star.
     pub fn star(&mut self, rev: SceneRev) {
-        if let Some(i) = self.of(rev) {
+        if let Some(i) = self.index_of(rev) {
             self.list[i].starred = !self.list[i].starred;
             self.changed = true;
         }
@@ -311,7 +311,7 @@ impl Versions {
 
     /// The settings that the version of a state was made with.
     pub fn made(&self, rev: SceneRev) -> Option<&MadeWith> {
-        self.list[self.of(rev)?].made.as_ref()
+        self.list[self.index_of(rev)?].made.as_ref()
     }
 
     /// All versions, the oldest first.
@@ -324,14 +324,14 @@ impl Versions {
     }
 
     /// The index of the version of a state.
-    pub fn of(&self, rev: SceneRev) -> Option<usize> {
+    pub fn index_of(&self, rev: SceneRev) -> Option<usize> {
         self.list.iter().position(|v| v.scene.content() == rev)
     }
 
     /// The version to compare a state with if the user chose none: the one before it, or the newest for a state that is
     /// no version.
     pub fn before(&self, rev: SceneRev) -> Option<&Arc<Scene>> {
-        let index = match self.of(rev) {
+        let index = match self.index_of(rev) {
             Some(index) => index.checked_sub(1)?,
             None => self.list.len().checked_sub(1)?,
         };
@@ -340,7 +340,7 @@ impl Versions {
 
     /// The version `step` places after (or before) that of a state.
     pub fn neighbour(&self, rev: SceneRev, step: i32) -> Option<&Arc<Scene>> {
-        let index = match self.of(rev) {
+        let index = match self.index_of(rev) {
             Some(index) => index.checked_add_signed(step as isize)?,
             None if step < 0 => self.list.len().checked_sub(1)?,
             None => return None,
@@ -432,7 +432,7 @@ mod tests {
         for _ in 0..Versions::MAX + 3 {
             versions.push("edit".into(), String::new(), scene());
         }
-        assert_eq!(versions.of(kept.content()), Some(0));
+        assert_eq!(versions.index_of(kept.content()), Some(0));
         assert_eq!(versions.kept(kept.content()).len(), Versions::MAX + 1);
     }
 
@@ -485,7 +485,7 @@ mod tests {
             versions: kept,
             typed: Vec::new(),
         });
-        let opened = VersionedScene::of(saved);
+        let opened = VersionedScene::from_scene(saved);
         let found: Vec<_> = opened
             .versions
             .iter()

@@ -21,7 +21,7 @@ impl SceneloomApp {
                 let version = self
                     .generation
                     .versions
-                    .of(rev)
+                    .index_of(rev)
                     .map(|i| &self.generation.versions.list()[i]);
                 self.views.compare.chosen = version.map(|v| v.scene.clone());
                 if self.state.compare.mode == CompareMode::Off {

@@ -147,7 +147,7 @@ impl SceneloomApp {
             .threads
             .checking
             .findings()
-            .map(|all| SeverityCounts::of(waive::open(settled.frame(), all)));
+            .map(|all| SeverityCounts::from_findings(waive::open(settled.frame(), all)));
         if let Some(counts) = findings.filter(|_| !self.threads.checking.is_stale(settled.rev)) {
             self.generation.versions.note_findings(settled.content(), counts);
         }
@@ -212,7 +212,7 @@ impl SceneloomApp {
         let active = held || self.state.compare.mode != CompareMode::Off;
         let chosen = self.views.compare.chosen.as_ref().filter(|s| s.content() != rev);
         let versions = &self.generation.versions;
-        let version = chosen.and_then(|s| versions.of(s.content()));
+        let version = chosen.and_then(|s| versions.index_of(s.content()));
         self.state.compare.with = version.map(|i| versions.list()[i].title().to_owned());
         let before = chosen
             .or_else(|| self.generation.versions.before(rev))
@@ -222,7 +222,7 @@ impl SceneloomApp {
         let ctx = ui.ctx().clone();
         self.views.compare.prepare(
             before,
-            Wanted::of(
+            Wanted::from_settings(
                 &self.state.cameras,
                 &self.state.lidar,
                 self.document.scene().rig.cameras.len(),
@@ -236,7 +236,7 @@ impl SceneloomApp {
     pub(crate) fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let now_s = self.now_s();
         let rev = self.document.scene().rev;
-        let cameras = CamerasInput::of(scene, rev, &self.threads.sensing, &self.state.cameras);
+        let cameras = CamerasInput::from_scene(scene, rev, &self.threads.sensing, &self.state.cameras);
         self.views
             .strip
             .enlarged(ui, self.views.center, &cameras, &mut self.state, commands);

@@ -40,7 +40,7 @@ impl SceneloomApp {
             || self.generation.live.running.is_some();
         if self.state.playback.sensors_are_due(now_s) {
             let count = self.document.scene().rig.cameras.len();
-            let wanted = Wanted::of(&self.state.cameras, &self.state.lidar, count);
+            let wanted = Wanted::from_settings(&self.state.cameras, &self.state.lidar, count);
             self.threads
                 .sensing
                 .paint_with(&self.preferences.settings.painting);

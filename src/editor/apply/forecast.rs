@@ -107,7 +107,7 @@ pub(super) fn together(
     };
     let motions = |others: Option<&Scene>| -> Vec<Edit> {
         // (where everybody is at each moment is worked out once, not once for each of them)
-        let everybody = others.map(|later| Everybody::of(later, from_s, to_s - from_s));
+        let everybody = others.map(|later| Everybody::from_scene(later, from_s, to_s - from_s));
         let motion = |g: &Goer| set(g, g.goes_on(scene, everybody.as_ref(), (from_s, to_s)));
         goers.iter().map(motion).collect()
     };

@@ -22,7 +22,7 @@ pub(crate) struct FindingTally(BTreeMap<FindingKind, usize>);
 
 impl FindingTally {
     /// Findings of one kind.
-    pub fn of(&self, kind: FindingKind) -> usize {
+    pub fn count_of(&self, kind: FindingKind) -> usize {
         self.0.get(&kind).copied().unwrap_or(0)
     }
 
@@ -77,7 +77,7 @@ impl Findings {
 
     /// Like [`Self::listing`], with the recorded parts of the scene: findings about them are listed as
     /// [`Severity::Info`].
-    pub fn of(scene: &Scene, most: usize) -> Self {
+    pub fn from_scene(scene: &Scene, most: usize) -> Self {
         Self {
             recorded: Recorded::boxes_in(scene),
             painted: Recorded::painted_in(scene),

@@ -116,7 +116,7 @@ pub struct SeverityCounts {
 
 impl SeverityCounts {
     /// Counts these findings.
-    pub fn of<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> Self {
+    pub fn from_findings<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> Self {
         let mut out = Self::default();
         for finding in findings {
             *out.of_mut(finding.severity) += 1;
@@ -280,7 +280,7 @@ fn run(
             .saturating_add(1)
             .into(),
     };
-    let mut findings = Findings::of(scene, most);
+    let mut findings = Findings::from_scene(scene, most);
     for (name, check) in checks {
         check(&context, &mut findings);
         findings.end(name);
@@ -290,7 +290,8 @@ fn run(
 
 impl Context<'_> {
     fn over_time(&self) -> &over_time::OverTime {
-        self.over_time.get_or_init(|| over_time::OverTime::of(self))
+        self.over_time
+            .get_or_init(|| over_time::OverTime::from_context(self))
     }
 
     fn bits(&self) -> &Bits {

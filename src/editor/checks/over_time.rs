@@ -66,7 +66,7 @@ pub(super) struct OverTime {
 }
 
 impl OverTime {
-    pub(super) fn of(context: &Context<'_>) -> Self {
+    pub(super) fn from_context(context: &Context<'_>) -> Self {
         Self::of_scene(context.scene)
     }
 

@@ -19,7 +19,7 @@ impl Stamp {
     pub const MOST: usize = 50_000;
 
     /// Makes a stamp of the voxels of a frame that are not free. `None` if none are left, or more than [`Self::MOST`].
-    pub fn of(frame: &Frame, cells: &[VoxelIndex]) -> Option<Self> {
+    pub fn from_cells(frame: &Frame, cells: &[VoxelIndex]) -> Option<Self> {
         let label = |[x, y, z]: VoxelIndex| {
             Class::from_id(frame.occupancy.get(x, y, z)).filter(|c| *c != Class::Free)
         };
@@ -205,7 +205,7 @@ mod tests {
     fn a_stamp_is_set_down_as_it_was_turned_and_cut_at_the_edge() {
         let frame = frame();
         let cells = [[10, 20, 3], [11, 20, 3], [12, 20, 3], [12, 20, 4]];
-        let stamp = Stamp::of(&frame, &cells).expect("three are solid");
+        let stamp = Stamp::from_cells(&frame, &cells).expect("three are solid");
         assert_eq!(stamp.len(), 3);
         assert_eq!(
             stamp.at(&frame, [50, 60, 0]),
@@ -221,7 +221,7 @@ mod tests {
         let edge: usize = stamp.at(&frame, [0, 0, 0]).iter().map(|(_, c)| c.len()).sum();
         assert_eq!(edge, 2);
         assert_eq!(stamp.at(&frame, [usize::MAX; 3]), []);
-        assert_eq!(Stamp::of(&frame, &[[0, 0, 0]]), None);
+        assert_eq!(Stamp::from_cells(&frame, &[[0, 0, 0]]), None);
     }
 
     #[test]

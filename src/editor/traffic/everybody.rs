@@ -17,7 +17,7 @@ pub(crate) struct Everybody<'s> {
 
 impl<'s> Everybody<'s> {
     /// Works the positions out over `length_s` from `from_s` on.
-    pub(crate) fn of(scene: &'s Scene, from_s: f64, length_s: f64) -> Self {
+    pub(crate) fn from_scene(scene: &'s Scene, from_s: f64, length_s: f64) -> Self {
         let moments = (length_s / STEP_S).ceil().clamp(1.0, 6000.0) as usize + 2;
         let bodies = scene.canvas().boxes.len() + scene.clip().tracks.len() + 1;
         let kept = if moments * bodies <= MOST { moments } else { 0 };

@@ -54,7 +54,7 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
         });
     }
     let to_scenario = scenario_from_world(scene);
-    let painted = ColoredMap::of(&ScenarioMap::of(scene, &to_scenario));
+    let painted = ColoredMap::from_map(&ScenarioMap::from_scene(scene, &to_scenario));
     let threads = std::thread::available_parallelism()
         .map_or(1, usize::from)
         .min(filmed.len());

@@ -188,7 +188,7 @@ impl GltfBuilder {
             mesh: Some(mesh),
             translation: Some(b.center_m.to_array()),
             rotation: Some([0.0, 0.0, sin, cos]),
-            extras: Some(Extras::Box(BoxExtras::of(b, voxels.is_some()))),
+            extras: Some(Extras::Box(BoxExtras::from_box(b, voxels.is_some()))),
             name,
             ..WrittenNode::default()
         })

@@ -110,7 +110,7 @@ pub(crate) struct BoxExtras {
 
 impl BoxExtras {
     /// The extras of a box; `has_voxels` says whether it has voxels of its own.
-    pub(crate) fn of(b: &SceneBox, has_voxels: bool) -> Self {
+    pub(crate) fn from_box(b: &SceneBox, has_voxels: bool) -> Self {
         Self {
             class: b.class,
             class_id: b.class.id(),

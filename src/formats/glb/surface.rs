@@ -33,7 +33,7 @@ impl TriangleRasteriser {
     pub(crate) fn cost(extent: Extent, corners: [DVec3; 3]) -> u64 {
         let corners = corners.map(|p| extent.to_voxel_units(p));
         let n = [extent.nx() as f64, extent.ny() as f64];
-        let mut on_map = ClippedTriangle::of(&corners);
+        let mut on_map = ClippedTriangle::from_corners(&corners);
         for (axis, n) in n.into_iter().enumerate() {
             on_map = on_map.half(axis, 0.0, 1.0).half(axis, n, -1.0);
         }
@@ -50,7 +50,7 @@ impl TriangleRasteriser {
     pub(crate) fn visit(&mut self, corners: [DVec3; 3], mut visit: impl FnMut([usize; 2], [f64; 2])) {
         let corners = corners.map(|p| self.extent.to_voxel_units(p) + DVec3::splat(NUDGE));
         let n = [self.extent.nx(), self.extent.ny()];
-        let whole = ClippedTriangle::of(&corners);
+        let whole = ClippedTriangle::from_corners(&corners);
         let Some((x0, x1)) = whole.columns(0, n[0]) else {
             return;
         };
@@ -108,7 +108,7 @@ impl Inner {
 }
 
 impl ClippedTriangle {
-    fn of(corners: &[DVec3]) -> Self {
+    fn from_corners(corners: &[DVec3]) -> Self {
         let mut list = [DVec3::ZERO; 8];
         let count = corners.len().min(list.len());
         list[..count].copy_from_slice(&corners[..count]);
@@ -276,7 +276,9 @@ mod tests {
         for i in 0..300 {
             let size = [3.0, 30.0, 300.0, 1e11][i % 4];
             let corners = [(); 3].map(|()| DVec3::new(dice(size), dice(size) + 10.0, dice(20.0)));
-            let cut = ClippedTriangle::of(&corners.map(|p| extent.to_voxel_units(p) + DVec3::splat(NUDGE)));
+            let cut = ClippedTriangle::from_corners(
+                &corners.map(|p| extent.to_voxel_units(p) + DVec3::splat(NUDGE)),
+            );
             let (mut surface, mut visits) = (TriangleRasteriser::new(extent), 0u64);
             surface.visit(corners, |[x, y], [low, high]| {
                 let strip = cut.cut(0, x as f64);

@@ -62,7 +62,7 @@ fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
             pose
         }
     };
-    let (mut cloud, mut noise) = (Cloud::of(source), 0);
+    let (mut cloud, mut noise) = (Cloud::from_source(source), 0);
     let words = labels.as_deref().map(|bytes| bytes.as_chunks::<4>().0);
     for (i, at) in points.enumerate() {
         // The upper half is the instance.

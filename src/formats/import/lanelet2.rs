@@ -226,7 +226,7 @@ fn metres(root: Node<'_, '_>, places: &HashMap<i64, OsmNode>) -> Result<HashMap<
         let low = all.clone().fold(f64::INFINITY, f64::min);
         (low + all.fold(f64::NEG_INFINITY, f64::max)) / 2.0
     };
-    let zone = Zone::of(bounds(0), bounds(1)).filter(|_| degrees.len() == places.len());
+    let zone = Zone::from_degrees(bounds(0), bounds(1)).filter(|_| degrees.len() == places.len());
     let zone = zone.ok_or_else(|| {
         let without = |has: &dyn Fn(&OsmNode) -> bool| places.values().filter(|p| !has(p)).count();
         bad(
@@ -243,7 +243,7 @@ fn metres(root: Node<'_, '_>, places: &HashMap<i64, OsmNode>) -> Result<HashMap<
     })?;
     let of = |(id, place): (&i64, &OsmNode)| {
         let [latitude, longitude] = place.degrees?;
-        let sound = Zone::of(latitude, longitude).is_some();
+        let sound = Zone::from_degrees(latitude, longitude).is_some();
         let p = zone.project(latitude, longitude);
         (sound && p.is_finite()).then(|| (*id, p.extend(place.height_m)))
     };

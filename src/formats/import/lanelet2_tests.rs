@@ -180,7 +180,7 @@ fn a_street_in_degrees_is_projected() {
         format!("<node id=\"{id}\" lat=\"{lat:.12}\" lon=\"{lon:.12}\"/>\n")
     });
     let network = read(text.as_bytes(), "street").expect("roads");
-    let zone = crate::lanelets::utm::Zone::of(latitude, longitude).expect("a zone");
+    let zone = crate::lanelets::utm::Zone::from_degrees(latitude, longitude).expect("a zone");
     checked(&network, zone.project(latitude, longitude));
 }
 

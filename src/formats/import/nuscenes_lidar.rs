@@ -80,7 +80,7 @@ pub(super) fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
     let rig = SensorRig::default();
     let ego_from_sensor = rig.lidars.first().map(scene::LidarPattern::ego_from_sensor);
     let ego_from_sensor = ego_from_sensor.unwrap_or_default();
-    let (mut cloud, mut left_away) = (Cloud::of(source), 0);
+    let (mut cloud, mut left_away) = (Cloud::from_source(source), 0);
     for (i, at) in points.enumerate() {
         let label = match labels.as_ref().map(|l| l[i]) {
             None => Label::None,

@@ -101,7 +101,7 @@ fn read(source: &ImportFile<'_>) -> Result<Content, PcdError> {
             .ok_or_else(|| wrong("FIELDS", "no such field", name))
     };
     let (axes, label) = ([axis("x")?, axis("y")?, axis("z")?], header.field(&LABELS));
-    let mut cloud = Cloud::of(source);
+    let mut cloud = Cloud::from_source(source);
     let wanted: Vec<usize> = axes.into_iter().chain(label).collect();
     header.each_point(body, &wanted, |v| {
         cloud.add(DVec3::new(v[0], v[1], v[2]), v.get(3).copied())

@@ -93,7 +93,7 @@ fn read(source: &ImportFile<'_>) -> Result<Content, PlyError> {
     for before in &header.elements[..at] {
         body.pass(before, &[], |_| {})?;
     }
-    let mut cloud = Cloud::of(source);
+    let mut cloud = Cloud::from_source(source);
     body.pass(points, &wanted, |v| {
         cloud.add(DVec3::new(v[0], v[1], v[2]), v.get(3).copied())
     })?;

@@ -24,7 +24,7 @@ pub(crate) struct Zone {
 impl Zone {
     /// The zone of a place, degrees; the exceptions of Norway and Svalbard are left aside. `None` beyond 84 degrees of
     /// latitude, beyond 180 of longitude, and for numbers that are not finite.
-    pub fn of(latitude_deg: f64, longitude_deg: f64) -> Option<Self> {
+    pub fn from_degrees(latitude_deg: f64, longitude_deg: f64) -> Option<Self> {
         let sound = (-84.0..=84.0).contains(&latitude_deg) && (-180.0..=180.0).contains(&longitude_deg);
         sound.then(|| Self {
             number: (((longitude_deg + 180.0) / 6.0).floor() as u8).min(59) + 1,
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn places_are_where_proj_has_them() {
         for (latitude, longitude, zone, east, north) in PLACES {
-            let found = Zone::of(latitude, longitude).expect("a place");
+            let found = Zone::from_degrees(latitude, longitude).expect("a place");
             assert_eq!(found.number, zone);
             let p = found.project(latitude, longitude);
             assert!(
@@ -77,8 +77,8 @@ mod tests {
                 "{latitude} {longitude}: {p}"
             );
         }
-        assert!(Zone::of(f64::NAN, 0.0).is_none() && Zone::of(85.0, 0.0).is_none());
-        assert!(Zone::of(0.0, 180.0).is_some_and(|z| z.number == 60));
+        assert!(Zone::from_degrees(f64::NAN, 0.0).is_none() && Zone::from_degrees(85.0, 0.0).is_none());
+        assert!(Zone::from_degrees(0.0, 180.0).is_some_and(|z| z.number == 60));
     }
 
     const PLACES: [(f64, f64, u8, f64, f64); 6] = [

@@ -67,7 +67,7 @@ pub(super) struct TrackHeader {
 
 impl ClipHeader {
     /// The header of a clip; `None` for the default clip, that of a scene of one moment.
-    fn of(clip: &Clip) -> Option<Self> {
+    fn from_clip(clip: &Clip) -> Option<Self> {
         let track = |t: &Track| TrackHeader {
             made: t.made,
             motion: t.motion.clone(),
@@ -120,7 +120,7 @@ pub(super) struct ExtentHeader {
 }
 
 impl ExtentHeader {
-    fn of(extent: Extent) -> Option<Self> {
+    fn from_extent(extent: Extent) -> Option<Self> {
         let columns = [extent.nx(), extent.ny()];
         (extent != Extent::WINDOW).then(|| Self {
             from: extent.from(),
@@ -190,7 +190,7 @@ fn is_zero(number: &f64) -> bool {
 
 impl SceneHeader {
     /// The header of a scene.
-    pub(super) fn of(scene: &Scene) -> Self {
+    pub(super) fn from_scene(scene: &Scene) -> Self {
         Self {
             name: scene.name.clone(),
             prompt: scene.prompt.clone(),
@@ -207,7 +207,7 @@ impl SceneHeader {
             roads: scene.roads.clone(),
             arranged: scene.arranged.clone(),
             canvas: frame_header(scene.canvas()),
-            clip: ClipHeader::of(scene.clip()),
+            clip: ClipHeader::from_clip(scene.clip()),
         }
     }
 }
@@ -228,7 +228,7 @@ fn frame_header(frame: &Frame) -> FrameHeader {
     FrameHeader {
         time_s: frame.time_s,
         world_from_ego: frame.world_from_ego,
-        extent: ExtentHeader::of(frame.extent()),
+        extent: ExtentHeader::from_extent(frame.extent()),
         boxes: list(&frame.boxes),
         polylines: frame.layout.polylines.clone(),
         relief: !frame.layout.relief.is_flat(),

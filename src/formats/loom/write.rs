@@ -25,7 +25,7 @@ fn written(scene: &Scene) -> Result<Writer, ProjectError> {
     check(scene)?;
     let mut out = Writer::new();
     out.json(super::MANIFEST, &Manifest::present())?;
-    let header = SceneHeader::of(scene);
+    let header = SceneHeader::from_scene(scene);
     out.json(SCENE, &header)?;
     let (frame, header) = (scene.canvas(), &header.canvas);
     out.put(&entry_name("layout.u32"), &layout_bytes(&frame.layout))?;

@@ -11,7 +11,7 @@ pub struct Tokens {
 
 impl Tokens {
     /// The tokens of a scene.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn from_scene(scene: &Scene) -> Self {
         Self {
             base: hash(scene.seed ^ of_text(&scene.name)),
         }
@@ -38,7 +38,7 @@ mod tests {
     #[test]
     fn tokens_are_hexadecimal_their_own_and_the_same_again() {
         let scene = crate::table_tests::scene();
-        let (a, again) = (Tokens::of(&scene), Tokens::of(&scene));
+        let (a, again) = (Tokens::from_scene(&scene), Tokens::from_scene(&scene));
         let mut seen = BTreeSet::new();
         for table in ["sample", "ego_pose"] {
             for index in 0..1000 {
@@ -50,6 +50,6 @@ mod tests {
         }
         let mut other = scene.clone();
         other.seed += 1;
-        assert!(!seen.contains(&Tokens::of(&other).token("sample", 0)));
+        assert!(!seen.contains(&Tokens::from_scene(&other).token("sample", 0)));
     }
 }

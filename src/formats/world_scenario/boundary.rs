@@ -23,7 +23,7 @@ pub(crate) struct Border {
 
 /// The borders of the columns for which `inside` holds (by place in arrays `[x][y]`). The side of the map is no border.
 pub(crate) fn borders(extent: Extent, inside: impl Fn(usize) -> bool) -> Vec<Border> {
-    let mut sides = Sides::of(extent, inside);
+    let mut sides = Sides::from_inside(extent, inside);
     let mut out = Vec::new();
     for only_ends in [true, false] {
         for corner in 0..sides.outgoing.len() {
@@ -45,7 +45,7 @@ struct Sides {
 }
 
 impl Sides {
-    fn of(extent: Extent, inside: impl Fn(usize) -> bool) -> Self {
+    fn from_inside(extent: Extent, inside: impl Fn(usize) -> bool) -> Self {
         let corners = (extent.nx() + 1) * (extent.ny() + 1);
         let mut out = Self {
             extent,

@@ -56,7 +56,7 @@ pub(crate) struct ColoredMap {
 
 impl ColoredMap {
     /// The lines and areas of a map.
-    pub(crate) fn of(map: &ScenarioMap) -> Self {
+    pub(crate) fn from_map(map: &ScenarioMap) -> Self {
         let mut lines = Vec::new();
         for (marking, line) in &map.lines {
             match marking {

@@ -41,7 +41,7 @@ pub struct FTheta {
 
 impl FTheta {
     /// The model of a camera. Tangential distortion and a rolling shutter are left out.
-    pub fn of(camera: &Camera) -> Self {
+    pub fn from_camera(camera: &Camera) -> Self {
         let [fx, fy] = camera.focal_px;
         let linear_c = fx / fy;
         let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
@@ -263,7 +263,7 @@ mod tests {
     fn the_cameras_of_the_rig_are_met_within_a_tenth_of_a_pixel() {
         let rig = SensorRig::default();
         for camera in &rig.cameras {
-            let model = FTheta::of(camera);
+            let model = FTheta::from_camera(camera);
             assert!(model.error_px < 0.1, "{}: {} px", camera.name, model.error_px);
             // By points of the picture, not by the fit's own measure.
             let mut worst_px: f64 = 0.0;
@@ -282,10 +282,10 @@ mod tests {
         }
         // How wide a pinhole may be: the error grows quickly beyond.
         for (fov_deg, most_px) in [(30.0, 0.001), (90.0, 0.04), (105.0, 0.1), (120.0, 0.5)] {
-            let found = FTheta::of(&Camera::new("CAM", fov_deg)).error_px;
+            let found = FTheta::from_camera(&Camera::new("CAM", fov_deg)).error_px;
             assert!(found < most_px, "{fov_deg} degrees: {found} px");
         }
-        assert!(FTheta::of(&Camera::new("CAM", 120.0)).error_px > 0.1);
+        assert!(FTheta::from_camera(&Camera::new("CAM", 120.0)).error_px > 0.1);
     }
 
     #[test]
@@ -296,7 +296,7 @@ mod tests {
                 ..Camera::new("CAM", 90.0)
             };
             camera.focal_px = [focal_px; 2];
-            FTheta::of(&camera)
+            FTheta::from_camera(&camera)
         };
         let fisheye = Lens::Fisheye {
             k: [-0.012, 0.009, -0.007, 0.0015],
@@ -332,7 +332,7 @@ mod tests {
         let mut camera = Camera::new("CAM", 70.0);
         camera.focal_px[0] *= 1.3;
         camera.center_px = [700.0, 470.0];
-        let model = FTheta::of(&camera);
+        let model = FTheta::from_camera(&camera);
         assert!(model.error_px < 0.1, "{}", model.error_px);
         let p = DVec3::new(0.4, -0.3, 1.0);
         let [fx, fy] = camera.focal_px;
@@ -345,7 +345,7 @@ mod tests {
 
     #[test]
     fn what_is_behind_is_not_in_the_picture() {
-        let model = FTheta::of(&Camera::new("CAM", 90.0));
+        let model = FTheta::from_camera(&Camera::new("CAM", 90.0));
         assert_eq!(model.project(DVec3::new(0.0, 0.1, -5.0)), None);
         assert_eq!(model.project(DVec3::ZERO), None);
         assert_eq!(model.project(DVec3::NAN), None);

@@ -85,7 +85,7 @@ fn tilt(corners: &mut [DVec3]) {
 
 impl ScenarioMap {
     /// The map of a scene. Points that are not finite are left out.
-    pub(crate) fn of(scene: &Scene, scenario_from_world: &Pose) -> Self {
+    pub(crate) fn from_scene(scene: &Scene, scenario_from_world: &Pose) -> Self {
         let layout = &scene.canvas().layout;
         let lifted = |line: &[DVec2]| -> Vec<DVec3> {
             let dense = dense(line);

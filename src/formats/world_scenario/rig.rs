@@ -73,7 +73,7 @@ pub(crate) fn named(rig: &SensorRig) -> Vec<ScenarioCamera> {
         out.push(ScenarioCamera {
             name,
             camera: camera.clone(),
-            model: FTheta::of(camera),
+            model: FTheta::from_camera(camera),
             added: false,
         });
     }
@@ -100,7 +100,7 @@ fn substitute(rig: &SensorRig, (name, yaw_deg, fov_deg): (&str, f64, f64)) -> Op
     });
     Some(ScenarioCamera {
         name: name.to_owned(),
-        model: FTheta::of(&camera),
+        model: FTheta::from_camera(&camera),
         camera,
         added: true,
     })

@@ -31,7 +31,7 @@ pub(crate) fn tables(scene: &Scene) -> Result<Vec<(&'static str, Vec<u8>)>, Form
             egomotion(scene, &to_scenario, &id, &times_us)?,
         ),
     ];
-    let map = ScenarioMap::of(scene, &to_scenario);
+    let map = ScenarioMap::from_scene(scene, &to_scenario);
     let optional = [
         ("lane", map.lanes.len(), lane(&map)),
         ("lane_line", map.lines.len(), lane_line(&map)),

@@ -246,7 +246,7 @@ fn every_class_has_a_category_that_readers_know() {
 
 /// A picture of a camera ahead, and its pixels.
 fn picture(scene: &Scene, time_s: f64, camera: &Camera) -> impl Fn(usize, usize) -> [u8; 3] + use<> {
-    let model = FTheta::of(camera).resized(1280, 720);
+    let model = FTheta::from_camera(camera).resized(1280, 720);
     let to_scenario = scenario_from_world(scene);
     let mut canvas = MultisamplePicture::new(1280, 720);
     let mut shot = Shot {
@@ -254,7 +254,7 @@ fn picture(scene: &Scene, time_s: f64, camera: &Camera) -> impl Fn(usize, usize)
         model: &model,
         scenario_from_camera: to_scenario * ego_at(scene, time_s) * camera.ego_from_camera(),
     };
-    let painted = ColoredMap::of(&ScenarioMap::of(scene, &to_scenario));
+    let painted = ColoredMap::from_map(&ScenarioMap::from_scene(scene, &to_scenario));
     shot.draw(&painted, &boxes_at(scene, time_s, &to_scenario));
     let rgba = canvas.rgba();
     assert_eq!(rgba.len(), 1280 * 720 * 4);

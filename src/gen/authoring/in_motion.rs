@@ -38,7 +38,7 @@ pub(crate) fn set_in_motion(scene: &mut Scene, laid: &Laid) -> Vec<String> {
     let ego = match (d.ego_motion, objects.is_empty()) {
         (None, true) => None,
         (how, _) => Some(Edit::let_move(
-            &how.unwrap_or(Manoeuvre::of(Template::Follow)),
+            &how.unwrap_or(Manoeuvre::from_template(Template::Follow)),
             None,
             None,
         )),

@@ -195,7 +195,7 @@ impl SceneryWish {
             Class::Vegetation => self.green > 0.0,
             _ => self.built > 0.0,
         };
-        let paved = Paved::of(scene);
+        let paved = Paved::from_scene(scene);
         let fits = |form: &Form| wanted(form) && paved.leaves_room(form);
         Ok(drawn.iter().filter(|t| fits(&t.form)).cloned().collect())
     }
@@ -244,7 +244,7 @@ impl Paved {
     /// Largest share of a building, hedge or wall that may lie on paving: its edge is drawn to half a metre.
     const MOST: f64 = 0.04;
 
-    fn of(scene: &Scene) -> Self {
+    fn from_scene(scene: &Scene) -> Self {
         let frame = scene.frame();
         let held = |bits: u32| {
             frame
@@ -439,7 +439,7 @@ mod tests {
     #[test]
     fn what_a_network_draws_leaves_paths_and_boxes_free() {
         let scene = open::from_template("straight", 7).expect("a template");
-        let (frame, paved) = (scene.frame(), Paved::of(&scene));
+        let (frame, paved) = (scene.frame(), Paved::from_scene(&scene));
         let centre = |c: usize| {
             let column = DVec2::new((c / Window::NY) as f64, (c % Window::NY) as f64);
             (column + 0.5) * Window::VOXEL_M - 40.0

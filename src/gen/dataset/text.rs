@@ -28,7 +28,7 @@ pub struct TextFrame {
 pub fn text_frame(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> TextFrame {
     let (layout, boxes, template) = street(seed, index, roads);
     let own = hash(seed ^ hash(index));
-    let facts = Facts::of(&layout, &RoadMap::new(&layout), &boxes, template, own);
+    let facts = Facts::from_layout(&layout, &RoadMap::new(&layout), &boxes, template, own);
     TextFrame {
         sentences: std::array::from_fn(|i| sentence(&facts, SHARES[i], hash(own ^ i as u64))),
         features: facts.features(),

@@ -113,7 +113,7 @@ impl Facts {
 
     /// Facts of a scene. `template` is its name if it was made from one. Light and weather, which geometry does not
     /// show, are drawn from `seed`, as are surroundings that fit the road.
-    pub fn of(
+    pub fn from_layout(
         layout: &BevLayout,
         road: &RoadMap,
         boxes: &BTreeMap<BoxId, SceneBox>,
@@ -246,7 +246,7 @@ mod tests {
         let layout = template::layout("intersection", 4).expect("listed");
         let boxes = traffic::place(&layout, 4, &traffic::TrafficSpec::NORMAL);
         let road = RoadMap::new(&layout);
-        let facts = Facts::of(&layout, &road, &boxes, None, 4);
+        let facts = Facts::from_layout(&layout, &road, &boxes, None, 4);
         assert!(
             matches!(facts.road, RoadKind::Intersection | RoadKind::TJunction),
             "{:?}",

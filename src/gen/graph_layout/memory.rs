@@ -102,7 +102,7 @@ impl RememberedScene {
             RoadRef::Template { name, .. } => Some(name.as_str()),
             _ => None,
         };
-        let facts = Facts::of(layout, &RoadMap::new(layout), boxes, name, seed);
+        let facts = Facts::from_layout(layout, &RoadMap::new(layout), boxes, name, seed);
         let described = sentence(&facts, 0.95, seed);
         let round = |v: f64| (v * 100.0).round() / 100.0;
         let row = |b: &SceneBox| {

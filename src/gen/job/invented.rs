@@ -22,7 +22,7 @@ impl Invented {
     /// Counts the invented voxels of an edited frame with its occupancy after the edit; only the region's columns
     /// count.
     pub fn count(frame: &Frame, after: &VoxelGrid, region: &Region) -> Self {
-        Self::of_request(&VoxelRequest::of(frame), frame, after, region)
+        Self::of_request(&VoxelRequest::from_frame(frame), frame, after, region)
     }
 
     /// Counts as [`count`](Self::count), with a given request.
@@ -112,7 +112,8 @@ mod tests {
         let mut frame = removal();
         let region = Region::of_edit(&frame, 2);
         // A column of the region beside what was edited: nobody observed it, and the labels are free there.
-        let at = (0..Window::COLUMNS).find(|c| region.columns[*c] && !VoxelRequest::of(&frame).edited(*c));
+        let at =
+            (0..Window::COLUMNS).find(|c| region.columns[*c] && !VoxelRequest::from_frame(&frame).edited(*c));
         let at = at.expect("the halo");
         let mut observed = vec![true; Window::VOXELS];
         (0..Window::NZ).for_each(|z| observed[at * Window::NZ + z] = false);

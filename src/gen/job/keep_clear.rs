@@ -124,7 +124,7 @@ mod tests {
         (0..9).for_each(|z| generated.set(x, y, z, Class::Vegetation.id()));
         (0..4).for_each(|z| generated.set(hx, hy, z, Class::Manmade.id()));
         generated.set(x + 3, y, 2, Class::Car.id());
-        let request = VoxelRequest::of(&frame);
+        let request = VoxelRequest::from_frame(&frame);
         let none = InpaintMask::default();
         let before = Invented::of_request(&request, &frame, &generated, &region);
         assert_eq!(
@@ -172,13 +172,19 @@ mod tests {
         let ([x, y], [hx, hy]) = (at(10.0, 0.0), at(10.0, 1.9));
         assert!(
             region.columns[hx * Window::NY + hy]
-                && !VoxelRequest::of(&frame).left_by_a_box(hx * Window::NY + hy)
+                && !VoxelRequest::from_frame(&frame).left_by_a_box(hx * Window::NY + hy)
         );
         for (x, y) in [(x, y), (hx, hy)] {
             (0..5).for_each(|z| generated.set(x, y, z, Class::Vegetation.id()));
         }
         let none = InpaintMask::default();
-        let cleared = keep_clear(&frame, &region, &none, &VoxelRequest::of(&frame), &mut generated);
+        let cleared = keep_clear(
+            &frame,
+            &region,
+            &none,
+            &VoxelRequest::from_frame(&frame),
+            &mut generated,
+        );
         assert_eq!(cleared, 5);
         assert_eq!(generated.get(x, y, 0), Class::Terrain.id());
         assert_eq!(generated.get(hx, hy, 2), Class::Vegetation.id());
@@ -194,7 +200,7 @@ mod tests {
         let clean = draft::draft(&frame.layout, frame.boxes.values());
         let mut masked = frame.clone();
         masked.inferred.unobserved = Unobserved::from_observed(&vec![false; Window::VOXELS]);
-        let request = VoxelRequest::of(&masked);
+        let request = VoxelRequest::from_frame(&masked);
         let none = InpaintMask::default();
         let halo = (0..Window::COLUMNS).filter(|c| region.columns[*c] && !request.edited(*c));
         let halo = halo.count();

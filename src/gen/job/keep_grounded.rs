@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn what_hangs_gets_a_stem_or_goes_and_cars_need_a_box() {
         let (frame, mut generated, region) = scene();
-        let request = VoxelRequest::of(&frame);
+        let request = VoxelRequest::from_frame(&frame);
         let boxed = request_voxels(&frame, &generated);
         let found = keep_grounded(&frame, &region, false, &request, &mut generated);
         let stem = (1..7).filter(|z| generated.get(121, 121, *z) == Class::Vegetation.id());
@@ -174,7 +174,7 @@ mod tests {
     fn nothing_changes_outside_the_region() {
         let (frame, mut generated, _) = scene();
         let before = generated.clone();
-        let request = VoxelRequest::of(&frame);
+        let request = VoxelRequest::from_frame(&frame);
         let found = keep_grounded(&frame, &Region::empty(), false, &request, &mut generated);
         assert_eq!((found, generated), (Grounded::default(), before));
     }

@@ -76,7 +76,7 @@ mod tests {
         generated.set(90, 90, 1, Class::FREE); // a change: it stays
         generated.set(92, 90, 0, Class::DriveableSurface.id()); // so does what is in an edited column
         let region = Region::of_edit(&frame, 2);
-        let request = VoxelRequest::of(&frame);
+        let request = VoxelRequest::from_frame(&frame);
         let mut found = generated.clone();
         let none = InpaintMask::default();
         assert_eq!(

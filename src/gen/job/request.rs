@@ -26,7 +26,7 @@ pub struct VoxelRequest<'a> {
 
 impl<'a> VoxelRequest<'a> {
     /// The request of a frame and its source.
-    pub fn of(frame: &'a Frame) -> Self {
+    pub fn from_frame(frame: &'a Frame) -> Self {
         let mut heights = vec![[0; OBJECTS]; Window::COLUMNS];
         for b in frame.boxes.values() {
             let Some(slot) = slot(b.class.id()) else { continue };
@@ -160,7 +160,7 @@ pub(crate) mod tests {
     fn boxes_and_paint_are_asked_for_and_what_was_removed_is_not() {
         let mut frame = removal();
         frame.painted.set(5, 5, 5, Class::Vegetation.id());
-        let request = VoxelRequest::of(&frame);
+        let request = VoxelRequest::from_frame(&frame);
         let [x, y] = Window::column_at(-10.0, 0.0).expect("inside");
         assert!(request.holds(x, y, 3, Class::Car.id()));
         assert!(!request.holds(x, y, 3, Class::Truck.id()), "a car was asked for");

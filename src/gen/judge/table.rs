@@ -377,7 +377,7 @@ fn with_pipeline(
     options: &Options,
     with: impl FnOnce(&mut OccPipeline) -> anyhow::Result<SuiteFigures>,
 ) -> anyhow::Result<SuiteFigures> {
-    let mut pipeline = OccPipeline::new(OccModels::of(options.weights.as_deref())?);
+    let mut pipeline = OccPipeline::new(OccModels::open(options.weights.as_deref())?);
     let (mut report, bars) = with(&mut pipeline)?;
     report["model"] = pipeline.models().card.name.clone().into();
     Ok((report, bars))

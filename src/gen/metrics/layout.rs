@@ -35,7 +35,7 @@ pub struct Spread {
 
 impl Spread {
     /// The spread of some values; `None` for none.
-    pub fn of(values: &[f64]) -> Option<Self> {
+    pub fn from_values(values: &[f64]) -> Option<Self> {
         (!values.is_empty()).then(|| Self {
             p5: quantile(values, 0.05),
             p50: quantile(values, 0.5),
@@ -210,7 +210,7 @@ impl LayoutFigures {
         let found = self.values.iter().filter_map(|(name, values)| {
             Some(LayoutQuantity {
                 name: name.clone(),
-                found: Spread::of(values)?,
+                found: Spread::from_values(values)?,
                 real: real.get(name)?.clone(),
             })
         });

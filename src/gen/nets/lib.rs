@@ -96,7 +96,7 @@ impl OccModels {
     }
 
     /// The weights of a folder; without a folder the bundled ones.
-    pub fn of(folder: Option<&Path>) -> Result<Arc<Self>, WeightsError> {
+    pub fn open(folder: Option<&Path>) -> Result<Arc<Self>, WeightsError> {
         folder.map_or_else(Self::bundled, Self::from_dir)
     }
 

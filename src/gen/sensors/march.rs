@@ -113,7 +113,7 @@ impl MarchScene {
         };
         let extent = grid.extent();
         Self {
-            units: Units::of(extent),
+            units: Units::from_extent(extent),
             masks: ColumnMasks::from_grid(&grid),
             grid,
             ground,

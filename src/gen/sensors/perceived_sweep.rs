@@ -61,7 +61,7 @@ pub struct Detected {
 
 /// Looks at the sweep of a scene's first LiDAR. Errors if the network cannot be read or refuses the sweep.
 pub fn report(scene: &Scene) -> Result<SweepReport, PaintError> {
-    let seen = PerceivedSweep::of(scene)?;
+    let seen = PerceivedSweep::from_scene(scene)?;
     let mut boxes: Vec<SeenBySweep> = seen
         .besides
         .iter()
@@ -103,7 +103,7 @@ pub fn report(scene: &Scene) -> Result<SweepReport, PaintError> {
 
 /// Result for one box; `None` if it is not in the window.
 pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenBySweep>, PaintError> {
-    let seen = PerceivedSweep::of(scene)?;
+    let seen = PerceivedSweep::from_scene(scene)?;
     let beside = seen.besides.iter().find(|b| b.id == id);
     Ok(beside.map(|b| seen.score(b)))
 }
@@ -117,7 +117,7 @@ struct PerceivedSweep {
 }
 
 impl PerceivedSweep {
-    fn of(scene: &Scene) -> Result<Self, PaintError> {
+    fn from_scene(scene: &Scene) -> Result<Self, PaintError> {
         let network = |e: &dyn std::fmt::Display| PaintError::Network(e.to_string());
         let net = LidarPerceiver::bundled().map_err(|e| network(&e))?;
         let sweep = rolling::of_voxels(&scene.with_rig_in_world());

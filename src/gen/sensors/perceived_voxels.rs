@@ -103,7 +103,7 @@ pub struct PerceptionInput {
 
 impl PerceptionInput {
     /// Sweeps and draws a scene. Errors if the segmenter cannot be read.
-    pub fn of(scene: &Scene) -> Result<Self, PaintError> {
+    pub fn from_scene(scene: &Scene) -> Result<Self, PaintError> {
         Self::seeing(scene, None)
     }
 
@@ -224,7 +224,7 @@ pub fn painted(shown: &[CameraClasses<'_>]) -> Vec<u8> {
 
 /// Looks at a scene's LiDAR and cameras. Errors if a network cannot be read.
 pub fn report(scene: &Scene, hears: Hears) -> Result<VoxelReport, PaintError> {
-    let heard = PerceptionInput::of(scene)?;
+    let heard = PerceptionInput::from_scene(scene)?;
     report_of(scene, &heard, hears)
 }
 
@@ -270,7 +270,7 @@ pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenInVoxels>, PaintErro
     let Some(b) = around.frame().boxes.get(&id).filter(inside) else {
         return Ok(None);
     };
-    let heard = PerceptionInput::of(scene)?;
+    let heard = PerceptionInput::from_scene(scene)?;
     let truth = around.frame().occupancy.crop(Extent::WINDOW);
     Ok(Some(seen(
         b,
@@ -469,7 +469,7 @@ mod tests {
     #[test]
     fn both_sensors_tell_most_of_what_is_there() {
         let scene = scene();
-        let heard = PerceptionInput::of(&scene).expect("the shipped networks");
+        let heard = PerceptionInput::from_scene(&scene).expect("the shipped networks");
         let both = report_of(&scene, &heard, Hears::Both).expect("the shipped network");
         let blind = PerceptionInput {
             returns: Vec::new(),

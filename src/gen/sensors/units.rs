@@ -14,13 +14,13 @@ pub(crate) struct Units {
 
 impl Default for Units {
     fn default() -> Self {
-        Self::of(Extent::default())
+        Self::from_extent(Extent::default())
     }
 }
 
 impl Units {
     /// The conversions of an extent.
-    pub fn of(extent: Extent) -> Self {
+    pub fn from_extent(extent: Extent) -> Self {
         Self {
             min_m: extent.min_m(),
             size: DVec2::new(extent.nx() as f64, extent.ny() as f64),
@@ -59,7 +59,7 @@ mod tests {
             Extent::WINDOW,
             Extent::new([-151, -107], [480, 321]).expect("sound"),
         ] {
-            let units = Units::of(extent);
+            let units = Units::from_extent(extent);
             for i in 0..20_000 {
                 let p = DVec3::new(
                     f64::from(i % 211) * 1.03 - 90.1,

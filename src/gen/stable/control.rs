@@ -21,17 +21,26 @@ impl MpiEncoder {
     /// configuration.
     pub fn load(config: &MpiConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
         let (channels, width) = (config.conditioning_channels, config.embedding_channels);
-        weights.build(machine, &[], |names| Self::of(names, channels, width, machine))
+        weights.build(machine, &[], |names| {
+            Self::from_weights(names, channels, width, machine)
+        })
     }
 
     /// Checks that weights fit a configuration, by names, shapes and types alone. Errors list the first few that do
     /// not.
     pub fn check(config: &MpiConfig, weights: &Weights) -> Result<(), StableError> {
         let (channels, width) = (config.conditioning_channels, config.embedding_channels);
-        weights.check(&[], |names| Self::of(names, channels, width, &Machine::cpu()))
+        weights.check(&[], |names| {
+            Self::from_weights(names, channels, width, &Machine::cpu())
+        })
     }
 
-    fn of(names: &Names<'_>, channels: usize, width: usize, machine: &Machine) -> Result<Self, StableError> {
+    fn from_weights(
+        names: &Names<'_>,
+        channels: usize,
+        width: usize,
+        machine: &Machine,
+    ) -> Result<Self, StableError> {
         let names = names.at("position_encoder");
         Ok(Self {
             layers: [
@@ -82,25 +91,29 @@ impl ControlNet {
     /// Loads the network from weights; those of SyntheOcc have `controlnet_cond_embedding.position_encoder`. Errors if
     /// they do not fit the configuration.
     pub fn load(config: ControlConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
-        weights.build(machine, &[], |names| Self::of(&config, names, machine))
+        weights.build(machine, &[], |names| Self::from_weights(&config, names, machine))
     }
 
     /// Checks that weights fit a configuration, by names, shapes and types alone. Errors list the first few that do
     /// not.
     pub fn check(config: &ControlConfig, weights: &Weights) -> Result<(), StableError> {
-        weights.check(&[], |names| Self::of(config, names, &Machine::cpu()))
+        weights.check(&[], |names| Self::from_weights(config, names, &Machine::cpu()))
     }
 
-    fn of(config: &ControlConfig, names: &Names<'_>, machine: &Machine) -> Result<Self, StableError> {
+    fn from_weights(
+        config: &ControlConfig,
+        names: &Names<'_>,
+        machine: &Machine,
+    ) -> Result<Self, StableError> {
         let unet = &config.unet;
-        let levels = UnetLevels::of(unet);
+        let levels = UnetLevels::from_config(unet);
         let (finest, coarsest) = (
             unet.block_out_channels[0],
             unet.block_out_channels[unet.block_out_channels.len() - 1],
         );
         let at = names.at("controlnet_cond_embedding");
         let embedding = if at.has("position_encoder.0.weight") {
-            let planes = MpiEncoder::of(&at, config.conditioning_channels, finest, machine)?;
+            let planes = MpiEncoder::from_weights(&at, config.conditioning_channels, finest, machine)?;
             Embedding::Planes(planes)
         } else {
             let widths = &config.embedding;

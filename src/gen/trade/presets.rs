@@ -32,7 +32,7 @@ pub struct PresetKnobs {
 
 impl PresetKnobs {
     /// The knobs of the given parameters.
-    pub fn of(params: &GenParams) -> Self {
+    pub fn from_params(params: &GenParams) -> Self {
         Self {
             steps: params.steps,
             solver: params.solver,
@@ -176,7 +176,7 @@ impl Presets {
 
     /// The preset whose knobs these parameters have.
     pub fn index_of(&self, params: &GenParams) -> Option<usize> {
-        let knobs = PresetKnobs::of(params);
+        let knobs = PresetKnobs::from_params(params);
         self.all.iter().position(|s| s.knobs == knobs)
     }
 }

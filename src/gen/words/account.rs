@@ -87,7 +87,7 @@ const NOT: [&str; 10] = [
 pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Speller) -> Vec<Missing> {
     let line = notation::write(reading);
     let said: Vec<&str> = line.split(' ').collect();
-    let numbers = ReadingNumbers::of(reading, tokens);
+    let numbers = ReadingNumbers::from_reading(reading, tokens);
     let nouns = named(reading);
     let corrected = tokens
         .iter()
@@ -162,7 +162,7 @@ struct ReadingNumbers<'t> {
 }
 
 impl<'t> ReadingNumbers<'t> {
-    fn of(reading: &Reading, tokens: &'t [Token]) -> Self {
+    fn from_reading(reading: &Reading, tokens: &'t [Token]) -> Self {
         Self {
             tokens,
             slots: slots(reading),

@@ -162,7 +162,7 @@ impl Manoeuvre {
     }
 
     /// A manoeuvre without time, distance or speed.
-    pub fn of(what: Template) -> Self {
+    pub fn from_template(what: Template) -> Self {
         Self {
             what,
             from_s: None,

@@ -43,7 +43,7 @@ impl GpuView {
         let pixel = (1.0 / camera.focal_px[0].max(1e-3)) as f32;
         let [[fx, fy], [cx, cy]] = [camera.focal_px, camera.center_px];
         let [x, y, z] = appearance.shift_m;
-        let shape = FieldShape::of(appearance.extent);
+        let shape = FieldShape::from_extent(appearance.extent);
         let ([blocks_x, blocks_y], [bins_x, bins_y]) = (shape.blocks, shape.bins);
         let view = GpuView {
             at: appearance.at,

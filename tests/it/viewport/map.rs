@@ -143,7 +143,7 @@ fn the_layout_and_the_brush_reach_as_far_as_the_map() {
 #[test]
 fn an_edit_far_out_meshes_its_bricks_and_draws_its_pixels() {
     let mut grid = with_wall();
-    let solid = Solidity::of(&grid, Visible::ALL);
+    let solid = Solidity::from_grid(&grid, Visible::ALL);
     let bricks: Vec<usize> = (0..grid.bricks().len()).collect();
     let meshes = mesh_bricks(&grid, &solid, &bricks);
     // Each side is cut at the borders of bricks: 40 voxels along y lie in three of them.

@@ -87,7 +87,7 @@ fn a_state_without_a_generation_is_kept_as_a_version() {
     bench.key(Modifiers::NONE, Key::ArrowLeft);
     let rev = bench.app().document.scene().content();
     assert_eq!(
-        bench.app().generation.versions.of(rev),
+        bench.app().generation.versions.index_of(rev),
         None,
         "an edit alone is none"
     );
@@ -100,7 +100,7 @@ fn a_state_without_a_generation_is_kept_as_a_version() {
     bench.key(Modifiers::NONE, Key::Enter);
     bench.steps(2);
     let versions = &bench.app().generation.versions;
-    let i = versions.of(rev).expect("it is kept");
+    let i = versions.index_of(rev).expect("it is kept");
     assert_eq!(versions.list()[i].title(), "further left");
     assert!(versions.list()[i].starred);
     // Going back to it is one step.

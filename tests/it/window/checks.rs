@@ -170,7 +170,7 @@ fn crash(bench: &mut Bench) {
 
 fn errors(bench: &Bench) -> usize {
     let scene = bench.harness.state().document.scene().clone();
-    SeverityCounts::of(&run_checks(&scene, None)).errors
+    SeverityCounts::from_findings(&run_checks(&scene, None)).errors
 }
 
 impl Bench {

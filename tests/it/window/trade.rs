@@ -42,7 +42,7 @@ fn a_preset_changes_the_next_edit_and_the_receipt_tells_what_the_last_one_cost()
     bench.click(&format!("Draft   {predicted}"));
     bench.steps(2);
     let params = bench.app().generation.live.params.clone();
-    assert_eq!(PresetKnobs::of(&params), presets[draft].knobs);
+    assert_eq!(PresetKnobs::from_params(&params), presets[draft].knobs);
     assert_eq!(bench.app().generation.tuning.current(&params), Some(draft));
     assert!(bench.harness.query_by_label("Quality: draft").is_some());
 

@@ -108,7 +108,7 @@ impl Operation for CheckCall {
             }
         }
         let open: Vec<&Finding> = waive::open(scene.frame(), &findings).collect();
-        let counts = SeverityCounts::of(open.iter().copied());
+        let counts = SeverityCounts::from_findings(open.iter().copied());
         let waived = findings.len() - open.len();
         Ok(Checked {
             findings: findings

@@ -73,7 +73,7 @@ impl RenderPlan {
             bounds::check(wanted.size, app::truth::BYTES_PER_PIXEL, 0).context("--size")?;
         }
         let lidar = wants("lidar")
-            .then(|| LoadedLidarModel::of(wanted, scene))
+            .then(|| LoadedLidarModel::from_request(wanted, scene))
             .transpose()?;
         Ok(Self {
             cameras,
@@ -86,7 +86,7 @@ impl RenderPlan {
 }
 
 impl LoadedLidarModel {
-    fn of(wanted: &Rendering, scene: &Scene) -> anyhow::Result<Self> {
+    fn from_request(wanted: &Rendering, scene: &Scene) -> anyhow::Result<Self> {
         if scene.rig.lidars.is_empty() {
             bail!("the rig {:?} has no lidar", scene.rig.name);
         }

@@ -75,7 +75,7 @@ pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, Lida
 impl Render {
     pub(super) fn run(self) -> CommandResult {
         check_what(&self.what, "--what")?;
-        let mut scene = self.moment.of(open::scene(&self.scene)?)?;
+        let mut scene = self.moment.apply_to(open::scene(&self.scene)?)?;
         if let Some(path) = &self.rig {
             scene.rig = open::rig(path)?.into();
         }

@@ -323,7 +323,7 @@ impl PromptField {
                     read.follow(scene, self.seed);
                 }
             }
-            _ => self.read = Some(Both::of(&said, scene, self.seed)),
+            _ => self.read = Some(Both::from_text(&said, scene, self.seed)),
         }
     }
 

@@ -42,7 +42,7 @@ impl PromptOrigin {
         let mut notes = laid.notes.clone();
         notes.extend(crate::text::shortfalls(laid));
         let recalled = |found: Remembered| {
-            let picture = Recalled::of(&found);
+            let picture = Recalled::from_retrieval(&found);
             (found, picture)
         };
         let remembered = laid.remembered.clone().map(recalled);

@@ -26,7 +26,7 @@ pub struct Recalled {
 
 impl Recalled {
     /// The nearest of the remembered scenes; `None` if its road cannot be read.
-    pub fn of(found: &Remembered) -> Option<Self> {
+    pub fn from_retrieval(found: &Remembered) -> Option<Self> {
         let entry = found.nearest.as_ref()?;
         Some(Self {
             text: entry.text.clone(),
@@ -87,7 +87,7 @@ impl Recall {
         let words = ask.prompt.clone();
         let recall = move || {
             let found = recall(&ask.prompt, &ask.description, ask.seed);
-            found.as_ref().and_then(Recalled::of)
+            found.as_ref().and_then(Recalled::from_retrieval)
         };
         let thread = job::guard::spawn("recall", recall, move |found| {
             // The receiver is gone once the pane is closed.
@@ -139,7 +139,7 @@ mod tests {
             1,
         )
         .expect("the bank that ships");
-        let shown = Recalled::of(&found).expect("a road that can be made again");
+        let shown = Recalled::from_retrieval(&found).expect("a road that can be made again");
         assert!((0.0..=1.0).contains(&shown.similarity) && shown.text == found.scenes[0].0);
         assert!(!shown.layout.polylines.is_empty() && !shown.boxes.is_empty());
         let long = shortened(&"words ".repeat(40));

@@ -21,7 +21,7 @@ pub struct Both {
 
 impl Both {
     /// Reads a text both ways.
-    pub fn of(text: &str, scene: &Scene, seed: u64) -> Self {
+    pub fn from_text(text: &str, scene: &Scene, seed: u64) -> Self {
         let line = |e: anyhow::Error| format!("{e:#}");
         Self {
             prompted: text::read(text).map_err(line),

@@ -24,7 +24,7 @@ pub(super) struct Mask {
 
 impl Mask {
     /// Reads the paved columns of a layout without the `own` columns; `None` if no column is paved.
-    pub fn of(layout: &BevLayout, own: &[bool]) -> Option<Self> {
+    pub fn from_layout(layout: &BevLayout, own: &[bool]) -> Option<Self> {
         let map = layout.extent();
         let [x0, y0] = map.from();
         let from = [x0 - MARGIN as i32, y0 - MARGIN as i32];

@@ -28,7 +28,7 @@ pub fn recognise(layout: &BevLayout, known: &RoadNetwork) -> RoadNetwork {
         true => Vec::new(),
         false => known.surface_of(layout.extent(), &owners, OWN_RIM_M),
     };
-    let Some(mask) = Mask::of(layout, &own) else {
+    let Some(mask) = Mask::from_layout(layout, &own) else {
         return known.clone();
     };
     let mut graph = skeleton::trace(&mask);

@@ -103,7 +103,7 @@ impl RoadTool {
             roads: scene.roads.clone(),
             layout: scene.canvas().layout.clone(),
         };
-        let net = RoadGeometry::of(network_of(scene));
+        let net = RoadGeometry::from_network(network_of(scene));
         *seen = Some((known, net.clone()));
         net
     }
@@ -339,7 +339,7 @@ impl Tool for RoadTool {
             return Vec::new();
         }
         let shown = match self.drag.is_some() && !sight.scene.roads.is_empty() {
-            true => RoadGeometry::of(sight.scene.roads.clone()),
+            true => RoadGeometry::from_network(sight.scene.roads.clone()),
             false => self.network(sight.settled),
         };
         marks::over_map(&shown, sight)

@@ -48,7 +48,7 @@ pub(super) struct RoadGeometry {
 }
 
 impl RoadGeometry {
-    pub fn of(net: Arc<RoadNetwork>) -> Self {
+    pub fn from_network(net: Arc<RoadNetwork>) -> Self {
         let lines = Arc::new(net.lines());
         Self { net, lines }
     }

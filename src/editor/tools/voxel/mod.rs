@@ -458,7 +458,7 @@ impl Tool for VoxelTool {
                 setting::take(&mut hand.voxel_mode, value, &VoxelMode::ALL);
                 self.corners.clear();
             }
-            ("stamp", _) => match Stamp::of(frame, &hand.voxels) {
+            ("stamp", _) => match Stamp::from_cells(frame, &hand.voxels) {
                 Some(stamp) => (hand.stamp, hand.voxel_mode) = (stamp, VoxelMode::Stamp),
                 None => return vec![Act::Note(tf!("A stamp has 1 to {n} voxels", n = Stamp::MOST))],
             },

@@ -30,7 +30,7 @@ pub(super) fn level(ahead: DVec2, at_m: DVec3) -> Pose {
 
 impl FrontCamera {
     /// The camera that looks most nearly ahead; `None` if none does.
-    pub(super) fn of(rig: &SensorRig) -> Option<Self> {
+    pub(super) fn from_rig(rig: &SensorRig) -> Option<Self> {
         let ahead = |c: &Camera| (c.ego_from_camera().rotation * DVec3::Z).x;
         let best = rig.cameras.iter().max_by(|a, b| ahead(a).total_cmp(&ahead(b)))?;
         if ahead(best) < LEAST_AHEAD {

@@ -46,7 +46,7 @@ const MARGIN_M: f64 = 0.25;
 
 fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, FormatError> {
     let velo = ego_from_velo(&scene.rig).ok_or_else(|| FormatError::new("the rig has no LiDAR"))?;
-    let camera = FrontCamera::of(&scene.rig);
+    let camera = FrontCamera::from_rig(&scene.rig);
     let times_s = times_s(scene)?;
     let mut files = Vec::new();
     let (mut poses, mut seconds) = (String::new(), String::new());

@@ -148,7 +148,7 @@ fn an_elongated_rotated_box_is_where_it_was() {
     assert_eq!((line.len(), line[0].as_str(), n[0], n[1]), (15, "Car", 0.0, 0.0));
     assert_eq!(n[7..10], [1.7, 1.9, 4.6]);
     let (place, rotation_y) = (DVec3::new(n[10], n[11], n[12]), n[13]);
-    let camera = FrontCamera::of(&rig()).expect("a front camera");
+    let camera = FrontCamera::from_rig(&rig()).expect("a front camera");
     let (sin, cos) = rotation_y.sin_cos();
     for (l, w, h) in [(2.3, 0.95, 0.0), (-2.3, 0.95, -1.7), (2.3, -0.95, -1.7)] {
         // x along the length, z along the width, y down.

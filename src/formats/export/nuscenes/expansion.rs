@@ -246,7 +246,7 @@ mod tests {
     fn areas_and_lines_lie_where_the_map_has_them() {
         let scene = clip_scene(1);
         let layout = &scene.canvas().layout;
-        let bytes = to_bytes(layout, DVec2::new(40.0, 40.0), &Tokens::of(&scene)).expect("finite");
+        let bytes = to_bytes(layout, DVec2::new(40.0, 40.0), &Tokens::from_scene(&scene)).expect("finite");
         let file: Value = serde_json::from_slice(&bytes).expect("JSON");
         assert_eq!(file["canvas_edge"], json!([80.0, 80.0]));
         let node = |token: &Value| {
@@ -278,7 +278,7 @@ mod tests {
     #[test]
     fn lanes_of_the_road_graph_are_lanes_with_paths_that_go_on_in_each_other() {
         let layout = crate::opendrive::write::lane_graph::star(&[[-45.0, 0.0], [45.0, 3.0], [4.0, 45.0]]);
-        let tokens = Tokens::of(&clip_scene(1));
+        let tokens = Tokens::from_scene(&clip_scene(1));
         let bytes = to_bytes(&layout, DVec2::new(40.0, 40.0), &tokens).expect("finite");
         let file: Value = serde_json::from_slice(&bytes).expect("JSON");
         let list = |layer: &str| file[layer].as_array().expect("rows").clone();

@@ -82,7 +82,7 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
     let low = scene.canvas().extent().min_m().truncate();
     let mut writing = Writing {
         scene,
-        tokens: Tokens::of(scene),
+        tokens: Tokens::from_scene(scene),
         shift_m: 0.0 - low,
         tables: Tables::default(),
         files: Vec::new(),

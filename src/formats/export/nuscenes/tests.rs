@@ -217,8 +217,8 @@ fn the_scene_has_a_name_as_the_devkit_knows_them_and_is_in_a_split() {
     let splits: Value = serde_json::from_slice(&files["v1.0-mini/splits.json"]).expect("JSON");
     assert_eq!(splits, serde_json::json!({ "all": [name] }));
     // Equal scenes have equal names, others others.
-    assert_eq!(scene_name(&Tokens::of(&scene)), name);
-    assert_ne!(scene_name(&Tokens::of(&clip_scene(3))), name);
+    assert_eq!(scene_name(&Tokens::from_scene(&scene)), name);
+    assert_ne!(scene_name(&Tokens::from_scene(&clip_scene(3))), name);
 }
 
 #[test]

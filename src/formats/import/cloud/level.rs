@@ -55,7 +55,7 @@ pub(super) struct GroundPlane {
 
 impl GroundPlane {
     /// The ground that these points lie on; `None` if they show no ground.
-    pub(super) fn of(points: impl Iterator<Item = DVec3>) -> Option<Self> {
+    pub(super) fn from_points(points: impl Iterator<Item = DVec3>) -> Option<Self> {
         let lowest = lowest(points);
         let plane = plane(&lowest)?;
         let on: Vec<DVec3> = lowest
@@ -235,7 +235,7 @@ mod tests {
     fn ground_is_found_at_its_height_whatever_its_tilt() {
         for height_m in [-2.2, -1.84, -0.8, 0.0, 35.0] {
             for slope in [DVec2::ZERO, DVec2::new(0.05, 0.0), DVec2::new(-0.08, 0.07)] {
-                let found = GroundPlane::of(street(height_m, slope).into_iter()).expect("ground");
+                let found = GroundPlane::from_points(street(height_m, slope).into_iter()).expect("ground");
                 assert!(
                     (found.height_m - height_m).abs() < 0.03,
                     "{found:?}, expected {height_m}"
@@ -254,13 +254,13 @@ mod tests {
             points
                 .push((DVec2::from_angle(turn) * (4.0 + f64::from(i % 15))).extend(-4.0 - f64::from(i % 3)));
         }
-        let found = GroundPlane::of(points.into_iter()).expect("ground");
+        let found = GroundPlane::from_points(points.into_iter()).expect("ground");
         assert!((found.height_m + 1.9).abs() < 0.03, "{found:?}");
     }
 
     #[test]
     fn what_is_no_ground_is_not_taken_for_it() {
-        let of = |points: Vec<DVec3>| GroundPlane::of(points.into_iter());
+        let of = |points: Vec<DVec3>| GroundPlane::from_points(points.into_iter());
         assert_eq!(of(Vec::new()), None);
         assert_eq!(of(vec![DVec3::NAN; 100]), None);
         assert_eq!(

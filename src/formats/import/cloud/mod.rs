@@ -144,7 +144,7 @@ impl Loose {
 
 impl Cloud {
     /// An empty cloud of a file: lifted as the user says, else by the height of its ground.
-    pub(super) fn of(source: &ImportFile<'_>) -> Self {
+    pub(super) fn from_source(source: &ImportFile<'_>) -> Self {
         Self {
             lift_m: source.lift_m,
             is_asked: source.lift_m.is_some(),
@@ -201,7 +201,7 @@ impl Cloud {
             Label::None => !is_labelled,
         };
         let points = waiting.iter().filter(|(_, label)| shows_ground(*label));
-        let ground = GroundPlane::of(points.map(|(at, _)| *at));
+        let ground = GroundPlane::from_points(points.map(|(at, _)| *at));
         let lift_m = ground.map_or(0.0, GroundPlane::lift_m);
         self.lift_m = Some(lift_m);
         self.notes = match ground {

@@ -84,7 +84,7 @@ pub fn read_around(source: &ImportFile<'_>, origin_m: Option<DVec3>) -> Result<C
         Some(origin_m) => origin_m,
         None => origin(&header, source.bytes, source.lift_m.is_some())?,
     };
-    let (mut cloud, mut noise, mut withheld) = (Cloud::of(source), 0, 0);
+    let (mut cloud, mut noise, mut withheld) = (Cloud::from_source(source), 0, 0);
     let mut of_users = false;
     points::each(&header, source.bytes, |record| {
         let label = match record.class {

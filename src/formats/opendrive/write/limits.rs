@@ -28,11 +28,11 @@ pub(super) struct SpeedLimitSource<'a> {
 }
 
 impl<'a> SpeedLimitSource<'a> {
-    pub fn of(layout: &BevLayout, roads: &'a RoadNetwork) -> Self {
+    pub fn from_layout(layout: &BevLayout, roads: &'a RoadNetwork) -> Self {
         Self {
             roads,
             middles: roads.lines(),
-            along_lanes: SpeedLimits::of(layout),
+            along_lanes: SpeedLimits::from_layout(layout),
         }
     }
 

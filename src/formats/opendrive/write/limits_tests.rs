@@ -39,7 +39,7 @@ fn limits_come_back_where_they_were() {
     for limit in ["max=\"50\" unit=\"km/h\"", "max=\"30\" unit=\"mph\""] {
         assert!(text.contains(limit), "{limit}");
     }
-    let found = SpeedLimits::of(&back(&text).layout);
+    let found = SpeedLimits::from_layout(&back(&text).layout);
     for x in [-38.0, -20.0, -4.0, 4.0, 20.0, 38.0] {
         for y in [0.0, 3.5] {
             let wanted = if x < 0.0 { 13.889 } else { 13.411 };
@@ -60,7 +60,7 @@ fn no_limit_is_written_where_none_is_known_and_bad_ones_are_counted() {
         let record = format!("    <type s=\"0\" type=\"town\">{speed}</type>\n    <planView>");
         let text = text.replacen("    <planView>", &record, 1);
         let network = opendrive::read(text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
-        let limits = SpeedLimits::of(&network.to_layout(DVec2::ZERO, 0.0).layout);
+        let limits = SpeedLimits::from_layout(&network.to_layout(DVec2::ZERO, 0.0).layout);
         let bad = network.skipped.get("speed limit that cannot be read").copied();
         (limits.at_mps(DVec2::ZERO, 1.0), bad)
     };

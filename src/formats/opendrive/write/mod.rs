@@ -70,7 +70,7 @@ fn text_of(
     (reshaped, background): (&RoadNetwork, &Background),
     detail: Detail,
 ) -> String {
-    let limits = SpeedLimitSource::of(layout, reshaped);
+    let limits = SpeedLimitSource::from_layout(layout, reshaped);
     let (mut roads, junctions) = network(layout);
     if roads.is_empty() {
         roads.push(on_road::nowhere(layout));

@@ -161,7 +161,7 @@ impl OccPipeline {
         boxes: &BTreeMap<BoxId, SceneBox>,
         named: ChosenDensities,
     ) -> Condition {
-        self.standing = SceneryVoxels::of(scene, layout, self.standing.as_ref());
+        self.standing = SceneryVoxels::from_scene(scene, layout, self.standing.as_ref());
         Condition::new(layout, boxes, self.standing.as_ref(), named, self.ablation)
     }
 
@@ -291,7 +291,7 @@ impl OccPipeline {
                 frame,
                 &region,
                 true,
-                &VoxelRequest::of(frame),
+                &VoxelRequest::from_frame(frame),
                 &mut generated,
             ));
         }
@@ -373,7 +373,7 @@ impl OccPipeline {
             // The region is empty: no network is called.
             return Ok(self.finish(job, before, before, &region, &mut report));
         }
-        let ground = NewGround::of(frame);
+        let ground = NewGround::from_frame(frame);
         let is_new = ground.is_in(&region);
         let params = &match is_new {
             true => NewGround::params(&job.params),
@@ -434,7 +434,7 @@ impl OccPipeline {
         drop(network);
         report.network_calls += edited.calls;
         ctx.progress(Stage::Decode, 0, 1)?;
-        let request = VoxelRequest::of(frame);
+        let request = VoxelRequest::from_frame(frame);
         let observed = observed_still(frame, inpainted, &request);
         let mut generated = report.timed(Stage::Decode, |report| {
             let refine = (params.fine_steps, params.seed);

@@ -94,7 +94,7 @@ impl Condition {
 
 /// The densities of a frame's source.
 pub fn density_of_source(frame: &Frame) -> Density {
-    Density::of(&frame.source.occupancy, frame.source.layout.cells())
+    Density::from_grid(&frame.source.occupancy, frame.source.layout.cells())
 }
 
 /// The network as a solver sees it, under one condition.

@@ -14,7 +14,7 @@ pub(super) struct NewGround<'a> {
 
 impl<'a> NewGround<'a> {
     /// The known and new columns of a frame of the window.
-    pub(super) fn of(frame: &'a Frame) -> Self {
+    pub(super) fn from_frame(frame: &'a Frame) -> Self {
         let columns = || Extent::WINDOW.all_columns();
         let is_new: Vec<bool> = columns().map(|[x, y]| frame.is_new_ground(x, y)).collect();
         if !is_new.contains(&true) {

@@ -56,7 +56,7 @@ impl SceneryVoxels {
     /// The background of a scene's frame on the ground of `layout`; reuses `last` if nothing changed. `None` if none of
     /// its things describes the kind of place (a sign alone does not stop invention), or if it was inferred from
     /// voxels, which misses many things.
-    pub fn of(scene: &Scene, layout: &BevLayout, last: Option<&Self>) -> Option<Self> {
+    pub fn from_scene(scene: &Scene, layout: &BevLayout, last: Option<&Self>) -> Option<Self> {
         given(scene)?;
         let same =
             |last: &&Self| Arc::ptr_eq(&last.background, &scene.background) && last.relief == layout.relief;
@@ -108,7 +108,7 @@ mod tests {
         for seed in [3, 8] {
             let scene = scene(seed);
             let frame = scene.frame();
-            let standing = SceneryVoxels::of(&scene, &frame.layout, None).expect("a background");
+            let standing = SceneryVoxels::from_scene(&scene, &frame.layout, None).expect("a background");
             let bare = draft::draft(&frame.layout, frame.boxes.values());
             let mut full = bare.clone();
             standing.stand_in(&mut full);
@@ -133,23 +133,23 @@ mod tests {
     fn what_is_not_known_is_not_given() {
         let mut scene = scene(5);
         let layout = scene.frame().layout.clone();
-        let first = SceneryVoxels::of(&scene, &layout, None).expect("a background");
-        let again = SceneryVoxels::of(&scene, &layout, Some(&first)).expect("a background");
+        let first = SceneryVoxels::from_scene(&scene, &layout, None).expect("a background");
+        let again = SceneryVoxels::from_scene(&scene, &layout, Some(&first)).expect("a background");
         assert!(
             Arc::ptr_eq(&first.columns, &again.columns),
             "kept from job to job"
         );
         let mut guessed = scene.clone();
         guessed.change_canvas(|f| f.inferred.background = true);
-        assert!(SceneryVoxels::of(&guessed, &layout, Some(&first)).is_none());
+        assert!(SceneryVoxels::from_scene(&guessed, &layout, Some(&first)).is_none());
         let mut fewer = (*scene.background).clone();
         let id = fewer.iter().next().expect("a thing").id;
         fewer.remove(id);
         scene.background = Arc::new(fewer);
-        let other = SceneryVoxels::of(&scene, &layout, Some(&first)).expect("a background");
+        let other = SceneryVoxels::from_scene(&scene, &layout, Some(&first)).expect("a background");
         assert_ne!(first.columns, other.columns);
         scene.background = Arc::default();
-        assert!(SceneryVoxels::of(&scene, &layout, None).is_none());
+        assert!(SceneryVoxels::from_scene(&scene, &layout, None).is_none());
         assert_eq!(given(&scene), None);
     }
 
@@ -166,7 +166,7 @@ mod tests {
         sign.add(Form::Post(Post::typical(PostKind::Sign, at, 0.0)));
         let columns = sign.iter().next().expect("a sign").columns(&layout);
         scene.background = Arc::new(sign);
-        assert!(SceneryVoxels::of(&scene, &layout, None).is_none() && given(&scene).is_none());
+        assert!(SceneryVoxels::from_scene(&scene, &layout, None).is_none() && given(&scene).is_none());
         let mut generated = VoxelGrid::new();
         keep_loose_things(&scene, &Region::empty(), &mut generated);
         assert_eq!(generated.count_set(), 0, "outside of the region nothing changes");

@@ -90,7 +90,7 @@ fn preset(name: String, row: &SettingOutcomes, point: TradePoint) -> Option<Pres
     let probe = row.outcomes.iter().take(cases::KINDS.len());
     Some(Preset {
         name,
-        knobs: PresetKnobs::of(&row.setting.params),
+        knobs: PresetKnobs::from_params(&row.setting.params),
         error: point.error,
         error_of_occupied: Some(bootstrap_median(&row.all(|o| o.error_of_occupied), 3)),
         error_of_one: [quantile(&errors, 0.05), quantile(&errors, 0.95)],
@@ -122,7 +122,7 @@ fn reference_preset(rows: &[&SettingOutcomes], reference: GenParams) -> Option<P
     let steps = f64::from(reference.steps);
     Some(Preset {
         name: "reference".into(),
-        knobs: PresetKnobs::of(&reference),
+        knobs: PresetKnobs::from_params(&reference),
         error: none,
         error_of_occupied: None,
         error_of_one: [0.0, 0.0],

@@ -159,7 +159,7 @@ impl TradeoffPlan {
         }
         self.sensors(models, &mut found)?;
         if let Some(presets) = &found.presets {
-            let usual = PresetKnobs::of(&GenParams::default());
+            let usual = PresetKnobs::from_params(&GenParams::default());
             for mark in &mut found.marks {
                 let named = |s: &&trade::Preset| settings::name_of(&s.knobs, &usual) == mark.name;
                 mark.preset = presets.all.iter().find(named).map(|s| s.name.clone());

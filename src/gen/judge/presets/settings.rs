@@ -68,7 +68,10 @@ impl List {
 
     /// Adds a setting with `extra` in its name, if given: it then has another target than the reference.
     fn put(&mut self, params: GenParams, extra: Option<String>) {
-        let name = name_of(&PresetKnobs::of(&params), &PresetKnobs::of(&self.base));
+        let name = name_of(
+            &PresetKnobs::from_params(&params),
+            &PresetKnobs::from_params(&self.base),
+        );
         if params.check().is_ok() && !self.settings.iter().any(|s| s.params == params) {
             self.settings.push(CandidateSetting {
                 other_target: extra.is_some(),

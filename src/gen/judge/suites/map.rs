@@ -54,7 +54,7 @@ impl Options {
             let (world, window) = (scene(i as u64), window_of(&map, *by));
             let mut add = |row: usize, scene: &Scene| -> anyhow::Result<()> {
                 let grid = &scene.frame().occupancy;
-                let seen = SceneFeatures::of(scene, grid, i as u64, &extractor)?;
+                let seen = SceneFeatures::from_scene(scene, grid, i as u64, &extractor)?;
                 rows[row].add(scene, grid, seen);
                 Ok(())
             };

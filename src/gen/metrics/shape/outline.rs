@@ -47,7 +47,7 @@ struct Outlines {
 }
 
 impl Outlines {
-    fn of(inside: &[bool]) -> Self {
+    fn from_mask(inside: &[bool]) -> Self {
         let open = |x: isize, y: isize| {
             let within = (0..NX as isize).contains(&x) && (0..NY as isize).contains(&y);
             within && !inside[x as usize * NY + y as usize]
@@ -135,7 +135,7 @@ fn deviation(points: &[(f64, f64)]) -> f64 {
 
 pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
     let inside: Vec<bool> = tops(grid).iter().map(Option::is_some).collect();
-    let outlines = Outlines::of(&inside);
+    let outlines = Outlines::from_mask(&inside);
     let stretches = outlines.sides.iter().filter_map(|s| outlines.stretch(*s));
     let deviations: Vec<f64> = stretches
         .map(|s| deviation(&s.into_iter().map(middle).collect::<Vec<_>>()))

@@ -76,7 +76,9 @@ pub fn against<'a>(
         let at = map_from_vehicle.apply(detection.center_m.map(f64::from).into());
         let far = |b: &SceneBox| DVec2::distance(b.center_m.truncate(), at.truncate());
         let free = boxes.iter().zip(&mut besides).filter(|(b, beside)| {
-            beside.found.is_none() && DetectionGroup::of(b.class) == Some(detection.group) && far(b) < NEAR_M
+            beside.found.is_none()
+                && DetectionGroup::from_class(b.class) == Some(detection.group)
+                && far(b) < NEAR_M
         });
         match free.min_by(|a, b| far(a.0).total_cmp(&far(b.0))) {
             Some((_, beside)) => beside.found = Some(i),

@@ -35,7 +35,7 @@ impl DetectionGroup {
     pub const ALL: [Self; 5] = [Self::Car, Self::Large, Self::Person, Self::Cycle, Self::Barrier];
 
     /// The group of a class; `None` if it is no object.
-    pub fn of(class: Class) -> Option<Self> {
+    pub fn from_class(class: Class) -> Option<Self> {
         Some(match class {
             Class::Car => Self::Car,
             Class::Truck | Class::Bus | Class::Trailer | Class::ConstructionVehicle => Self::Large,

@@ -78,7 +78,7 @@ pub fn warp(
             let (now, then) = (cell_depths(now, size), cell_depths(then, size));
             for (cell, (out, deep)) in out.chunks_exact_mut(wide).zip(now).enumerate() {
                 let at = [cell / size.columns, cell % size.columns];
-                if let Some(seen) = WarpSource::of(at, deep, &then, motion, size) {
+                if let Some(seen) = WarpSource::from_depths(at, deep, &then, motion, size) {
                     seen.write(latents, size, out);
                 }
             }
@@ -106,7 +106,7 @@ struct WarpSource {
 impl WarpSource {
     /// The place where a cell's surface was seen; `None` if it was outside or hidden. `depths_then_m` are of cells. All
     /// in 32 bits and in the order of the twin, since a rounding may decide.
-    fn of(
+    fn from_depths(
         [row, column]: [usize; 2],
         depth_m: f32,
         depths_then_m: &[f32],

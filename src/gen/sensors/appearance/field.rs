@@ -65,7 +65,7 @@ impl OccupancyField {
     /// Builds the field from the voxels that stand on the ground (physical heights) and the things that own some of
     /// them.
     pub fn new(grid: &VoxelGrid, owners: &Owners, seed: u32) -> Self {
-        let shape = FieldShape::of(grid.extent());
+        let shape = FieldShape::from_extent(grid.extent());
         let at = |x: usize, y: usize, z: usize| shape.at(x, y, z);
         let mut solid = vec![Class::FREE; shape.nx * shape.ny * NZ];
         for (x, y, z, label) in grid.iter_set() {

@@ -115,12 +115,12 @@ impl Appearance {
         for b in &boxes {
             remove_voxels(&mut grid, &mut columns, b, GroundHeight::Physical, STRAY_M);
         }
-        let owners = Owners::new(background, &layout, &FieldShape::of(extent));
+        let owners = Owners::new(background, &layout, &FieldShape::from_extent(extent));
         let field = OccupancyField::new(&grid, &owners, seed);
         let ground = SmoothGround::new(&columns, &layout);
         let mut things: Vec<DrawnObject> = boxes
             .iter()
-            .filter_map(|b| DrawnObject::of(b, frame.own_shapes.get(&b.id), seed))
+            .filter_map(|b| DrawnObject::from_box(b, frame.own_shapes.get(&b.id), seed))
             .take(60_000)
             .collect();
         let ([blocks_x, blocks_y], from) = (field.shape().blocks, field.shape().blocks_from_m);

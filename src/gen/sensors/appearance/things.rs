@@ -122,7 +122,7 @@ fn usual_paint(name: &str) -> Option<Paint> {
 
 impl DrawnObject {
     /// A box as a thing to be drawn, by the shape of its class or by its own; `None` if the box has a problem.
-    pub fn of(b: &SceneBox, own: Option<&OwnShape>, seed: u32) -> Option<Self> {
+    pub fn from_box(b: &SceneBox, own: Option<&OwnShape>, seed: u32) -> Option<Self> {
         if b.problem().is_some() {
             return None;
         }

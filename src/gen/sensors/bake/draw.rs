@@ -41,7 +41,7 @@ pub(super) struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    pub fn of(g: &SceneGaussian) -> Self {
+    pub fn from_gaussian(g: &SceneGaussian) -> Self {
         let [w, x, y, z] = g.rotation_wxyz;
         let turn = Quat::from_xyzw(x, y, z, w);
         let [a, b, c] = g.std_m;
@@ -65,7 +65,7 @@ pub(super) struct Projected {
 impl Projected {
     pub fn new(ellipsoids: &[Ellipsoid], camera: &Camera, [width, height]: [u32; 2]) -> Self {
         let view = SplatCamera::new(camera, width, height, OPTIONS.jacobian_clamp);
-        let sight = ViewCone::of(camera, [width, height]);
+        let sight = ViewCone::from_camera(camera, [width, height]);
         let one = |(i, e): (usize, &Ellipsoid)| -> Option<(SplatPixels, u32)> {
             if !sight.may_show(e) {
                 return None;
@@ -193,7 +193,7 @@ struct ViewCone {
 }
 
 impl ViewCone {
-    fn of(camera: &Camera, [width, height]: [u32; 2]) -> Self {
+    fn from_camera(camera: &Camera, [width, height]: [u32; 2]) -> Self {
         let rays = crate::rays::CameraRays::new(camera, width, height);
         let pose = camera.ego_from_camera();
         let (w, h) = (f64::from(width), f64::from(height));
@@ -233,7 +233,7 @@ impl PreparedGaussians {
     /// Prepares the Gaussians; takes some 60 bytes for each.
     pub fn new(gaussians: &[SceneGaussian]) -> Self {
         Self {
-            ellipsoids: gaussians.par_iter().map(Ellipsoid::of).collect(),
+            ellipsoids: gaussians.par_iter().map(Ellipsoid::from_gaussian).collect(),
             colors: gaussians.iter().map(|g| g.color).collect(),
         }
     }

@@ -120,7 +120,7 @@ pub fn bake(
     gaussians.extend(sky);
     let training = counted(0.2, 0.9, options.steps);
     train::fit(&mut gaussians, &sampled.taken, size, options.steps, &training);
-    let ellipsoids: Vec<Ellipsoid> = gaussians.par_iter().map(Ellipsoid::of).collect();
+    let ellipsoids: Vec<Ellipsoid> = gaussians.par_iter().map(Ellipsoid::from_gaussian).collect();
     let mut colors: Vec<[f32; 3]> = gaussians.iter().map(|g| g.color).collect();
     let start = (&mut colors, &keep[..]);
     refine::fit(

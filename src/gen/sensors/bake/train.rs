@@ -51,7 +51,7 @@ pub(super) fn fit(
     if gaussians.is_empty() || taken.is_empty() {
         return;
     }
-    let mut ellipsoids: Vec<Ellipsoid> = gaussians.par_iter().map(Ellipsoid::of).collect();
+    let mut ellipsoids: Vec<Ellipsoid> = gaussians.par_iter().map(Ellipsoid::from_gaussian).collect();
     let mut colors: Vec<[f32; 3]> = gaussians.iter().map(|g| g.color).collect();
     let start: Vec<[f32; 3]> = gaussians.iter().map(|g| g.std_m).collect();
     let mut moments = vec![Moments::default(); gaussians.len()];
@@ -84,7 +84,7 @@ pub(super) fn fit(
             let i = *i as usize;
             moments[i].step(gradient);
             change(&mut gaussians[i], &moments[i], &start[i], rate);
-            ellipsoids[i] = Ellipsoid::of(&gaussians[i]);
+            ellipsoids[i] = Ellipsoid::from_gaussian(&gaussians[i]);
             colors[i] = gaussians[i].color;
         }
     }

@@ -112,7 +112,7 @@ impl RoadMarkings {
         let along = Self::bins_along(extent);
         let mut paint = Self {
             extent,
-            units: Units::of(extent),
+            units: Units::from_extent(extent),
             low: extent.min_m().truncate(),
             along,
             bins: vec![Vec::new(); along[0] * along[1]],

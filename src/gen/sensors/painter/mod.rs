@@ -177,7 +177,7 @@ impl Painter {
         let Some(ring) = Ring::of(&input.rig.cameras)? else {
             return Ok(Vec::new());
         };
-        let seen = RingFrame::of(input, &ring);
+        let seen = RingFrame::from_input(input, &ring);
         if let Some(at) = self.kept.iter().position(|p| p.seen == seen)
             && let Some(painted) = self.kept.remove(at)
         {

@@ -87,7 +87,7 @@ fn open_once(folder: &Path) -> Result<Arc<Pipeline>, String> {
     if let Some(pipeline) = known.and_then(|(_, pipeline)| pipeline.upgrade()) {
         return Ok(pipeline);
     }
-    let pipeline = Pipeline::open(&Folders::of(folder), &Machine::best());
+    let pipeline = Pipeline::open(&Folders::from_base(folder), &Machine::best());
     let pipeline = Arc::new(pipeline.map_err(|e| e.to_string())?);
     held.push((folder.to_owned(), Arc::downgrade(&pipeline)));
     Ok(pipeline)

@@ -388,7 +388,7 @@ impl CameraPainter for PublicPainter {
         let Some(ring) = Ring::sized(&input.rig.cameras, self.size(input))? else {
             return Ok(Vec::new());
         };
-        let seen = RingFrame::of(input, &ring);
+        let seen = RingFrame::from_input(input, &ring);
         let known = self.kept.iter().position(|p| p.seen == seen);
         let painted = match known.and_then(|at| self.kept.remove(at)) {
             Some(painted) => painted,

@@ -99,7 +99,7 @@ fn pictures_are_painted_and_after_an_edit_only_what_it_touches() {
     let ring = Ring::sized(&rig.cameras, [old[0].height, old[0].width])
         .expect("a size")
         .expect("cameras");
-    let seen = [&with, &without].map(|frame| RingFrame::of(&input(frame, &rig), &ring));
+    let seen = [&with, &without].map(|frame| RingFrame::from_input(&input(frame, &rig), &ring));
     let changed = mask::changed(&seen[0], &seen[1], ring.size);
     for (place, changed) in changed.iter().enumerate() {
         let shares = mask::shares(changed, old[0].width);
@@ -283,7 +283,7 @@ fn surfaces_are_found_again_in_the_frame_before_and_in_the_camera_beside() {
     let ring = Ring::sized(&rig.cameras, [80, 128])
         .expect("a ring")
         .expect("cameras");
-    let then = RingFrame::of(&input(&frame, &rig), &ring);
+    let then = RingFrame::from_input(&input(&frame, &rig), &ring);
     let same = pixels_before(&then, &then, 6);
     let still = same
         .iter()
@@ -292,7 +292,7 @@ fn surfaces_are_found_again_in_the_frame_before_and_in_the_camera_beside() {
     assert!(still.count() * 1000 >= same.len() * 999, "nothing moved");
 
     let ahead_rig = rig.standing_at(&Pose::planar(1.0, 0.0, 0.02));
-    let now = RingFrame::of(&input(&frame, &ahead_rig), &ring);
+    let now = RingFrame::from_input(&input(&frame, &ahead_rig), &ring);
     let from = pixels_before(&now, &then, 6);
     let known = from.iter().flatten().count();
     assert!(known * 10 > from.len() * 7, "{known} of {}", from.len());
@@ -351,7 +351,7 @@ fn a_drive_goes_on_from_what_was_painted() {
     let (first, next) = (paint(&mut *idle, &rig), paint(&mut *idle, &ahead));
     let size @ [height, width] = [first[0].height, first[0].width];
     let ring = Ring::sized(&rig.cameras, size).expect("a ring").expect("cameras");
-    let [then, now] = [&rig, &ahead].map(|rig| RingFrame::of(&input(&frame, rig), &ring));
+    let [then, now] = [&rig, &ahead].map(|rig| RingFrame::from_input(&input(&frame, rig), &ring));
     let rgb = |images: &[Arc<CameraImage>], i: usize| {
         let (place, at) = (i / (height * width), i % (height * width));
         let image = &images[ring.camera(place)].rgba;

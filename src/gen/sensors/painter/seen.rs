@@ -33,7 +33,7 @@ struct HintedView {
 
 impl RingFrame {
     /// Looks at a scene.
-    pub fn of(input: &PaintInput<'_>, ring: &Ring) -> Self {
+    pub fn from_input(input: &PaintInput<'_>, ring: &Ring) -> Self {
         let [height, width] = ring.size.pixels().map(|n| n as u32);
         let cameras = ring.sorted(&input.rig.cameras);
         let (teller, appearance) = rayon::join(

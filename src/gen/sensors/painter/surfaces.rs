@@ -22,7 +22,7 @@ struct SurfaceView<'a> {
 }
 
 impl<'a> SurfaceView<'a> {
-    fn of(seen: &'a RingFrame, place: usize) -> Self {
+    fn from_ring(seen: &'a RingFrame, place: usize) -> Self {
         let camera = seen.camera(place);
         Self {
             seen,
@@ -33,7 +33,7 @@ impl<'a> SurfaceView<'a> {
     }
 
     fn all(seen: &'a RingFrame, views: usize) -> Vec<Self> {
-        (0..views).map(|place| Self::of(seen, place)).collect()
+        (0..views).map(|place| Self::from_ring(seen, place)).collect()
     }
 
     /// Depth of a pixel, m.

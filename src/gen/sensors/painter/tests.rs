@@ -67,7 +67,10 @@ fn an_edit_changes_what_it_touches_and_nothing_else() {
     let new = new.expect("pictures");
 
     let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
-    let (then, now) = (RingFrame::of(&before, &ring), RingFrame::of(&after, &ring));
+    let (then, now) = (
+        RingFrame::from_input(&before, &ring),
+        RingFrame::from_input(&after, &ring),
+    );
     let changed = mask::changed(&then, &now, ring.size);
     let [_, width] = ring.size.pixels();
     let (mut painted, mut touched_views) = (0, 0);
@@ -145,7 +148,7 @@ fn a_drive_goes_on_from_the_frame_before() {
     let rig = SensorRig::default();
     let here = input(&frame, &rig);
     let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
-    let seen = |input: &PaintInput<'_>| RingFrame::of(input, &ring);
+    let seen = |input: &PaintInput<'_>| RingFrame::from_input(input, &ring);
     let then = seen(&here);
     let moved = |ahead_m: f64, turn_rad: f64| rig.standing_at(&Pose::planar(ahead_m, 0.0, turn_rad));
     let known = |ahead_m: f64, turn_rad: f64| {
@@ -266,7 +269,7 @@ fn seconds_of_a_painting() {
             std::time::Instant::now()
         };
         let start = std::time::Instant::now();
-        drop(RingFrame::of(&input(&with, &rig), &ring));
+        drop(RingFrame::from_input(&input(&with, &rig), &ring));
         let start = timed("look", start);
         let mut painter = Painter::new(nets.clone(), PaintOptions::default());
         painter.paint(&input(&with, &rig), go_on).expect("pictures");

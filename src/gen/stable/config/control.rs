@@ -44,10 +44,10 @@ impl ControlConfig {
     /// Reads a configuration file. Errors in one line if a value is not known here.
     pub fn read(path: &Path) -> Result<Self, StableError> {
         let value: Value = read_json(path, MOST_BYTES)?;
-        Self::of(value).map_err(|reason| refused(path, reason))
+        Self::from_json(value).map_err(|reason| refused(path, reason))
     }
 
-    fn of(value: Value) -> Result<Self, String> {
+    fn from_json(value: Value) -> Result<Self, String> {
         let own: Own = serde_json::from_value(value.clone()).map_err(|e| e.to_string())?;
         let unet: UnetConfig = serde_json::from_value(value).map_err(|e| e.to_string())?;
         unet.check()?;

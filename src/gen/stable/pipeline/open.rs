@@ -35,7 +35,7 @@ pub struct Folders {
 impl Folders {
     /// The parts in one folder: `unet`, every folder that begins with `controlnet`, in the order of their names, and
     /// `mpi_encoder`. Parts that lie elsewhere, as SyntheOcc's UNet and ControlNet do, can be put in their place.
-    pub fn of(base: &Path) -> Self {
+    pub fn from_base(base: &Path) -> Self {
         let entries = std::fs::read_dir(base).into_iter().flatten().flatten();
         let is_control = |name: &str| name.starts_with("controlnet");
         let mut controls: Vec<PathBuf> = entries

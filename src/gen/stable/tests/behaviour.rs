@@ -240,7 +240,7 @@ fn a_reference_frame_comes_back_and_is_heard() {
     let folders = crate::Folders {
         unet: super::folder("ring").join("unet_add_zero_linear_2"),
         controls: Vec::new(),
-        ..crate::Folders::of(&super::folder("ring"))
+        ..crate::Folders::from_base(&super::folder("ring"))
     };
     let pipeline = Pipeline::open(&folders, &crate::Machine::cpu()).expect("a model");
     assert!(pipeline.unet().hears_frames());
@@ -315,7 +315,7 @@ fn sixteen_bits_stay_near_thirty_two() {
         ..crate::Machine::cpu()
     };
     for (model, size, views) in [("sd15", [16, 24], 1), ("ring", [8, 14], 6)] {
-        let folders = crate::Folders::of(&super::folder(model));
+        let folders = crate::Folders::from_base(&super::folder(model));
         let rough = Pipeline::open(&folders, &half).expect("a model");
         let exact = opened(model);
         let picture: Vec<f32> = (0..3 * 16 * 24).map(|i| (i % 7) as f32 / 7.0).collect();

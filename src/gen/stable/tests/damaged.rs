@@ -280,7 +280,7 @@ fn row_62_configurations() {
 #[test]
 fn row_62_folders() {
     let at = tempfile::tempdir().expect("a folder");
-    let open = |at: &Path| line(Pipeline::open(&Folders::of(at), &Machine::cpu()));
+    let open = |at: &Path| line(Pipeline::open(&Folders::from_base(at), &Machine::cpu()));
     assert!(open(at.path()).contains("model_index.json: No such file"));
     let index = at.path().join("model_index.json");
     for (text, told) in [
@@ -310,7 +310,7 @@ fn parts_that_do_not_fit_each_other_are_refused() {
     // The UNet of one model with the rest of another.
     let folders = Folders {
         unet: folder("ring/unet"),
-        ..Folders::of(&folder("sd15"))
+        ..Folders::from_base(&folder("sd15"))
     };
     let told = line(Pipeline::open(&folders, &Machine::cpu()));
     assert_eq!(

@@ -29,7 +29,8 @@ fn folder(model: &str) -> PathBuf {
 }
 
 fn opened(model: &str) -> Pipeline {
-    Pipeline::open(&Folders::of(&folder(model)), &Machine::cpu()).unwrap_or_else(|e| panic!("{model}: {e}"))
+    Pipeline::open(&Folders::from_base(&folder(model)), &Machine::cpu())
+        .unwrap_or_else(|e| panic!("{model}: {e}"))
 }
 
 /// Arrays by name.

@@ -63,7 +63,7 @@ fn parity_of_planes() {
 #[test]
 fn parity_of_six_views() {
     let golden = Golden::open("ring/golden.safetensors");
-    let all = Folders::of(&folder("ring"));
+    let all = Folders::from_base(&folder("ring"));
     let released = Folders {
         mpi: None,
         ..all.clone()

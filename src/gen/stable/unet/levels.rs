@@ -140,7 +140,7 @@ pub(crate) struct UnetLevels<'a> {
 
 impl<'a> UnetLevels<'a> {
     /// Sizes of a configuration that has been checked.
-    pub fn of(config: &'a UnetConfig) -> Self {
+    pub fn from_config(config: &'a UnetConfig) -> Self {
         Self {
             config,
             heads: config.heads().unwrap_or_default(),

@@ -59,7 +59,7 @@ impl Unet {
     }
 
     fn of(config: &UnetConfig, names: &Names<'_>, machine: &Machine) -> Result<Self, StableError> {
-        let levels = UnetLevels::of(config);
+        let levels = UnetLevels::from_config(config);
         let (finest, groups) = (config.block_out_channels[0], config.norm_num_groups);
         Ok(Self {
             neighbours: config.neighbours().unwrap_or_default(),
@@ -110,7 +110,7 @@ impl Unet {
                 format!("1 to {MOST_SIDE} a side"),
             ));
         }
-        let around = NeighbourIndices::of(&self.neighbours, frames, batch)?;
+        let around = NeighbourIndices::from_neighbours(&self.neighbours, frames, batch)?;
         let dtype = self.machine.dtype;
         let x = x.to_dtype(dtype)?;
         let context = told_to_each(context, batch)?.to_dtype(dtype)?;

@@ -23,7 +23,7 @@ pub(crate) struct NeighbourIndices {
 impl NeighbourIndices {
     /// Neighbours in a batch of all views of the first frame, then of the next. `neighbours` lists those of each view.
     /// Errors if the batch does not hold whole frames.
-    pub fn of(
+    pub fn from_neighbours(
         neighbours: &[Vec<usize>],
         frames: usize,
         batch: usize,

@@ -26,16 +26,16 @@ pub struct Vae {
 impl Vae {
     /// Loads the network from weights. Errors if they do not fit the configuration.
     pub fn load(config: VaeConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
-        weights.build(machine, &[], |names| Self::of(&config, names))
+        weights.build(machine, &[], |names| Self::from_weights(&config, names))
     }
 
     /// Checks that weights fit a configuration, by names, shapes and types alone. Errors list the first few that do
     /// not.
     pub fn check(config: &VaeConfig, weights: &Weights) -> Result<(), StableError> {
-        weights.check(&[], |names| Self::of(config, names))
+        weights.check(&[], |names| Self::from_weights(config, names))
     }
 
-    fn of(config: &VaeConfig, names: &Names<'_>) -> Result<Self, StableError> {
+    fn from_weights(config: &VaeConfig, names: &Names<'_>) -> Result<Self, StableError> {
         let latent = config.latent_channels;
         Ok(Self {
             encoder: VaeEncoder::load(&names.at("encoder"), config)?,

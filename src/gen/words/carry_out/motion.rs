@@ -45,9 +45,11 @@ impl Stage<'_> {
         let needs_us = how.what == Template::CutIn || comes_near;
         if needs_us && !self.ego_moves && !ids.is_empty() {
             self.ego_moves = true;
-            self.out
-                .edits
-                .push(Edit::let_move(&Manoeuvre::of(Template::Follow), None, None));
+            self.out.edits.push(Edit::let_move(
+                &Manoeuvre::from_template(Template::Follow),
+                None,
+                None,
+            ));
             self.remark(Remark::EgoDrives);
         }
         for id in ids {

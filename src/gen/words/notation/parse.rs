@@ -264,7 +264,7 @@ impl<'t> Parser<'t> {
 
     fn manoeuvre(&mut self) -> Parsed<Manoeuvre> {
         let named = |t: &str| Template::ALL.iter().copied().find(|x| x.name() == t);
-        let mut how = Manoeuvre::of(self.must("a manoeuvre", named)?);
+        let mut how = Manoeuvre::from_template(self.must("a manoeuvre", named)?);
         if self.takes("from") {
             how.from_s = Some(self.must("seconds", |t| measure(t, "s"))?);
         }

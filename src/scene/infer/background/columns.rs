@@ -14,7 +14,7 @@ pub(super) struct ClassColumns {
 }
 
 impl ClassColumns {
-    pub fn of(class: Class, labels: &VoxelGrid, layout: &BevLayout) -> Self {
+    pub fn from_labels(class: Class, labels: &VoxelGrid, layout: &BevLayout) -> Self {
         let mut out = Self {
             top_m: vec![0.0; Window::COLUMNS],
             bins: vec![0; Window::COLUMNS],

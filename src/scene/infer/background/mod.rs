@@ -14,8 +14,8 @@ use crate::{Background, BevLayout, Class, Form, VoxelGrid, Window};
 /// Things of the labels, in the ego frame; ids count from 1, the largest kinds first. `layout` tells the height of the
 /// ground.
 pub fn background(labels: &VoxelGrid, layout: &BevLayout) -> Background {
-    let manmade = ClassColumns::of(Class::Manmade, labels, layout);
-    let vegetation = ClassColumns::of(Class::Vegetation, labels, layout);
+    let manmade = ClassColumns::from_labels(Class::Manmade, labels, layout);
+    let vegetation = ClassColumns::from_labels(Class::Vegetation, labels, layout);
     let mut forms = Vec::new();
 
     let mut taken = vec![false; Window::COLUMNS];

@@ -101,7 +101,7 @@ impl VoxelFigures {
     pub fn add(&mut self, world: &Scene, generated: &Scene) -> anyhow::Result<()> {
         let scenes = [(world, &mut self.worlds), (generated, &mut self.generated)];
         for (which, (scene, told)) in scenes.into_iter().enumerate() {
-            let heard = PerceptionInput::of(scene)?;
+            let heard = PerceptionInput::from_scene(scene)?;
             let learned = PerceptionInput::of_pictures(scene, &learned_pictures(scene)?)?;
             self.learned[which].add(&report_of(scene, &learned, Hears::Cameras)?);
             for (right, heard) in self.pixels_right.iter_mut().zip([&heard, &learned]) {

@@ -46,7 +46,7 @@ pub struct Brought {
 }
 
 impl Brought {
-    fn of(
+    fn from_trial(
         trial: &Trial,
         b: &SceneBox,
         layout: &BevLayout,
@@ -100,7 +100,10 @@ pub fn try_edit(
     };
     let networks = pipeline.clone().run(&job, &JobCtx::detached())?.occupancy;
     let frame = Arc::clone(job.scene.frame());
-    let (region, request) = (inpaint::region_of(&frame, &params), VoxelRequest::of(&frame));
+    let (region, request) = (
+        inpaint::region_of(&frame, &params),
+        VoxelRequest::from_frame(&frame),
+    );
     let mut kept = networks.clone();
     keep_objects(&frame, &region, false, &mut kept);
     keep_ground(&frame, &region, &mut kept);
@@ -115,6 +118,6 @@ pub fn try_edit(
         invented: [0, 1, 2].map(|i| Invented::of_request(&request, &frame, &states[i], &region)),
         brought: trial
             .filled()
-            .map(|b| Brought::of(trial, b, &frame.layout, source, &states)),
+            .map(|b| Brought::from_trial(trial, b, &frame.layout, source, &states)),
     })
 }

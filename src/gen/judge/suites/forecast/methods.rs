@@ -146,7 +146,7 @@ impl<'a> Drives<'a> {
             How::ConstantVelocity => told
                 .iter()
                 .enumerate()
-                .map(|(i, to)| moved_world(&[PosedVoxels::of(last)], last, to, i).0)
+                .map(|(i, to)| moved_world(&[PosedVoxels::from_frame(last)], last, to, i).0)
                 .collect(),
             How::Draft => told
                 .iter()
@@ -173,7 +173,7 @@ impl<'a> Drives<'a> {
         seed: u64,
     ) -> anyhow::Result<Vec<VoxelGrid>> {
         let last = &truth[KNOWN - 1];
-        let density = Density::of(&last.dense, last.layout.cells());
+        let density = Density::from_grid(&last.dense, last.layout.cells());
         let vae = &self.models.vae;
         let mut known: Vec<(DitCondition, [f64; 3])> = Vec::new();
         for frame in &truth[..KNOWN] {
@@ -232,9 +232,9 @@ impl<'a> Drives<'a> {
         told: &[ForecastCondition],
         seed: u64,
     ) -> anyhow::Result<Vec<VoxelGrid>> {
-        let density = Density::of(&last.dense, last.layout.cells());
+        let density = Density::from_grid(&last.dense, last.layout.cells());
         let vae = &self.models.vae;
-        let mut seen_from = vec![PosedVoxels::of(last)];
+        let mut seen_from = vec![PosedVoxels::from_frame(last)];
         let mut out = Vec::new();
         for (i, to) in told.iter().enumerate() {
             let (world, seen) = moved_world(&seen_from, last, to, i);
@@ -363,7 +363,7 @@ struct PosedVoxels {
 }
 
 impl PosedVoxels {
-    fn of(frame: &DriveFrame) -> Self {
+    fn from_frame(frame: &DriveFrame) -> Self {
         Self {
             grid: frame.dense.clone(),
             pose: pose(frame),

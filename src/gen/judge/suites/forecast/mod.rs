@@ -99,7 +99,7 @@ impl Options {
             let scene = drive_scene_of(TEST_SEED, i as u64, comparison.frames, |_| None);
             let truth = frames_of(&scene).0;
             let later: Vec<VoxelGrid> = truth[KNOWN..].iter().map(|f| f.dense.clone()).collect();
-            came.push(Stack::of(extractor, &later)?.places());
+            came.push(Stack::from_frames(extractor, &later)?.places());
             for method in METHODS {
                 let Some(found) = drives.forecast(method, &truth, comparison.wish, i as u64)? else {
                     continue;
@@ -113,7 +113,7 @@ impl Options {
                 }
                 rows.add("flicker", flicker(&truth[KNOWN..], &found));
                 rows.add("shape spread", shape_spread(&truth[KNOWN..], &found));
-                let stack = Stack::of(extractor, &found)?;
+                let stack = Stack::from_frames(extractor, &found)?;
                 rows.add("steadiness", Some(stack.steadiness()));
                 places.push(stack.places());
             }

@@ -19,7 +19,7 @@ pub struct Stack(Vec<Windows>);
 
 impl Stack {
     /// Features of frames. Errors if the extractor cannot compute.
-    pub fn of(extractor: &Extractor, frames: &[VoxelGrid]) -> anyhow::Result<Self> {
+    pub fn from_frames(extractor: &Extractor, frames: &[VoxelGrid]) -> anyhow::Result<Self> {
         let cells: Result<Vec<Windows>, _> = frames.iter().map(|grid| extractor.cells(grid)).collect();
         Ok(Self(cells?))
     }
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn stacks_that_flicker_are_farther_from_still_ones_than_still_ones() {
         let extractor = Extractor::bundled().expect("the shipped weights");
-        let stack = |shift: usize| Stack::of(&extractor, &frames(shift)).expect("features");
+        let stack = |shift: usize| Stack::from_frames(&extractor, &frames(shift)).expect("features");
         let (still, restless) = (stack(0), stack(1));
         assert!(still.steadiness() > 0.999 && restless.steadiness() < still.steadiness());
         let (a, b) = (vec![still.places(); 2], vec![restless.places(); 2]);

@@ -79,7 +79,7 @@ fn inpainted_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64;
     square
         .iter()
         .for_each(|[x, y]| columns[x * Window::NY + y] = true);
-    let density = Density::of(truth, frame.layout.cells());
+    let density = Density::from_grid(truth, frame.layout.cells());
     let mut job = Job {
         params: GenParams {
             strength: 1.0,

@@ -206,7 +206,7 @@ impl Options {
         ];
         let seen: Result<Vec<SceneFeatures>, _> = (0..ROWS.len())
             .into_par_iter()
-            .map(|r| SceneFeatures::of(of(r, &other, &job.scene), grids[r], i as u64, extractor))
+            .map(|r| SceneFeatures::from_scene(of(r, &other, &job.scene), grids[r], i as u64, extractor))
             .collect();
         for (r, seen) in seen?.into_iter().enumerate() {
             measured.rows[r].add(of(r, &other, &job.scene), grids[r], seen);

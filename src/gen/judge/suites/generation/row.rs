@@ -64,7 +64,12 @@ pub struct SceneFeatures {
 
 impl SceneFeatures {
     /// Takes features of occupancy made for the layout and boxes of a scene; `index` seeds the choice of windows.
-    pub fn of(scene: &Scene, grid: &VoxelGrid, index: u64, extractor: &Extractor) -> anyhow::Result<Self> {
+    pub fn from_scene(
+        scene: &Scene,
+        grid: &VoxelGrid,
+        index: u64,
+        extractor: &Extractor,
+    ) -> anyhow::Result<Self> {
         let cells = extractor.cells(grid)?;
         let windows = occupancy::windows(grid);
         let mut draw = Draw::new(index, "windows taken");

@@ -48,7 +48,7 @@ impl Likeness {
         let [pose, _] = poses(&frame, &mut Draw::new(seed, "learned pictures"));
         let rig = SensorRig::default().standing_at(&pose);
         let (time, weather) = light_of(light);
-        let rendered = RenderedRig::of(&PaintInput {
+        let rendered = RenderedRig::from_input(&PaintInput {
             frame: &frame,
             rig: &rig,
             background: &world.background,

@@ -82,7 +82,7 @@ struct RenderedRig {
 }
 
 impl RenderedRig {
-    fn of(input: &PaintInput<'_>) -> Self {
+    fn from_input(input: &PaintInput<'_>) -> Self {
         let appearance = Appearance::with_things(input.frame, input.background, input.rig, &input.conditions);
         let mut out = Self {
             cameras: Vec::new(),
@@ -239,7 +239,7 @@ impl PictureFigures {
         let start = Instant::now();
         let first = memory.paint(&input, go_on)?;
         self.first_s.push(start.elapsed().as_secs_f64());
-        let rendered = RenderedRig::of(&input);
+        let rendered = RenderedRig::from_input(&input);
         let renders = refs_of(&rendered.images);
         self.likeness.add(segmenter, &renders, &refs(&first))?;
         self.rendered.push(agreement(segmenter, &rendered, &renders)?);
@@ -251,7 +251,7 @@ impl PictureFigures {
             rig: &rig_ahead,
             ..input
         };
-        let now = RenderedRig::of(&ahead);
+        let now = RenderedRig::from_input(&ahead);
         let (next, alone) = (memory.paint(&ahead, go_on)?, painter().paint(&ahead, go_on)?);
         let since = |images: &[Arc<CameraImage>]| now.since(&rendered, [&refs(images), &refs(&first)]);
         let (after, without) = (since(&next), since(&alone));
@@ -293,7 +293,8 @@ impl PictureFigures {
         let start = Instant::now();
         let painted = memory.paint(&edited, go_on)?;
         self.edit_s.push(start.elapsed().as_secs_f64());
-        let [touched, elsewhere, all] = changes(&rendered, &RenderedRig::of(&edited), [&first, &painted]);
+        let [touched, elsewhere, all] =
+            changes(&rendered, &RenderedRig::from_input(&edited), [&first, &painted]);
         self.painted_share.push(touched as f64 / all.max(1) as f64);
         self.elsewhere_px += elsewhere;
         Ok(())
