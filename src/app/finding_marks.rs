@@ -8,7 +8,7 @@ use super::canvas::ScreenMap;
 use editor::apply_all;
 use editor::checks::Finding;
 use scene::{BoxId, Extent, Frame, Scene, SceneBox};
-use viewport::BrushCells;
+use viewport::MarkedVoxels;
 
 /// Colour of the marks in both views; no class and no layer has this colour.
 const COLOR: [u8; 3] = [255, 70, 255];
@@ -61,9 +61,9 @@ impl FindingMarks {
     }
 
     /// The marked voxels, for the 3D view.
-    pub(super) fn brush(&self) -> BrushCells<'_> {
-        BrushCells {
-            cells: &self.cells,
+    pub(super) fn brush(&self) -> MarkedVoxels<'_> {
+        MarkedVoxels {
+            voxels: &self.cells,
             color: COLOR,
         }
     }

@@ -11,7 +11,7 @@ use language::{t, tf};
 use scene::SceneBox;
 
 use super::camera_views::{CamerasShown, LidarShown};
-use super::panes::comparing::Comparing;
+use super::panes::comparing::CompareSettings;
 use super::panes::pointed::Pointed;
 use super::playback::Playback;
 use super::seed_wish::SeedWish;
@@ -41,7 +41,7 @@ pub struct UiState {
     /// Settings of the LiDAR sweep.
     pub lidar: LidarShown,
     /// How the present state is compared with another version.
-    pub compare: Comparing,
+    pub compare: CompareSettings,
     /// Settings and state of the playback.
     pub playback: Playback,
     /// The pane and the place under the pointer.

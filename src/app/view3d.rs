@@ -14,7 +14,7 @@ use language::{t, tf};
 use numeric::decimal::decimal;
 use scene::{BoxId, Class, Extent, LidarSweep, Scene, SceneBox};
 use viewport::{
-    BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
+    LidarColorMode, LidarView, MarkedVoxels, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     lidar_colors,
 };
 
@@ -77,7 +77,7 @@ pub struct View3dInput<'a> {
     /// True if the user drags anything, in any view.
     pub dragging: bool,
     /// Marked voxels, by colour.
-    pub marked: &'a [BrushCells<'a>],
+    pub marked: &'a [MarkedVoxels<'a>],
     /// Regions still to be generated, and true if a generation runs.
     pub unsettled: (&'a [Bounds], bool),
     /// True if the voxels are predicted by a network; brushes then have no effect on them.
@@ -388,18 +388,18 @@ impl View3d {
         let frame = input.scene.frame();
         self.refresh_colors(input.lidar, state.lidar.colors);
         let brushed = marks.iter().find_map(|mark| match mark {
-            ToolMark::Voxels(cells, color) => Some((&cells[..], *color)),
+            ToolMark::Voxels(voxels, color) => Some((&voxels[..], *color)),
             _ => None,
         });
-        let (cells, color) = brushed.unwrap_or((&[], [0; 3]));
+        let (voxels, color) = brushed.unwrap_or((&[], [0; 3]));
         let finding = state.shown.finding_marks.as_deref();
-        let mut brush = vec![BrushCells { cells, color }];
-        if cells.is_empty() {
+        let mut brush = vec![MarkedVoxels { voxels, color }];
+        if voxels.is_empty() {
             brush.extend_from_slice(input.marked);
         }
         brush.extend(finding.map(|m| m.brush()));
         for part in &mut brush {
-            part.cells = &part.cells[..part.cells.len().min(MARKED)];
+            part.voxels = &part.voxels[..part.voxels.len().min(MARKED)];
         }
         let ghost = marks.iter().find_map(|mark| match mark {
             ToolMark::Ghost(b) => Some(*b),

@@ -5,15 +5,15 @@ use std::collections::HashSet;
 
 use scene::Scene;
 
-use crate::checks::{meetings, overlaps};
+use crate::checks::{collisions, overlaps};
 
 /// All overlaps and collisions, as sentences of the checks. Neighbours that are equal are listed once.
 pub fn clashes(scene: &Scene) -> Vec<String> {
     let standing = overlaps(scene).into_iter().map(|f| f.text);
-    let meeting = meetings(scene).into_iter().map(|m| m.text);
+    let colliding = collisions(scene).into_iter().map(|c| c.text);
     let mut said = HashSet::new();
     standing
-        .chain(meeting)
+        .chain(colliding)
         .filter(|text| said.insert(text.clone()))
         .collect()
 }

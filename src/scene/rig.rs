@@ -295,7 +295,7 @@ fn is_full_turn(v: &f64) -> bool {
 pub struct SensorRig {
     /// Name of the rig.
     pub name: String,
-    /// Cameras in ring order, front left first.
+    /// Cameras, in any order; bundled rigs have them clockwise from above, beginning on the left.
     pub cameras: Vec<Camera>,
     /// LiDARs; the first one is the default.
     pub lidars: Vec<LidarPattern>,

@@ -37,7 +37,7 @@ pub use camera::{ViewCamera, ViewPreset};
 pub use device::headless_device;
 pub use error::ViewportError;
 pub use image::MAX_SUPERSAMPLE;
-pub use options::{Background, BrushCells, LayoutPlane, LidarView, ViewOptions, ViewScene};
+pub use options::{Background, LayoutPlane, LidarView, MarkedVoxels, ViewOptions, ViewScene};
 pub use points::{LidarColorMode, lidar_colors};
 pub use shared::{COLOR_FORMAT, FRAME_UNIFORM_BYTES, FrameUniforms};
 pub use splats::{SPLAT_UNIFORM_BYTES, SplatError, SplatRenderer};

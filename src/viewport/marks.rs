@@ -61,7 +61,7 @@ impl Marks {
             }
         }
         for brush in scene.brush {
-            marks.cells(extent, brush.cells, brush.color);
+            marks.cells(extent, brush.voxels, brush.color);
         }
         marks
     }

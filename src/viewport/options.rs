@@ -123,9 +123,9 @@ pub struct LidarView<'a> {
 
 /// Voxels under the brush or the pointer, or marked.
 #[derive(Clone, Copy, Debug)]
-pub struct BrushCells<'a> {
+pub struct MarkedVoxels<'a> {
     /// Voxel indices x, y, z; those outside of the grid are ignored.
-    pub cells: &'a [[usize; 3]],
+    pub voxels: &'a [[usize; 3]],
     /// sRGB.
     pub color: [u8; 3],
 }
@@ -144,7 +144,7 @@ pub struct ViewScene<'a> {
     /// Box under the pointer.
     pub hovered: Option<BoxId>,
     /// Voxels under the brush, or marked: one list for each colour.
-    pub brush: &'a [BrushCells<'a>],
+    pub brush: &'a [MarkedVoxels<'a>],
     /// LiDAR returns.
     pub lidar: Option<LidarView<'a>>,
     /// Sensors and ego vehicle.

@@ -131,7 +131,7 @@ fn vae() {
 fn refined() {
     let models = OccModels::bundled().expect("the shipped weights");
     let latent = models.vae.encode(&occupancy_frame(3, 0, |_| None).dense);
-    let (latent, all) = (latent.expect("labels"), Region::full().cells);
+    let (latent, all) = (latent.expect("labels"), Region::full().latent_cells);
     same_bits("refined", || {
         let grid = decode_refined(&models, &latent, &all, DecoderInput::default(), (2, 5));
         Hash::new().bytes(grid.expect("a finite latent").to_dense())

@@ -1,4 +1,4 @@
-//! The bird's-eye view, with the compared state on it or beside it.
+//! The bird's-eye view, with the reference state on it or beside it.
 
 use egui::{Rect, Ui};
 
@@ -63,11 +63,11 @@ impl Pane for Bev {
             unsettled: cx.unsettled.clone(),
             generating: cx.generating,
         };
-        if cx.compare.shows_before(&cx.state.compare, scene)
+        if cx.compare.shows_reference(&cx.state.compare, scene)
             && let Some(map) = cx.canvas.map
         {
             clipped(ui, area, |ui| {
-                cx.compare.canvas.still(ui, area, &map, scene, cx.state);
+                cx.compare.bev_view.still(ui, area, &map, scene, cx.state);
             });
             return;
         }
@@ -97,21 +97,21 @@ impl Pane for Bev {
             let entries = marks.map_legend(scene.rev);
             legend(ui, area.left_top() + egui::vec2(8.0, 8.0), &entries);
         }
-        let (Some(before), Some(map)) = (cx.compare.before.clone(), cx.canvas.map) else {
+        let (Some(reference), Some(map)) = (cx.compare.reference.clone(), cx.canvas.map) else {
             return;
         };
         match mode {
             CompareMode::Off => {}
             CompareMode::Side => {
                 clipped(ui, left, |ui| {
-                    cx.compare.canvas.still(ui, left, &map, &before, cx.state);
+                    cx.compare.bev_view.still(ui, left, &map, &reference, cx.state);
                 });
                 sides(ui, left, right, cx.state.compare.names());
             }
             CompareMode::Wipe => {
                 let part = left_part(area, cx.state.compare.wipe_at);
                 clipped(ui, part, |ui| {
-                    cx.compare.canvas.still(ui, area, &map, &before, cx.state);
+                    cx.compare.bev_view.still(ui, area, &map, &reference, cx.state);
                 });
                 wipe_line(ui, area, &mut cx.state.compare);
             }

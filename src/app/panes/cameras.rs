@@ -51,7 +51,7 @@ impl Pane for Cameras {
 pub(super) struct Strips<'a> {
     /// Strip of the present state.
     pub now: &'a mut CameraStrip,
-    /// Strip of the compared state.
+    /// Strip of the reference state.
     pub before: &'a mut CameraStrip,
     /// Index of the camera.
     pub camera: usize,
@@ -59,7 +59,7 @@ pub(super) struct Strips<'a> {
     pub view: ViewId,
 }
 
-/// Draws one camera or all of them: the present state, the compared one, both, or the differences.
+/// Draws one camera or all of them: the present state, the reference state, both, or the differences.
 pub(super) fn compared(
     ui: &mut Ui,
     cx: &mut PaneContext<'_>,
@@ -68,7 +68,7 @@ pub(super) fn compared(
 ) {
     let area = ui.available_rect_before_wrap().shrink2(egui::vec2(8.0, 2.0));
     let mode = cx.compare.mode(&cx.state.compare);
-    let shows_before = cx.compare.shows_before(&cx.state.compare, cx.scene);
+    let shows_reference = cx.compare.shows_reference(&cx.state.compare, cx.scene);
     let rev = cx.document.scene().rev;
     let cameras = cx.state.cameras.clone();
     let (view, camera) = one
@@ -78,9 +78,9 @@ pub(super) fn compared(
         CamerasInput::from_scene(scene, rev, sensing, &cameras).of_view(rev, sensing, &cameras, view)
     };
     let now = of(cx.scene, rev, cx.sensing);
-    let before = cx.compare.before.clone();
-    let other = match (&before, &cx.compare.sensing) {
-        (Some(before), Some(sensing)) => Some(of(before, before.rev, sensing)),
+    let reference = cx.compare.reference.clone();
+    let other = match (&reference, &cx.compare.sensing) {
+        (Some(reference), Some(sensing)) => Some(of(reference, reference.rev, sensing)),
         _ => None,
     };
     let (strip, earlier) = match one {
@@ -101,7 +101,7 @@ pub(super) fn compared(
         strip.wipe(None);
     }
     match (mode, other) {
-        (_, Some(other)) if shows_before => draw(ui, area, earlier, &other, cx.state),
+        (_, Some(other)) if shows_reference => draw(ui, area, earlier, &other, cx.state),
         (CompareMode::Side, Some(other)) => {
             let (first, second) = match camera {
                 Some(_) => halves(area),

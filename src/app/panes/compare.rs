@@ -8,7 +8,7 @@ use egui::{Color32, ColorImage, CursorIcon, Rect, Sense, Stroke, Ui, pos2, vec2}
 use scene::{Extent, Scene, SceneRev, VoxelGrid};
 
 use super::camera_strip::CameraStrip;
-pub use super::comparing::{CompareMode, Comparing};
+pub use super::comparing::{CompareMode, CompareSettings};
 use super::sweep_picture::SweepPicture;
 use crate::bev_image::from_above;
 use crate::camera_views::Wanted;
@@ -17,7 +17,7 @@ use crate::painting::PaintWish;
 use crate::sensing::Sensing;
 use crate::view3d::View3d;
 use language::{t, tf};
-use viewport::BrushCells;
+use viewport::MarkedVoxels;
 use widgets::theme;
 
 /// Voxels that differ between two grids.
@@ -72,16 +72,16 @@ impl VoxelDifference {
     }
 
     /// The differing voxels with their colours, for the 3D view.
-    pub(crate) fn marked(&self) -> [BrushCells<'_>; 3] {
+    pub(crate) fn marked(&self) -> [MarkedVoxels<'_>; 3] {
         let lists = [&self.added, &self.removed, &self.changed];
-        std::array::from_fn(|i| BrushCells {
-            cells: lists[i],
+        std::array::from_fn(|i| MarkedVoxels {
+            voxels: lists[i],
             color: DIFFERENCE_COLORS[i],
         })
     }
 
-    /// Difference from above: green for columns with added voxels, red for removed voxels, amber where only classes
-    /// changed.
+    /// Difference from above, a colour for each column: red where any voxel was removed, else green where any was
+    /// added, else amber where any is of another class.
     fn image(before: &VoxelGrid, after: &VoxelGrid) -> ColorImage {
         let (before, free) = (before.crop(after.extent()), scene::Class::FREE);
         from_above(after.extent(), |x, y| {
@@ -102,35 +102,36 @@ impl VoxelDifference {
     }
 }
 
-/// The compared state, with its own canvas, 3D view, camera strip and sensors.
+/// The reference state of a comparison, with its own bird's-eye view, 3D view, camera strip and sensors.
 #[derive(Default)]
 pub struct Compare {
     /// The version that the user chose to compare with; `None`: the one before the present version.
     pub chosen: Option<Arc<Scene>>,
-    /// The state compared with, while there is a comparison.
-    pub(crate) before: Option<Arc<Scene>>,
-    pub(crate) canvas: BevCanvas,
+    /// The reference state: what the present state is compared with, while there is a comparison.
+    pub(crate) reference: Option<Arc<Scene>>,
+    pub(crate) bev_view: BevCanvas,
     pub(crate) view3d: Option<View3d>,
     pub(crate) strip: CameraStrip,
     pub(crate) sweep: SweepPicture,
     pub(crate) sensing: Option<Sensing>,
     /// The state whose sensors were requested last.
-    sensed: Option<SceneRev>,
+    requested_rev: Option<SceneRev>,
     difference: Option<(SceneRev, SceneRev, VoxelDifference, egui::TextureHandle)>,
 }
 
 impl Compare {
-    /// Sets the compared state and requests its sensors; without one, stops them.
+    /// Sets the reference state and requests its pictures and sweep; without a state, or unless `senses`, stops
+    /// painting.
     pub(crate) fn prepare(
         &mut self,
-        before: Option<Arc<Scene>>,
+        reference: Option<Arc<Scene>>,
         wanted: Wanted,
         senses: bool,
         painting: &PaintWish,
         wake: impl Fn() + Send + Sync + 'static,
     ) {
-        self.before = before;
-        let scene = match &self.before {
+        self.reference = reference;
+        let scene = match &self.reference {
             Some(scene) if senses => scene,
             _ => {
                 if let Some(sensing) = &mut self.sensing {
@@ -141,12 +142,12 @@ impl Compare {
             }
         };
         if self.sensing.is_none() {
-            // Without a thread the cameras of the other state stay empty; the views do not need them.
+            // Without a thread the cameras of the reference state stay empty; the views do not need them.
             self.sensing = Sensing::spawn(std::time::Duration::ZERO, wake).ok();
         }
         if let Some(sensing) = &mut self.sensing {
             // Pictures of another version are dropped before new ones come.
-            if self.sensed.replace(scene.rev) != Some(scene.rev) {
+            if self.requested_rev.replace(scene.rev) != Some(scene.rev) {
                 sensing.forget();
             }
             sensing.paint_with(painting);
@@ -155,55 +156,55 @@ impl Compare {
         }
     }
 
-    /// Forgets the compared state and the results of its sensors, because another scene is opened.
+    /// Forgets the reference state and the results of its sensors, because another scene is opened.
     pub(crate) fn forget(&mut self) {
-        (self.chosen, self.before, self.sensed) = (None, None, None);
+        (self.chosen, self.reference, self.requested_rev) = (None, None, None);
         (self.strip, self.sweep, self.difference) = Default::default();
         if let Some(sensing) = &mut self.sensing {
             sensing.forget();
         }
     }
 
-    /// The voxels that differ between the compared state and `after`, with a picture of them; `None` without a
+    /// The voxels that differ between the reference state and `after`, with a picture of them; `None` without a
     /// comparison.
     pub(crate) fn difference(
         &mut self,
         ui: &Ui,
         after: &Scene,
     ) -> Option<(&VoxelDifference, egui::TextureId)> {
-        let before = self.before.as_ref()?;
-        let known = |(a, b, ..): &(SceneRev, SceneRev, _, _)| *a == before.rev && *b == after.rev;
-        if !self.difference.as_ref().is_some_and(known) {
-            let (a, b) = (&before.frame().occupancy, &after.frame().occupancy);
+        let reference = self.reference.as_ref()?;
+        let is_current = |(a, b, ..): &(SceneRev, SceneRev, _, _)| *a == reference.rev && *b == after.rev;
+        if !self.difference.as_ref().is_some_and(is_current) {
+            let (a, b) = (&reference.frame().occupancy, &after.frame().occupancy);
             let image = VoxelDifference::image(a, b);
             let texture = ui
                 .ctx()
                 .load_texture("difference", image, egui::TextureOptions::NEAREST);
             let found = VoxelDifference::between(a, b);
-            self.difference = Some((before.rev, after.rev, found, texture));
+            self.difference = Some((reference.rev, after.rev, found, texture));
         }
         self.difference
             .as_ref()
             .map(|(_, _, found, texture)| (found, texture.id()))
     }
 
-    /// The compare mode; off without a compared state, or while the key is held that shows that state alone.
-    pub(crate) fn mode(&self, how: &Comparing) -> CompareMode {
-        match &self.before {
-            Some(_) if !how.holding_before => how.mode,
+    /// The compare mode: off without a reference state, and while the key that shows it alone is held.
+    pub(crate) fn mode(&self, settings: &CompareSettings) -> CompareMode {
+        match &self.reference {
+            Some(_) if !settings.holding_reference => settings.mode,
             _ => CompareMode::Off,
         }
     }
 
-    /// True if the compared state is shown alone, because its key is held.
-    pub(crate) fn shows_before(&self, how: &Comparing, scene: &Arc<Scene>) -> bool {
-        how.holding_before && self.before.as_ref().is_some_and(|b| Arc::ptr_eq(b, scene))
+    /// True if the reference state is shown alone, because its key is held; `scene` is the scene this pane was given.
+    pub(crate) fn shows_reference(&self, settings: &CompareSettings, scene: &Arc<Scene>) -> bool {
+        settings.holding_reference && self.reference.as_ref().is_some_and(|r| Arc::ptr_eq(r, scene))
     }
 }
 
 /// The wipe line over a view; it can be dragged.
-pub(crate) fn wipe_line(ui: &Ui, rect: Rect, how: &mut Comparing) {
-    let at = &mut how.wipe_at;
+pub(crate) fn wipe_line(ui: &Ui, rect: Rect, settings: &mut CompareSettings) {
+    let at = &mut settings.wipe_at;
     let x = rect.left() + rect.width() * *at;
     let grip = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, rect.height()));
     let id = ui.scope_id().with("wipe");
@@ -227,8 +228,8 @@ pub(crate) fn wipe_line(ui: &Ui, rect: Rect, how: &mut Comparing) {
         theme::accent(),
         Stroke::new(1.5, Color32::WHITE),
     );
-    let [other, now] = how.names();
-    tag(ui, rect.left_top() + vec2(8.0, 8.0), other, false);
+    let [reference, now] = settings.names();
+    tag(ui, rect.left_top() + vec2(8.0, 8.0), reference, false);
     tag(ui, rect.right_top() + vec2(-8.0, 8.0), now, true);
 }
 
@@ -289,7 +290,8 @@ mod tests {
     use super::*;
     use scene::Class;
 
-    /// Pictures and sweep are never of another state than the compared one, even if theirs take long.
+    /// Pictures and sweep are never of another state than the reference state, even if the pictures of that state take
+    /// long.
     #[test]
     fn another_state_has_no_pictures_of_the_one_before() {
         use crate::open;
@@ -324,7 +326,7 @@ mod tests {
             std::thread::sleep(Duration::from_millis(2));
         }
         compare.forget();
-        assert!(compare.before.is_none() && compare.sensing.is_some_and(|s| s.cameras().is_none()));
+        assert!(compare.reference.is_none() && compare.sensing.is_some_and(|s| s.cameras().is_none()));
     }
 
     #[test]

@@ -8,9 +8,9 @@ pub enum CompareMode {
     /// Only the present state is shown.
     #[default]
     Off,
-    /// Before on the left of a line, after on its right.
+    /// The reference state on the left of a line, the present one on its right.
     Wipe,
-    /// Before beside after.
+    /// The reference state beside the present one.
     Side,
     /// Voxels that differ are marked.
     Difference,
@@ -34,19 +34,19 @@ impl CompareMode {
 
 /// The compare mode, and the state of its key and its wipe line.
 #[derive(Clone, Debug)]
-pub struct Comparing {
-    /// How the present state is compared with the version before.
+pub struct CompareSettings {
+    /// How the present state is compared with the reference state.
     pub mode: CompareMode,
-    /// True while the key that shows the version before is held.
-    pub holding_before: bool,
+    /// True while the key that shows the reference state is held.
+    pub holding_reference: bool,
     /// Place of the wipe line, 0 to 1.
     pub wipe_at: f32,
     /// Name of the version that the user chose to compare with; `None`: the one before.
     pub with: Option<String>,
 }
 
-impl Comparing {
-    /// Names of the two states, the compared one first.
+impl CompareSettings {
+    /// Names of the two states, the reference state first.
     pub fn names(&self) -> [&str; 2] {
         match &self.with {
             Some(name) => [name, t("now")],
@@ -55,11 +55,11 @@ impl Comparing {
     }
 }
 
-impl Default for Comparing {
+impl Default for CompareSettings {
     fn default() -> Self {
         Self {
             mode: CompareMode::Off,
-            holding_before: false,
+            holding_reference: false,
             wipe_at: 0.5,
             with: None,
         }

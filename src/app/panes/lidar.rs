@@ -58,7 +58,7 @@ impl Pane for Lidar {
             (LidarColorMode::Range, "Range"),
             (LidarColorMode::Class, "Class"),
             (LidarColorMode::Ring, "Ring"),
-            (LidarColorMode::Intensity, "Echo"),
+            (LidarColorMode::Intensity, "Intensity"),
             (LidarColorMode::Drop, "Loss"),
         ];
         let shown = colors.iter().find(|(mode, _)| *mode == cx.state.lidar.colors);
@@ -83,11 +83,11 @@ impl Pane for Lidar {
         let area = ui.available_rect_before_wrap();
         let scene = cx.scene;
         let mode = cx.compare.mode(&cx.state.compare);
-        let before = cx.compare.before.clone();
+        let reference = cx.compare.reference.clone();
         let other = cx.compare.sensing.as_ref().and_then(|s| s.lidar()).cloned();
-        if let (true, Some(before)) = (cx.state.compare.holding_before, &before) {
+        if let (true, Some(reference)) = (cx.state.compare.holding_reference, &reference) {
             let sweep = &mut cx.compare.sweep;
-            sweep.show(ui, before, other.as_ref(), cx.state, commands);
+            sweep.show(ui, reference, other.as_ref(), cx.state, commands);
             return;
         }
         let (top, bottom) = upper_and_lower(area);
@@ -95,12 +95,12 @@ impl Pane for Lidar {
         in_rect(ui, rect, |ui| {
             self.sweep.show(ui, scene, cx.sensing.lidar(), cx.state, commands);
         });
-        let Some(before) = before else { return };
+        let Some(reference) = reference else { return };
         match mode {
             CompareMode::Side => in_rect(ui, top, |ui| {
                 cx.compare
                     .sweep
-                    .show(ui, &before, other.as_ref(), cx.state, commands);
+                    .show(ui, &reference, other.as_ref(), cx.state, commands);
             }),
             CompareMode::Difference => {
                 if let (Some(now), Some(other)) = (cx.sensing.lidar(), &other) {
@@ -113,7 +113,7 @@ impl Pane for Lidar {
                     in_rect(ui, area, |ui| {
                         cx.compare
                             .sweep
-                            .show(ui, &before, other.as_ref(), cx.state, commands);
+                            .show(ui, &reference, other.as_ref(), cx.state, commands);
                     });
                 });
                 wipe_line(ui, area, &mut cx.state.compare);

@@ -77,7 +77,7 @@ impl Listing {
     }
 
     /// The listed boxes, in order; `ego_m` is the position of the ego vehicle, world frame, m.
-    pub(super) fn from_scene<'a>(
+    pub(super) fn listed<'a>(
         &self,
         boxes: impl Iterator<Item = &'a SceneBox>,
         ego_m: glam::DVec2,
@@ -142,7 +142,7 @@ mod tests {
                 words: words.into(),
             };
             listing
-                .from_scene(boxes.iter(), DVec2::ZERO)
+                .listed(boxes.iter(), DVec2::ZERO)
                 .iter()
                 .map(|b| b.id.0)
                 .collect()

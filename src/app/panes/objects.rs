@@ -108,7 +108,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     let listing = listing_ui(ui);
     let list_height = ui.available_height().max(80.0);
     let ego_m = frame.world_from_ego.translation_m.truncate();
-    let boxes = listing.from_scene(frame.boxes.values(), ego_m);
+    let boxes = listing.listed(frame.boxes.values(), ego_m);
     // Things beside the road are not searched, so a filtered list leaves them out.
     let rows = if listing.filters() { Vec::new() } else { rows };
     if boxes.is_empty() && listing.filters() {

@@ -62,7 +62,7 @@ pub struct PaneInfo {
 
 /// Context of every pane: the scene on screen, and the parts of the program that panes show or change.
 pub struct PaneContext<'a> {
-    /// The scene on screen: the document's, a preview of its generation, or the compared one.
+    /// The scene on screen: the document's, a preview of its generation, or the reference state.
     pub scene: &'a Arc<Scene>,
     /// The scene as the large views show it, without hidden objects.
     pub seen: SeenScene,
@@ -78,7 +78,7 @@ pub struct PaneContext<'a> {
     pub strip: &'a mut CameraStrip,
     /// The prompt field and the reading of its words.
     pub prompt: &'a mut PromptField,
-    /// The compared state.
+    /// The reference state.
     pub compare: &'a mut Compare,
     /// Versions generated so far.
     pub versions: &'a mut Versions,
@@ -125,7 +125,7 @@ pub trait Pane {
         0.0
     }
 
-    /// True if it shows the compared state while the key for that is held.
+    /// True if it shows the reference state while the key for that is held.
     fn shows_before(&self) -> bool {
         false
     }

@@ -325,7 +325,7 @@ fn things_row(ui: &mut Ui, tools: &ToolState, commands: &mut Vec<Command>) {
         if eye(ui, things.shown, t("Show background things")).clicked() {
             send(ThingCommand::ToggleShown);
         }
-        if lock(ui, things.locked, t("Lock background things")).clicked() {
+        if lock(ui, things.locked, t("Lock scenery")).clicked() {
             send(ThingCommand::ToggleLocked);
         }
         let color = match things.is_open() {

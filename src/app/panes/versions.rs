@@ -7,7 +7,7 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext, PanePlacement};
 use crate::bev_image;
 use crate::command::{Command, GenerationCommand, ViewCommand};
-use crate::panes::comparing::{CompareMode, Comparing};
+use crate::panes::comparing::{CompareMode, CompareSettings};
 use crate::shell::versions::{Version, Versions};
 use language::{t, tf};
 use scene::SceneRev;
@@ -52,20 +52,20 @@ impl Pane for VersionsPane {
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
         let shown = cx.document.settled_scene().content();
-        let before = cx.compare.before.as_ref().map(|s| s.content());
-        theme::panel_frame().show(ui, |ui| versions_ui(ui, cx.versions, shown, before, commands));
+        let reference = cx.compare.reference.as_ref().map(|s| s.content());
+        theme::panel_frame().show(ui, |ui| versions_ui(ui, cx.versions, shown, reference, commands));
     }
 }
 
 /// Height of an entry, points.
 const ENTRY: f32 = 52.0;
 
-/// Draws the list, the newest first. `shown` is the present state, `before` the compared one.
+/// Draws the list, the newest first. `shown` is the present state, `reference` the one that it is compared with.
 pub fn versions_ui(
     ui: &mut Ui,
     versions: &mut Versions,
     shown: SceneRev,
-    before: Option<SceneRev>,
+    reference: Option<SceneRev>,
     commands: &mut Vec<Command>,
 ) {
     if versions.list().len() < 2 {
@@ -84,7 +84,7 @@ pub fn versions_ui(
                 let entry = VersionEntry {
                     rev: versions.list()[i].scene.content(),
                     shown,
-                    before,
+                    reference,
                 };
                 entry.ui(ui, versions, i, commands);
             }
@@ -103,7 +103,7 @@ fn title(version: &Version) -> &str {
 struct VersionEntry {
     rev: SceneRev,
     shown: SceneRev,
-    before: Option<SceneRev>,
+    reference: Option<SceneRev>,
 }
 
 impl VersionEntry {
@@ -116,7 +116,7 @@ impl VersionEntry {
         let is_shown = self.rev == self.shown;
         let title = title(&versions.list()[i]).to_owned();
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_shown, &title));
-        let fill = match (is_shown, self.before == Some(self.rev), response.hovered()) {
+        let fill = match (is_shown, self.reference == Some(self.rev), response.hovered()) {
             (true, ..) => theme::accent_fill(),
             (_, true, _) => theme::field_active(),
             (_, _, true) => theme::field_hover(),
@@ -262,7 +262,7 @@ fn line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: egui::TextStyle, 
 }
 
 /// Draws the controls in the header of the list.
-pub fn versions_controls(ui: &mut Ui, how: &mut Comparing) {
+pub fn versions_controls(ui: &mut Ui, settings: &mut CompareSettings) {
     let choices = CompareMode::ALL.map(|(mode, name, hint)| (mode, t(name), t(hint)));
-    icons::choice(ui, &mut how.mode, &choices, t("Compare"));
+    icons::choice(ui, &mut settings.mode, &choices, t("Compare"));
 }

@@ -1,4 +1,4 @@
-//! The 3D view, with the compared state on it or beside it.
+//! The 3D view, with the reference state on it or beside it.
 
 use std::sync::Arc;
 
@@ -76,7 +76,7 @@ impl Pane for View3dPane {
         let mode = cx.compare.mode(&cx.state.compare);
         let (left, right) = halves(area);
         let rect = if mode == CompareMode::Side { right } else { area };
-        let shows_before = cx.compare.shows_before(&cx.state.compare, scene);
+        let shows_reference = cx.compare.shows_reference(&cx.state.compare, scene);
         let difference = match mode {
             CompareMode::Difference => cx.compare.difference(ui, scene).map(|(d, _)| d),
             _ => None,
@@ -96,7 +96,7 @@ impl Pane for View3dPane {
             is_told: told.is_some(),
         };
         let (view, state) = (&mut *cx.view3d, &mut *cx.state);
-        if shows_before {
+        if shows_reference {
             let (camera, options) = (view.camera, view.options.clone());
             clipped(ui, area, |ui| {
                 view.still(ui, area, (&camera, &options), &input, state)
@@ -118,7 +118,7 @@ impl Pane for View3dPane {
         if let Some(entries) = entries {
             legend(ui, rect.left_top() + egui::vec2(8.0, 8.0), &entries);
         }
-        let Some(before) = cx.compare.before.clone() else {
+        let Some(reference) = cx.compare.reference.clone() else {
             return;
         };
         if !matches!(mode, CompareMode::Side | CompareMode::Wipe) {
@@ -130,8 +130,8 @@ impl Pane for View3dPane {
             .get_or_insert_with(|| View3d::new(cx.render_state.cloned()));
         let lidar = cx.compare.sensing.as_ref().and_then(|s| s.lidar());
         let input = View3dInput {
-            scene: &before,
-            settled: &before,
+            scene: &reference,
+            settled: &reference,
             lidar,
             dragging: false,
             marked: &[],
@@ -229,7 +229,7 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, shown: &mut ViewsShown, swe
             (LidarColorMode::Ring, t("Ring"), t("beam")),
             (
                 LidarColorMode::Intensity,
-                t("Echo"),
+                t("Intensity"),
                 t("strength, from the learned LiDAR"),
             ),
             (

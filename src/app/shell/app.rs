@@ -272,8 +272,11 @@ impl SceneloomApp {
 
     /// The document's scene, or a preview of its generation.
     pub(crate) fn shown_scene(&self) -> Arc<Scene> {
-        if let (true, Some(before)) = (self.state.compare.holding_before, &self.views.compare.before) {
-            return before.clone();
+        if let (true, Some(reference)) = (
+            self.state.compare.holding_reference,
+            &self.views.compare.reference,
+        ) {
+            return reference.clone();
         }
         match &self.generation.preview {
             Some((content, scene)) if self.shows(*content, scene) => scene.clone(),

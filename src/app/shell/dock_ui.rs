@@ -201,7 +201,7 @@ impl DockPainter<'_> {
         } else {
             pane.ui(ui, &mut self.cx, self.commands);
         }
-        if self.cx.state.compare.holding_before && pane.shows_before() {
+        if self.cx.state.compare.holding_reference && pane.shows_before() {
             tag(
                 ui,
                 area.left_top() + vec2(8.0, 8.0),

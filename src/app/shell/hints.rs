@@ -8,7 +8,7 @@ use crate::state::UiState;
 
 /// The hint as one line: buttons and held keys for the view under the pointer.
 pub fn hint(state: &UiState) -> String {
-    if state.compare.holding_before {
+    if state.compare.holding_reference {
         return t("The state before; nothing can be changed while the key is held").into();
     }
     let told = state

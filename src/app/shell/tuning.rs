@@ -339,7 +339,7 @@ impl Tuning {
         let preset = preset.as_ref();
         let region = inpaint::region_of(edited.frame(), &params);
         let all = OccModels::TOKENS;
-        let local = tokens_of(&region.cells, params.halo_tokens as usize);
+        let local = tokens_of(&region.latent_cells, params.halo_tokens as usize);
         let local_tokens = local.len();
         let tokens = match report.tokens >= all {
             true => (0..all).collect(),

@@ -56,8 +56,8 @@ impl SceneloomApp {
         // Checked before drawing: the key that closes a dialog is no shortcut.
         let dialog = self.has_dialog();
         self.overlays(ui, &scene, &mut commands);
-        // While the compared state is shown, keys would change another state than the visible one.
-        if !dialog && !popup && !self.state.compare.holding_before {
+        // While the reference state is shown, keys would change another state than the visible one.
+        if !dialog && !popup && !self.state.compare.holding_reference {
             let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
             let hands = Hands {
                 flying: secondary && matches!(self.state.pointed.pane, Some(PaneId::VIEW3D | PaneId::SPLATS)),
@@ -201,27 +201,27 @@ impl SceneloomApp {
 
     /// Sets the state that the present one is compared with in this frame.
     pub(crate) fn prepare_compare(&mut self, ui: &Ui) {
-        // The key has no effect during a drag, because the pointer does not act while the compared state is shown.
+        // The key has no effect during a drag, because the pointer does not act while the reference state is shown.
         let held = !ui.ctx().text_edit_focused()
             && ui.input(|i| {
                 let down = i.modifiers.is_none() && i.key_down(egui::Key::Backslash);
-                down && (self.state.compare.holding_before || !i.pointer.any_down())
+                down && (self.state.compare.holding_reference || !i.pointer.any_down())
             });
-        self.state.compare.holding_before = held;
+        self.state.compare.holding_reference = held;
         let rev = self.document.settled_scene().content();
         let active = held || self.state.compare.mode != CompareMode::Off;
         let chosen = self.views.compare.chosen.as_ref().filter(|s| s.content() != rev);
         let versions = &self.generation.versions;
         let version = chosen.and_then(|s| versions.index_of(s.content()));
         self.state.compare.with = version.map(|i| versions.list()[i].title().to_owned());
-        let before = chosen
+        let reference = chosen
             .or_else(|| self.generation.versions.before(rev))
             .filter(|_| active)
             .cloned();
         let senses = active;
         let ctx = ui.ctx().clone();
         self.views.compare.prepare(
-            before,
+            reference,
             Wanted::from_settings(
                 &self.state.cameras,
                 &self.state.lidar,

@@ -334,12 +334,12 @@ fn lidar_fields(
     field(&spin, "Change spin", set(new.clone()), commands);
     for (text, hover, name) in [
         (
-            "Own vehicle",
+            "Ego vehicle",
             "The own roof is in the way of a sensor above it and sends pulses back, as in real sweeps",
             "Change own vehicle",
         ),
         (
-            "Beyond the grid",
+            "Beyond the map",
             "Pulses that leave the grid meet a continuation of the scene: roads, houses, trees",
             "Change beyond the grid",
         ),

@@ -10,7 +10,7 @@ use scene::clip::{Path, Speed};
 use scene::{BoxId, Class, Clip, Edit, Key, Motion, Moving, Scene};
 
 use super::apply_all;
-use crate::checks::meetings;
+use crate::checks::collisions;
 use crate::reaching::{reaching, sights_m};
 use crate::traffic::everybody::Everybody;
 use crate::traffic::follow::{Driver, VehicleBody, follow};
@@ -79,8 +79,8 @@ pub fn forecast(scene: &Scene, seconds: f64) -> Result<Forecast, String> {
         return Err("nothing moves at the end of the scene: let something move first".to_owned());
     }
     let (motions, later) = together(scene, &goers, &edits, (from_s, to_s))?;
-    let known: BTreeSet<String> = meetings(scene).into_iter().map(|m| m.text).collect();
-    let mut meets: Vec<String> = meetings(&later).into_iter().map(|m| m.text).collect();
+    let known: BTreeSet<String> = collisions(scene).into_iter().map(|c| c.text).collect();
+    let mut meets: Vec<String> = collisions(&later).into_iter().map(|c| c.text).collect();
     meets.retain(|text| !known.contains(text));
     edits.extend(motions);
     edits.extend(room_for_us(&later, from_s));

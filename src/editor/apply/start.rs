@@ -7,7 +7,7 @@ use scene::{BoxId, Clip, Edit, Scene};
 
 use super::forecast::{Goer, forecast, goers, together};
 use super::off_lane::off_lane;
-use crate::checks::{Collision, meetings};
+use crate::checks::{Collision, CollisionPartner, collisions};
 use language::tf;
 
 /// Length of a clip that traffic begins, s.
@@ -77,7 +77,7 @@ pub fn traffic_drives(scene: &Scene) -> Result<TrafficStart, String> {
             break;
         }
         let (motions, later) = together(scene, &waiting, &first, (0.0, length_s))?;
-        let met = meetings(&later);
+        let met = collisions(&later);
         let stays = who_stays(&waiting, &met, look >= PATIENCE);
         if stays.is_empty() {
             start.starts = waiting.len();
@@ -99,8 +99,10 @@ fn who_stays(waiting: &[Goer], met: &[Collision], both: bool) -> BTreeMap<BoxId,
     let mut pairs: Vec<(BoxId, BoxId, &str)> = Vec::new();
     for m in met {
         let one = m.id.filter(|id| goes.contains(id));
-        let other = m.other.as_ref().ok().copied().flatten();
-        let other = other.filter(|id| goes.contains(id));
+        let other = match m.other {
+            CollisionPartner::Box(id) => Some(id).filter(|id| goes.contains(id)),
+            CollisionPartner::Ego | CollisionPartner::Wall(_) => None,
+        };
         match (one, other) {
             (Some(a), Some(b)) => pairs.push((a, b, &m.text)),
             (Some(id), None) | (None, Some(id)) => {

@@ -87,7 +87,7 @@ fn what_would_come_into_something_stays_and_is_told() {
         body(6, Class::Car, [60.0, -3.0], 0.0, 5.0),
         body(7, Class::Car, [61.0, -3.4], 0.0, 0.0),
     ]);
-    let before = meetings(&scene).len();
+    let before = collisions(&scene).len();
     assert_eq!(before, 0, "nothing moves");
     let start = traffic_drives(&scene).expect("sound");
     let staying = stay(&start);
@@ -109,7 +109,7 @@ fn what_would_come_into_something_stays_and_is_told() {
     let mut after = scene.clone();
     apply_all(&start.edits, &mut after).expect("sound edits");
     assert_eq!(after.clip().tracks.len(), 2);
-    let met: Vec<String> = meetings(&after).into_iter().map(|m| m.text).collect();
+    let met: Vec<String> = collisions(&after).into_iter().map(|m| m.text).collect();
     assert!(met.is_empty(), "{met:?}");
     // The edit that commands and calls use does the same, and says the same.
     let edit = [Edit::LetTrafficDrive {}];
@@ -129,13 +129,16 @@ fn everybody_driving_off_would_meet() {
     let mut all = goers(&scene, 0.0);
     all.retain(|g| g.id.is_some());
     let (_, later) = together(&scene, &all, &[], (0.0, 8.0)).expect("sound");
-    let met = meetings(&later);
+    let met = collisions(&later);
     assert_eq!(met.len(), 2);
     assert!(
-        met.iter().any(|m| m.other == Ok(None)),
+        met.iter().any(|m| m.other == CollisionPartner::Ego),
         "the ego vehicle that stands is met"
     );
-    assert!(met.iter().any(|m| m.other == Err(Class::Manmade)));
+    assert!(
+        met.iter()
+            .any(|m| m.other == CollisionPartner::Wall(Class::Manmade))
+    );
 }
 
 #[test]

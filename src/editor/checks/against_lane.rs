@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::gets_on::{GetsOn, gets_on};
 use super::lanes::{gap_deg, near};
+use super::locomotion::{Locomotion, locomotion_of};
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
 use language::{filled, t};
@@ -46,7 +46,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             .unwrap_or(best);
         let angle = gap(best.heading_rad);
         let how = match (angle > AGAINST_DEG, b.velocity_mps != DVec2::ZERO) {
-            (true, true) if gets_on(b.class) != GetsOn::Drives => {
+            (true, true) if locomotion_of(b.class) != Locomotion::Drives => {
                 "{thing} moves against its lane, {angle} degrees from it"
             }
             (true, true) => "{thing} drives against its lane, {angle} degrees from it",

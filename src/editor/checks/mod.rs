@@ -6,8 +6,8 @@ mod box_without_occupancy;
 mod findings;
 mod floating_voxels;
 mod geometry;
-mod gets_on;
 mod lanes;
+mod locomotion;
 mod occupancy_without_box;
 mod off_road;
 mod on_the_road;
@@ -28,7 +28,7 @@ use findings::Findings;
 pub use findings::MOST;
 pub(crate) use findings::{FindingKind, FindingTally};
 use language::{t, tf};
-pub(crate) use over_time::{Collision, meetings};
+pub(crate) use over_time::{Collision, CollisionPartner, collisions};
 use scene::draft::{ground_bin, ground_class};
 use scene::{BoxId, Class, Extent, Frame, Scene, SceneBox, support};
 

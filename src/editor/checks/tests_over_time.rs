@@ -63,7 +63,7 @@ fn path(to: [f64; 2], speeds: &[(f64, f64)], rear_first: bool) -> Motion {
 /// A pedestrian drove through a wall.
 #[test]
 fn only_what_has_an_engine_drives() {
-    for (class, gets_on) in [
+    for (class, verb) in [
         (Class::Car, "drives"),
         (Class::Truck, "drives"),
         (Class::Pedestrian, "walks"),
@@ -77,10 +77,10 @@ fn only_what_has_an_engine_drives() {
         let texts = [fast, back, ahead].map(|motion| found_of(class, motion, false));
         let texts: Vec<String> = texts.into_iter().flatten().map(|(_, (text, _))| text).collect();
         let says = |part: &str| texts.iter().any(|text| text.contains(part));
-        assert!(says(&format!("{gets_on} through manmade")), "{texts:?}");
+        assert!(says(&format!("{verb} through manmade")), "{texts:?}");
         assert!(says("324 km/h"), "{texts:?}");
         let drives = texts.iter().any(|text| text.contains("drives"));
-        assert_eq!(drives, gets_on == "drives", "{texts:?}");
+        assert_eq!(drives, verb == "drives", "{texts:?}");
     }
 }
 

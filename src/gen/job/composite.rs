@@ -65,7 +65,7 @@ pub fn untouched_voxels_changed(
 /// differs from `source`; 0 without a border. It is high if the new content does not join the old.
 pub fn seam_change_share(source: &VoxelGrid, result: &VoxelGrid, region: &Region, width: usize) -> f64 {
     let (mut changed, mut all) = (0usize, 0usize);
-    for (i, _) in region.seam(width).iter().enumerate().filter(|(_, c)| **c) {
+    for (i, _) in region.inner_border(width).iter().enumerate().filter(|(_, c)| **c) {
         let (x, y) = (i / Window::NY, i % Window::NY);
         let pairs = source.column(x, y).iter().zip(result.column(x, y));
         changed += pairs.filter(|(a, b)| a != b).count();

@@ -18,9 +18,9 @@ const OVERHANG_M: f64 = Window::VOXEL_M;
 pub struct Region {
     /// `[x][y]`, 40,000: columns whose labels come from the generated grid.
     pub columns: Vec<bool>,
-    /// `[i][j]`, 2,500: latent cells that hold such a column. Their neighbours are left out: columns there keep their
-    /// labels, so new content must join kept content, not other new content that is discarded.
-    pub cells: Vec<bool>,
+    /// `[i][j]`, 2,500: latent cells that hold such a column. Neighbouring latent cells are not added: their columns
+    /// keep their old labels, so the new content must fit those.
+    pub latent_cells: Vec<bool>,
     /// Lowest and highest x and y of the columns, both included; `None` if there are none.
     pub bounds: Option<([usize; 2], [usize; 2])>,
 }
@@ -39,25 +39,26 @@ impl Region {
     /// Exactly these columns, `[x][y]`. Panics unless there are 40,000.
     pub fn of_columns(columns: Vec<bool>) -> Self {
         assert_eq!(columns.len(), Window::COLUMNS, "one flag per column");
-        let mut touched = vec![false; CELLS];
+        let mut latent_cells = vec![false; CELLS];
         let mut bounds: Option<([usize; 2], [usize; 2])> = None;
         for (i, _) in columns.iter().enumerate().filter(|(_, c)| **c) {
             let (x, y) = (i / Window::NY, i % Window::NY);
-            touched[x / COLUMNS_PER_CELL * CELLS_PER_SIDE + y / COLUMNS_PER_CELL] = true;
+            latent_cells[x / COLUMNS_PER_CELL * CELLS_PER_SIDE + y / COLUMNS_PER_CELL] = true;
             let (lo, hi) = bounds.get_or_insert(([x, y], [x, y]));
             *lo = [lo[0].min(x), lo[1].min(y)];
             *hi = [hi[0].max(x), hi[1].max(y)];
         }
         Self {
-            cells: touched,
+            latent_cells,
             columns,
             bounds,
         }
     }
 
-    /// The region of an edit: the differences between a frame and the source of its occupancy. It holds the columns
-    /// whose map layers changed, and the old and the new footprint of every box that was added, removed, moved, resized
-    /// or given another class; all grown by `halo_columns`. Painted voxels do not count: they are put over the result.
+    /// The region of an edit: the differences between a frame and the state in which its occupancy was last generated,
+    /// imported or accepted ([`scene::SourceFrame`]). It holds the columns whose layout channels changed, and the old
+    /// and the new footprint of every box that was added, removed, moved, resized or given another class; all grown by
+    /// `halo_columns`, which are inpainted too. Painted voxels do not count: they are put over the result.
     ///
     /// Columns of boxes that did not change are left out, so that no untouched object is cut.
     pub fn of_edit(frame: &Frame, halo_columns: usize) -> Self {
@@ -84,7 +85,7 @@ impl Region {
 
     /// Number of latent cells.
     pub fn cell_count(&self) -> usize {
-        self.cells.iter().filter(|c| **c).count()
+        self.latent_cells.iter().filter(|c| **c).count()
     }
 
     /// Extent along x and y, m; zero if empty.
@@ -95,7 +96,7 @@ impl Region {
     }
 
     /// Columns of the region within `width` columns of its border. The edge of the grid is no border.
-    pub fn seam(&self, width: usize) -> Vec<bool> {
+    pub fn inner_border(&self, width: usize) -> Vec<bool> {
         let outside: Vec<bool> = self.columns.iter().map(|c| !c).collect();
         let near_outside = dilate(&outside, Window::NY, width);
         let pairs = self.columns.iter().zip(near_outside);
@@ -103,8 +104,8 @@ impl Region {
     }
 }
 
-/// Columns that hold ground now but were unknown to the source: those of a map that was made larger.
-fn never_generated(frame: &Frame) -> Vec<[usize; 2]> {
+/// Columns with ground now that were all free in the source, as where a map was made larger.
+fn newly_ground(frame: &Frame) -> Vec<[usize; 2]> {
     let (now, source) = (&frame.occupancy, &frame.source.occupancy);
     let is_ground = |label: &u8| Class::from_id(*label).is_some_and(Class::is_ground);
     let mut out = Vec::new();
@@ -133,29 +134,30 @@ pub fn edited_columns(frame: &Frame, halo_columns: usize) -> Vec<bool> {
         .zip(source.layout.cells())
         .map(|(now, before)| now != before)
         .collect();
-    for [x, y] in never_generated(frame) {
+    for [x, y] in newly_ground(frame) {
         changed[extent.index(x, y)] = true;
     }
     let mut footprints = vec![false; extent.columns()]; // of changed boxes, without overhang
     let mut unchanged = Vec::new();
-    let mut mark = |b: &SceneBox| {
+    let mut add_box = |b: &SceneBox| {
         box_cells(extent, b, OVERHANG_M, |x, y| changed[extent.index(x, y)] = true);
         box_cells(extent, b, 0.0, |x, y| footprints[extent.index(x, y)] = true);
     };
     for (id, now) in &frame.boxes {
         match source.boxes.get(id) {
             Some(before) if same_solid(now, before) => unchanged.push(now),
-            _ => mark(now),
+            _ => add_box(now),
         }
     }
-    // Columns that hold voxels of a removed box. Boxes inferred from labels may overlap others, so they may also lie in
-    // the footprint of an unchanged box.
-    let mut left = vec![false; extent.columns()];
+    // Columns where the source has voxels of the class of a removed or changed box. Boxes inferred from labels may
+    // overlap others, so they may also lie in the footprint of an unchanged box.
+    let mut shown_before = vec![false; extent.columns()];
     for (id, before) in &source.boxes {
         if !frame.boxes.get(id).is_some_and(|now| same_solid(now, before)) {
-            mark(before);
+            add_box(before);
             box_cells(extent, before, 0.0, |x, y| {
-                left[extent.index(x, y)] |= source.occupancy.column(x, y).contains(&before.class.id());
+                shown_before[extent.index(x, y)] |=
+                    source.occupancy.column(x, y).contains(&before.class.id());
             });
         }
     }
@@ -164,10 +166,12 @@ pub fn edited_columns(frame: &Frame, halo_columns: usize) -> Vec<bool> {
     }
     let mut columns = dilate(&changed, extent.ny(), halo_columns);
     for b in unchanged {
+        // Under an unchanged box a column stays in the region only if a removed or changed box showed there and this
+        // box does not.
         box_cells(extent, b, 0.0, |x, y| {
             let i = extent.index(x, y);
             let own = || source.occupancy.column(x, y).contains(&b.class.id());
-            columns[i] &= left[i] && !own();
+            columns[i] &= shown_before[i] && !own();
         });
         // Overhanging voxels of its class belong to it as well, except under a changed box.
         box_cells(extent, b, OVERHANG_M, |x, y| {
@@ -185,8 +189,8 @@ fn same_solid(a: &SceneBox, b: &SceneBox) -> bool {
     a.class == b.class && a.center_m == b.center_m && a.size_m == b.size_m && a.yaw_rad == b.yaw_rad
 }
 
-/// Sets every flag within `reach` of a set one, diagonals included, in rows of `ny`; first
-/// along rows, then along columns.
+/// Sets every flag within `reach` of a set one, diagonals included; flags `[x][y]` with `ny` along y; first along y,
+/// then along x.
 pub(super) fn dilate(flags: &[bool], ny: usize, reach: usize) -> Vec<bool> {
     if reach == 0 {
         return flags.to_vec();
@@ -279,7 +283,7 @@ pub(super) mod tests {
         VoxelGrid::from_dense(&dense).expect("640,000")
     }
 
-    /// Ground, and each box filled with its class from bin 0 up, standing out by one voxel.
+    /// Ground, and each box filled with its class from the lowest voxel up, standing out by one voxel.
     pub fn frame_with(boxes: &[SceneBox]) -> Frame {
         let mut grid = VoxelGrid::new();
         let mut layout = BevLayout::default();
@@ -297,7 +301,7 @@ pub(super) mod tests {
         Frame::new(layout, boxes.iter().map(|b| (b.id, *b)).collect(), grid)
     }
 
-    pub fn cells_of(b: &SceneBox, margin_m: f64) -> Vec<usize> {
+    pub fn columns_of(b: &SceneBox, margin_m: f64) -> Vec<usize> {
         let mut out = Vec::new();
         box_cells(Extent::WINDOW, b, margin_m, |x, y| out.push(x * Window::NY + y));
         out
@@ -321,7 +325,7 @@ pub(super) mod tests {
             (full.share(), full.cell_count(), full.extent_m()),
             (1.0, CELLS, [80.0; 2])
         );
-        assert!(!full.seam(2).contains(&true));
+        assert!(!full.inner_border(2).contains(&true));
     }
 
     #[test]
@@ -329,12 +333,12 @@ pub(super) mod tests {
         let start = frame_with(&[car(1, 5.0, 2.0, 0.1)]);
         let covers = |frame: &Frame, b: &SceneBox| {
             let region = Region::of_edit(frame, 2);
-            let all = cells_of(b, OVERHANG_M).into_iter().all(|c| region.columns[c]);
-            let expected = region.columns.iter().enumerate().all(|(c, on)| {
+            let all = columns_of(b, OVERHANG_M).into_iter().all(|c| region.columns[c]);
+            let cells_match = region.columns.iter().enumerate().all(|(c, on)| {
                 let cell = c / Window::NY / 4 * CELLS_PER_SIDE + c % Window::NY / 4;
-                !on || region.cells[cell]
+                !on || region.latent_cells[cell]
             });
-            all && expected && region.share() < 0.02
+            all && cells_match && region.share() < 0.02
         };
         let old = car(1, 5.0, 2.0, 0.1);
         let mut removed = start.clone();
@@ -362,9 +366,9 @@ pub(super) mod tests {
             change(other.boxes.get_mut(&BoxId(1)).expect("there"));
             assert!(covers(&other, &old));
         }
-        let mut painted = start.clone();
-        painted.layout.set(BevLayer::StopLine, 0, 199, true);
-        let region = Region::of_edit(&painted, 2);
+        let mut with_stop_line = start.clone();
+        with_stop_line.layout.set(BevLayer::StopLine, 0, 199, true);
+        let region = Region::of_edit(&with_stop_line, 2);
         assert_eq!(region.bounds, Some(([0, 197], [2, 199])));
         assert_eq!(region.column_count(), 9);
         assert_eq!(region.cell_count(), 1);
@@ -383,7 +387,7 @@ pub(super) mod tests {
         let mut frame = Frame::new(frame.layout.clone(), boxes.into(), frame.occupancy.clone());
         frame.boxes.remove(&gone.id);
         let region = Region::of_edit(&frame, 2);
-        let outside: Vec<usize> = cells_of(&gone, 0.0)
+        let outside: Vec<usize> = columns_of(&gone, 0.0)
             .into_iter()
             .filter(|c| !region.columns[*c])
             .collect();
@@ -408,19 +412,19 @@ pub(super) mod tests {
         frame.boxes.remove(&BoxId(1));
         let region = Region::of_edit(&frame, 2);
         for kept in [&b, &c] {
-            assert!(cells_of(kept, 0.0).iter().all(|i| !region.columns[*i]));
+            assert!(columns_of(kept, 0.0).iter().all(|i| !region.columns[*i]));
         }
         // The removed car's own ground is inpainted down to the last column, and no voxel of the others changes.
-        assert!(cells_of(&a, 0.0).iter().all(|i| region.columns[*i]));
+        assert!(columns_of(&a, 0.0).iter().all(|i| region.columns[*i]));
         let bare = frame_with(&[]).occupancy;
         let result = composite(&frame.source.occupancy, &bare, &region, &frame.painted);
         for kept in [&b, &c] {
-            for i in cells_of(kept, 0.0) {
+            for i in columns_of(kept, 0.0) {
                 let (x, y) = (i / Window::NY, i % Window::NY);
                 assert_eq!(result.column(x, y), frame.source.occupancy.column(x, y));
             }
         }
-        for i in cells_of(&a, 0.0) {
+        for i in columns_of(&a, 0.0) {
             assert!(
                 !result
                     .column(i / Window::NY, i % Window::NY)

@@ -6,6 +6,7 @@ pub mod description;
 pub mod holds;
 pub mod lanes;
 pub mod off;
+mod placement;
 pub mod road;
 pub mod rules;
 mod spots;

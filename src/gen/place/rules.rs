@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 use super::cost::{moved_far, off_line, off_measure, off_near, off_thing, turned_where_it_is};
 use super::holds::{RelationReference, ego, holds, overlap_m};
 use super::lanes::{LaneMap, REACH_M};
+pub use super::placement::Placement;
 use super::spots::{Spot, is_beside, spots};
 use scene::graph::{
     GraphEdge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
@@ -24,24 +25,6 @@ const ALONG_M: f64 = 4.0;
 const ATTEMPTS: u64 = 5;
 /// Boxes beyond this many are not tried: the scene is full long before.
 const MOST_BOXES: usize = 300;
-
-/// A placement.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Placement {
-    /// Boxes; the id of each is that of its node.
-    pub boxes: Vec<SceneBox>,
-    /// Nodes that found no place, with the reason.
-    pub left_out: Vec<(u32, String)>,
-    /// Indices of statements that do not hold.
-    pub unmet: Vec<usize>,
-}
-
-impl Placement {
-    /// Deviation from all statements: an object left out counts as four statements that do not hold.
-    pub fn cost(&self) -> usize {
-        self.left_out.len() * 4 + self.unmet.len()
-    }
-}
 
 /// Boxes for the objects of a graph on a layout.
 pub fn place(graph: &SceneGraph, layout: &BevLayout, seed: u64) -> Vec<SceneBox> {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use scene::{BevLayer, Class, Extent, SensorRig, VoxelGrid};
 use viewport::meshing::{Solidity, Visible, mesh_bricks};
 use viewport::{
-    BrushCells, LayoutPlane, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport, headless_device,
+    LayoutPlane, MarkedVoxels, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport, headless_device,
 };
 
 use super::pixels::{hue_apart, scene_of};
@@ -108,8 +108,8 @@ fn the_layout_and_the_brush_reach_as_far_as_the_map() {
     let rig = SensorRig::default();
     let [x, y] = column(100.0, 62.0);
     let cells: Vec<[usize; 3]> = (0..49).map(|i| [x + i / 7, y + i % 7, 0]).collect();
-    let brush = [BrushCells {
-        cells: &cells,
+    let brush = [MarkedVoxels {
+        voxels: &cells,
         color: [255, 0, 0],
     }];
     let scene = ViewScene {

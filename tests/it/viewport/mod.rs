@@ -11,7 +11,7 @@ use std::time::Instant;
 use numeric::quantile::{median, quantile};
 use scene::SensorRig;
 use viewport::{
-    Background, BrushCells, LayoutPlane, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset,
+    Background, LayoutPlane, LidarColorMode, LidarView, MarkedVoxels, ViewCamera, ViewOptions, ViewPreset,
     ViewScene, Viewport, headless_device, lidar_colors,
 };
 
@@ -65,8 +65,8 @@ fn pictures_of_a_street() {
         selected: &[street.boxes[0].id],
         hovered: Some(street.boxes[8].id),
         lidar: Some(lidar),
-        brush: &[BrushCells {
-            cells: &cells,
+        brush: &[MarkedVoxels {
+            voxels: &cells,
             color: [120, 220, 255],
         }],
         ..base

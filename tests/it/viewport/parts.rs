@@ -2,7 +2,7 @@
 
 use scene::{BevLayer, Class, SceneBox, SensorRig, Window};
 use viewport::{
-    BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
+    LidarColorMode, LidarView, MarkedVoxels, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     headless_device, lidar_colors,
 };
 
@@ -58,8 +58,8 @@ fn a_part_drawn_again_gives_the_same_picture_as_all_of_it() {
             boxes: &refs,
             selected: &selected,
             hovered: None,
-            brush: &[BrushCells {
-                cells: &brush,
+            brush: &[MarkedVoxels {
+                voxels: &brush,
                 color: [120, 220, 255],
             }],
             lidar: Some(LidarView {

@@ -447,8 +447,8 @@ fn odd_input_is_refused_or_drawn_but_never_a_panic() {
         boxes: &[&b],
         bev: &[1, 2, 3],
         selected: &[BoxId(9)],
-        brush: &[viewport::BrushCells {
-            cells: &[[usize::MAX; 3], [0; 3]],
+        brush: &[viewport::MarkedVoxels {
+            voxels: &[[usize::MAX; 3], [0; 3]],
             color: [1; 3],
         }],
         lidar: Some(viewport::LidarView {

@@ -193,7 +193,7 @@ fn locked_and_hidden_things_stay_as_they_are() {
     let mut bench = Bench::new();
     bench.tree_row();
     bench.click("All trees");
-    bench.click("Lock background things");
+    bench.click("Lock scenery");
     assert!(bench.things_chosen().is_empty(), "what is locked is not chosen");
     let before = bench.background();
     bench.click_ground(-20.0, 22.0, Modifiers::NONE);
@@ -206,7 +206,7 @@ fn locked_and_hidden_things_stay_as_they_are() {
     };
     bench.app().execute(Command::Apply("Remove", vec![remove]), &ctx);
     assert_eq!(bench.background(), before);
-    bench.click("Lock background things");
+    bench.click("Lock scenery");
     bench.click_ground(10.0, 22.0, Modifiers::NONE);
     assert_eq!(bench.background().len(), 4, "open again");
     bench.key(Modifiers::NONE, Key::V);

@@ -179,7 +179,7 @@ fn while_the_state_before_is_shown_nothing_answers() {
     let steps = bench.history().len();
     bench.harness.key_down(Key::Backslash);
     bench.steps(3);
-    assert!(bench.app().state.compare.holding_before);
+    assert!(bench.app().state.compare.holding_reference);
     let at = bench.bev(14.0, 3.0);
     bench.drag(&[at, at + egui::vec2(60.0, 0.0)], Modifiers::NONE);
     bench.key(Modifiers::CTRL, Key::Z);

@@ -110,10 +110,10 @@ fn versions_are_compared_and_gone_back_to() {
     // Held, the key shows the version before; let go, the present one.
     bench.harness.key_down(Key::Backslash);
     bench.steps(3);
-    assert!(bench.app().state.compare.holding_before);
+    assert!(bench.app().state.compare.holding_reference);
     bench.harness.key_up(Key::Backslash);
     bench.steps(2);
-    assert!(!bench.app().state.compare.holding_before);
+    assert!(!bench.app().state.compare.holding_reference);
     for mode in [
         CompareMode::Wipe,
         CompareMode::Side,

@@ -1,10 +1,11 @@
 //! The height of the ground in a cloud, and how far the cloud must be lifted so that it lies on the map.
 //!
-//! - The **lowest return** of each cell of 1 m within 25 m is taken, if two others lie just above it: a single one below the road is
-//!   an echo by way of a mirror.
-//! - A **plane** is put through them: of planes through three of them (tilted by 12 degrees at most) the one that most lie on and
-//!   fewest lie below, then least squares through those that lie on it.
-//! - The plane is the ground if enough cells lie on it in enough directions, which a table or a ceiling does not have.
+//! - The **lowest return** of each square of 1 m within 25 m is taken, if two others lie just above it: a single one
+//!   below the road is an echo by way of a mirror. Squares of one or two returns are taken as they are.
+//! - A **plane** is fitted to them by RANSAC: the best of 400 planes through three of them (tilted by 12 degrees at
+//!   most) by the number of lowest returns on it minus the number below it, then least squares through those on it.
+//! - The plane is the ground if enough squares lie on it in enough directions, which a table or a ceiling does not
+//!   have.
 //!
 //! Equal points give an equal plane: random draws start from a fixed seed.
 
@@ -13,80 +14,86 @@ use numeric::linear::solve;
 use numeric::splitmix::SplitMix64;
 use scene::Extent;
 
-/// Ground is looked for within this distance of the origin along the ground, m, and beyond that: nearer is the vehicle.
+/// Farthest distance from the origin at which ground is looked for, along the ground, m.
 const REACH_M: f64 = 25.0;
+/// Nearest: closer returns are of the vehicle, m.
 const NEAREST_M: f64 = 1.0;
-/// Cells along one side of the square around the reach; each is 1 m wide.
+/// Squares along one side of the area around the reach; each is 1 m wide.
 const SIDE: usize = 2 * REACH_M as usize;
-/// A lowest return has two others above it within this height, m.
+/// Height within which a lowest return has two others above it, m; squares of one or two returns are taken as they are.
 const SUPPORT_M: f32 = 0.2;
-/// Planes that are tried.
+/// Planes that RANSAC tries.
 const TRIALS: usize = 400;
 /// Slope of the steepest plane: 12 degrees.
 const STEEPEST: f64 = 0.2126;
-/// Twice the area of the smallest triangle that tells a plane, m².
+/// Twice the area of the smallest triangle of a plane, from above, m². Smaller triangles do not determine a plane.
 const LEAST_SPREAD_M2: f64 = 8.0;
-/// A lowest return lies on a plane within this height, m, and below it from here on.
+/// Height above or below a plane within which a lowest return lies on it, m.
 const ON_M: f64 = 0.15;
+/// Depth below a plane from which a lowest return counts against it, m.
 const BELOW_M: f64 = 0.4;
-/// Ground has at least so many cells, this share of all, and lies in so many of the eight directions.
-const LEAST_CELLS: usize = 50;
+/// Fewest squares that lie on ground.
+const FEWEST_SQUARES: usize = 50;
+/// Smallest share of all squares that lie on ground.
 const LEAST_SHARE: f64 = 0.25;
+/// Parts of the horizon.
 const DIRECTIONS: usize = 8;
+/// Fewest directions in which ground lies.
 const LEAST_DIRECTIONS: u32 = 3;
-/// Heights at which the ground of a cloud in the ego frame lies: with labels it is at -0.8 m, and a hill may be as high as the map.
+/// Lowest height of ground in the ego frame, m: labelled clouds have the road at -0.8 m.
 const LOWEST_M: f64 = -0.9;
+/// Highest height of ground in the ego frame, m: the top of the map.
 const HIGHEST_M: f64 = Extent::TOP_M;
-/// No sensor of a vehicle is mounted higher, m.
+/// Greatest height at which a vehicle carries a sensor, m.
 const HIGHEST_MOUNT_M: f64 = 5.0;
-/// Tilt from here on is told, degrees: the ground is 0.7 m off at 20 m.
-const TOLD_TILT_DEG: f64 = 2.0;
+/// Smallest tilt that is reported, degrees: the ground is 0.7 m off at 20 m.
+const REPORTED_TILT_DEG: f64 = 2.0;
 
 /// The ground around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GroundPlane {
-    /// Its height at the origin, m.
+    /// Height at the origin, m.
     pub(super) height_m: f64,
     /// Slope along x and y.
     slope: DVec2,
-    /// Most of it lies where the ego frame has no ground.
-    is_beside: bool,
+    /// True if most of it lies below or above the heights that ground of the ego frame has.
+    is_off_heights: bool,
 }
 
 impl GroundPlane {
     /// The ground that these points lie on; `None` if they show no ground.
     pub(super) fn from_points(points: impl Iterator<Item = DVec3>) -> Option<Self> {
-        let lowest = lowest(points);
-        let plane = plane(&lowest)?;
+        let lowest = lowest_returns(points);
+        let plane = fit_plane(&lowest)?;
         let on: Vec<DVec3> = lowest
             .iter()
             .filter(|p| plane.above_m(**p).abs() < ON_M)
             .copied()
             .collect();
         let directions = on.iter().fold(0u8, |seen, p| seen | 1 << direction(p.truncate()));
-        let is_ground = on.len() >= LEAST_CELLS
+        let is_ground = on.len() >= FEWEST_SQUARES
             && on.len() as f64 >= LEAST_SHARE * lowest.len() as f64
             && directions.count_ones() >= LEAST_DIRECTIONS;
-        let beside = on
+        let off_heights = on
             .iter()
             .filter(|p| !(LOWEST_M..=HIGHEST_M).contains(&p.z))
             .count();
         is_ground.then_some(Self {
-            is_beside: 2 * beside > on.len(),
+            is_off_heights: 2 * off_heights > on.len(),
             ..plane
         })
     }
 
     /// How far a cloud with this ground must be lifted to lie on the map, m, to the centimetre; 0 where it does.
     pub(super) fn lift_m(self) -> f64 {
-        match self.is_beside && !(LOWEST_M..=HIGHEST_M).contains(&self.height_m) {
+        match self.is_off_heights && !(LOWEST_M..=HIGHEST_M).contains(&self.height_m) {
             true => -(self.height_m * 100.0).round() / 100.0,
             false => 0.0,
         }
     }
 
     /// Notes on what was done with a cloud, for a person.
-    pub(super) fn told(self) -> Vec<String> {
+    pub(super) fn notes(self) -> Vec<String> {
         let lift_m = self.lift_m();
         let mut out = match lift_m {
             0.0 => Vec::new(),
@@ -105,7 +112,7 @@ impl GroundPlane {
             )],
         };
         let tilt_deg = self.slope.length().atan().to_degrees();
-        if tilt_deg >= TOLD_TILT_DEG {
+        if tilt_deg >= REPORTED_TILT_DEG {
             out.push(format!("the ground is tilted by {tilt_deg:.1} degrees: left so"));
         }
         out
@@ -122,32 +129,33 @@ fn direction(at: DVec2) -> usize {
     ((turn * DIRECTIONS as f64) as usize).min(DIRECTIONS - 1)
 }
 
-/// The lowest return of each cell, where it is not alone.
-fn lowest(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
-    let mut cells: Vec<Vec<[f32; 3]>> = vec![Vec::new(); SIDE * SIDE];
+/// The lowest return of each square that has two others just above it; squares of one or two returns are taken as they
+/// are.
+fn lowest_returns(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
+    let mut squares: Vec<Vec<[f32; 3]>> = vec![Vec::new(); SIDE * SIDE];
     for p in points {
         let distance_m = p.truncate().length();
         if (NEAREST_M..REACH_M).contains(&distance_m) {
             let [x, y] = [p.x, p.y].map(|v| ((v + REACH_M) as usize).min(SIDE - 1));
-            cells[x * SIDE + y].push(p.as_vec3().to_array());
+            squares[x * SIDE + y].push(p.as_vec3().to_array());
         }
     }
-    let one = |cell: &mut Vec<[f32; 3]>| {
-        cell.sort_unstable_by(|a, b| a[2].total_cmp(&b[2]));
-        let found = match cell.len() {
-            0..=2 => cell.first(),
-            _ => cell
+    let lowest_supported = |square: &mut Vec<[f32; 3]>| {
+        square.sort_unstable_by(|a, b| a[2].total_cmp(&b[2]));
+        let found = match square.len() {
+            0..=2 => square.first(),
+            _ => square
                 .windows(3)
                 .find(|w| w[2][2] - w[0][2] < SUPPORT_M)
                 .map(|w| &w[0]),
         };
         found.map(|p| DVec3::from_array(p.map(f64::from)))
     };
-    cells.iter_mut().filter_map(one).collect()
+    squares.iter_mut().filter_map(lowest_supported).collect()
 }
 
 /// The plane that most of these points lie on and few lie below; `None` if no three of them give one.
-fn plane(points: &[DVec3]) -> Option<GroundPlane> {
+fn fit_plane(points: &[DVec3]) -> Option<GroundPlane> {
     let mut random = SplitMix64::new(0);
     let mut best: Option<(i64, GroundPlane)> = None;
     for _ in 0..TRIALS {
@@ -173,7 +181,7 @@ fn plane(points: &[DVec3]) -> Option<GroundPlane> {
     Some(plane)
 }
 
-/// The plane through three points, if they tell one that is not too steep.
+/// The plane through three points, if they determine one that is not too steep.
 fn through([a, b, c]: [DVec3; 3]) -> Option<GroundPlane> {
     let (ab, ac) = (b - a, c - a);
     let area = ab.truncate().perp_dot(ac.truncate());
@@ -181,12 +189,12 @@ fn through([a, b, c]: [DVec3; 3]) -> Option<GroundPlane> {
     (area.abs() >= LEAST_SPREAD_M2 && slope.length() <= STEEPEST).then(|| GroundPlane {
         height_m: a.z - slope.dot(a.truncate()),
         slope,
-        is_beside: false,
+        is_off_heights: false,
     })
 }
 
-/// The plane of least squares, if it is not too steep. A slope counts as an error of one metre's height a metre: so it is level across
-/// a strip that is too narrow to tell.
+/// The plane of least squares, if it is not too steep. Ridge term of weight 1 per point on the slope: keeps the plane
+/// level across a narrow strip.
 fn fitted<'a>(points: impl Iterator<Item = &'a DVec3>) -> Option<GroundPlane> {
     let mut rows = vec![vec![0.0; 4]; 3];
     for p in points {
@@ -204,7 +212,7 @@ fn fitted<'a>(points: impl Iterator<Item = &'a DVec3>) -> Option<GroundPlane> {
     (slope.length() <= STEEPEST).then_some(GroundPlane {
         height_m: found[2],
         slope,
-        is_beside: false,
+        is_off_heights: false,
     })
 }
 
@@ -212,7 +220,8 @@ fn fitted<'a>(points: impl Iterator<Item = &'a DVec3>) -> Option<GroundPlane> {
 mod tests {
     use super::*;
 
-    /// Returns of a plane with this height and slope, on a lattice of 0.5 m within 20 m, a wall along x at y = 8 m and a car.
+    /// Returns of a plane with this height and slope, on a lattice of 0.5 m within 20 m, a wall along x at y = 8 m and
+    /// a car.
     fn street(height_m: f64, slope: DVec2) -> Vec<DVec3> {
         let mut out = Vec::new();
         let mut random = SplitMix64::new(7);
@@ -245,7 +254,7 @@ mod tests {
         }
     }
 
-    /// Echoes by way of a mirror lie below the road, one in twenty of the cells has some.
+    /// Echoes by way of a mirror lie below the road, one in twenty of the squares has some.
     #[test]
     fn echoes_below_the_road_do_not_draw_it_down() {
         let mut points = street(-1.9, DVec2::ZERO);
@@ -290,24 +299,24 @@ mod tests {
         let ground = |height_m| GroundPlane {
             height_m,
             slope: DVec2::ZERO,
-            is_beside: true,
+            is_off_heights: true,
         };
         for height_m in [-0.83, -0.37, 0.0, 1.0] {
             assert_eq!(ground(height_m).lift_m(), 0.0, "{height_m}");
-            assert_eq!(ground(height_m).told(), Vec::<String>::new());
+            assert_eq!(ground(height_m).notes(), Vec::<String>::new());
         }
         assert_eq!(ground(-1.838).lift_m(), 1.84);
-        let told = |height_m| ground(height_m).told().concat();
+        let notes = |height_m| ground(height_m).notes().concat();
         assert_eq!(
-            told(-1.838),
+            notes(-1.838),
             "the sweep lies in its sensor's frame: lifted by 1.84 m"
         );
-        assert_eq!(told(35.2), "the ground lies at 35.20 m: lowered by 35.20 m");
-        assert_eq!(told(-35.2), "the ground lies at -35.20 m: lifted by 35.20 m");
+        assert_eq!(notes(35.2), "the ground lies at 35.20 m: lowered by 35.20 m");
+        assert_eq!(notes(-35.2), "the ground lies at -35.20 m: lifted by 35.20 m");
         let tilted = GroundPlane {
             slope: DVec2::new(0.1, 0.0),
             ..ground(0.0)
         };
-        assert_eq!(tilted.told(), ["the ground is tilted by 5.7 degrees: left so"]);
+        assert_eq!(tilted.notes(), ["the ground is tilted by 5.7 degrees: left so"]);
     }
 }

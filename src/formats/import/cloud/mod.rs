@@ -205,7 +205,7 @@ impl Cloud {
         let lift_m = ground.map_or(0.0, GroundPlane::lift_m);
         self.lift_m = Some(lift_m);
         self.notes = match ground {
-            Some(ground) => ground.told(),
+            Some(ground) => ground.notes(),
             None if is_labelled => Vec::new(),
             None => vec!["no ground found around the sensor: heights stay as they are in the file".into()],
         };

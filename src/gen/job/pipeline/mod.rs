@@ -143,7 +143,7 @@ impl OccPipeline {
                     last.column(x, y) != draft.column(x, y)
                 });
                 let changed = Region::of_columns(columns.collect());
-                let seen = dilate(&changed.cells, CELLS_PER_SIDE, vae.encoder_reach());
+                let seen = dilate(&changed.latent_cells, CELLS_PER_SIDE, vae.encoder_reach());
                 vae.encode_cells(draft, &seen, &mut latent).map(|()| latent)
             }
             None => vae.encode(draft),
@@ -276,7 +276,7 @@ impl OccPipeline {
             decode_refined(
                 &self.models,
                 &latent,
-                &region.cells,
+                &region.latent_cells,
                 condition.decoder_input(),
                 refine,
             )
@@ -321,7 +321,7 @@ impl OccPipeline {
     ) -> Result<(), GenError> {
         let latent: Vec<f32> = clean.iter().map(|v| *v as f32).collect();
         let vae = &self.models.vae;
-        let grid = vae.decode_with(&latent, &region.cells, condition.decoder_input());
+        let grid = vae.decode_with(&latent, &region.latent_cells, condition.decoder_input());
         let grid = grid.map_err(GenError::failed)?;
         let frame = job.scene.frame();
         ctx.preview(GenResult {
@@ -390,7 +390,7 @@ impl OccPipeline {
         let latent = source.trajectory.latent_f32();
         let drawn = match is_new {
             true => ground.drawn_with(&region),
-            false => region.cells.clone(),
+            false => region.latent_cells.clone(),
         };
         let mask: Vec<f32> = drawn.iter().map(|c| f32::from(u8::from(*c))).collect();
         let context = latent
@@ -443,7 +443,7 @@ impl OccPipeline {
                     observed: observed.as_deref(),
                     ..condition.decoder_input()
                 };
-                decode_refined(&self.models, latent, &region.cells, input, refine)
+                decode_refined(&self.models, latent, &region.latent_cells, input, refine)
             };
             let (generated, source) = rayon::join(
                 || decoded(&edited.latent, &condition),

@@ -68,7 +68,7 @@ impl<'a> NewGround<'a> {
         };
         let unknown = (0..side * side).map(cell);
         region
-            .cells
+            .latent_cells
             .iter()
             .zip(unknown)
             .map(|(held, u)| *held || u)

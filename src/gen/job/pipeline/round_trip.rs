@@ -29,7 +29,7 @@ impl OccPipeline {
         };
         let vae = &self.models.vae;
         vae.encode(&frame.occupancy)
-            .and_then(|latent| vae.decode_with(&latent, &Region::full().cells, input))
+            .and_then(|latent| vae.decode_with(&latent, &Region::full().latent_cells, input))
             .map_err(GenError::failed)
     }
 

@@ -195,7 +195,7 @@ impl Bench {
         let latent_error = latent.map_or(f64::NAN, |latent| {
             let (mut gap, mut size) = (0.0, 0.0);
             for (i, (a, b)) in latent.iter().zip(&reference.latent).enumerate() {
-                if region.cells[i * region.cells.len() / latent.len()] {
+                if region.latent_cells[i * region.latent_cells.len() / latent.len()] {
                     gap += f64::from(a - b).powi(2);
                     size += f64::from(*b).powi(2);
                 }

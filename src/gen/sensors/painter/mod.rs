@@ -210,10 +210,10 @@ impl Painter {
                 changed,
             }),
         };
-        let order = ring.order(&brush);
+        let touched_views = ring.touched_views(&brush);
         let condition = seen.condition(ring.size);
         begins(watch, self.options.steps)?;
-        let told = self.nets.dit.tell(&condition).map_err(network)?;
+        let told = self.nets.dit.tell(&condition).map_err(network_error)?;
         let earlier = match source {
             None => self.earlier(&seen, ring.size),
             Some(_) => None,
@@ -253,7 +253,7 @@ impl Painter {
                     .collect::<Vec<_>>()
             };
             // The last step is followed by the pictures themselves.
-            let preview = order.first().filter(|_| self.previews && step < steps);
+            let preview = touched_views.first().filter(|_| self.previews && step < steps);
             let image = preview.and_then(|first| brush.image(*first, &clean(), &seen).ok());
             watch(PaintProgress {
                 step,
@@ -270,10 +270,10 @@ impl Painter {
             }
             _ => self.nets.dit.sample(&noise, &sampling, on_step),
         };
-        let trajectory = trajectory.map_err(network)?;
+        let trajectory = trajectory.map_err(network_error)?;
         let latents = trajectory.latent_f32();
         let mut images: Vec<Option<Arc<CameraImage>>> = vec![None; ring.size.views()];
-        if let Some((first, rest)) = order.split_first() {
+        if let Some((first, rest)) = touched_views.split_first() {
             let image = brush.image(*first, &latents, &seen)?;
             let steps = self.options.steps;
             let _ = watch(PaintProgress {
@@ -319,7 +319,7 @@ fn before(
 ) -> Result<WarpedLatents, PaintError> {
     let depths = [&seen.depth_m()[..], &painted.seen.depth_m()];
     let before = picture::warp(size, &painted.trajectory.latent_f32(), depths, motions);
-    before.map_err(network)
+    before.map_err(network_error)
 }
 
 /// Turns latents into pictures.
@@ -352,7 +352,7 @@ impl Brush<'_> {
             .nets
             .vae
             .decode(latents, self.size.cells())
-            .map_err(network)?;
+            .map_err(network_error)?;
         let [height, width] = self.size.pixels();
         let byte = |v: f32| ((v + 1.0) * 127.5).round().clamp(0.0, 255.0) as u8;
         let mut image = CameraImage {
@@ -390,7 +390,7 @@ fn begins(
     }
 }
 
-fn network(error: ModelError) -> PaintError {
+fn network_error(error: ModelError) -> PaintError {
     match error {
         ModelError::Stopped { .. } => PaintError::Stopped,
         error => PaintError::Network(error.to_string()),

@@ -43,7 +43,7 @@ impl NoisePrior {
                 (cells, noise.to_vec(), of_frame(number))
             }
             (Self::Surfaces, None) => {
-                let cells = shared_cells(seen, &ring.places(), CELL);
+                let cells = shared_cells(seen, &ring.views(), CELL);
                 (cells, of_frame(0), of_frame(0))
             }
         };

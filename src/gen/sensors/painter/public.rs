@@ -302,7 +302,7 @@ impl PublicPainter {
                         let cells = cells_of(&onward.pixels, ring.size.pixels(), cell);
                         carried(&earlier.noise, &cells, &new, size)
                     }
-                    _ => carried(&new, &shared_cells(&seen, &ring.places(), cell), &new, size),
+                    _ => carried(&new, &shared_cells(&seen, &ring.views(), cell), &new, size),
                 };
                 noise.map_err(public)?
             }
@@ -324,7 +324,7 @@ impl PublicPainter {
             Some((_, shares)) => shares[*view].iter().any(|share| *share > 0.0),
             None => true,
         };
-        let views: Vec<usize> = ring.places().into_iter().filter(touched).collect();
+        let views: Vec<usize> = ring.views().into_iter().filter(touched).collect();
         let groups: Vec<Vec<usize>> = match together > 1 {
             true if views.is_empty() => Vec::new(),
             true => vec![(0..count).collect()],

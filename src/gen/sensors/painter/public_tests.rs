@@ -101,9 +101,9 @@ fn pictures_are_painted_and_after_an_edit_only_what_it_touches() {
         .expect("cameras");
     let seen = [&with, &without].map(|frame| RingFrame::from_input(&input(frame, &rig), &ring));
     let changed = mask::changed(&seen[0], &seen[1], ring.size);
-    for (place, changed) in changed.iter().enumerate() {
+    for (view, changed) in changed.iter().enumerate() {
         let shares = mask::shares(changed, old[0].width);
-        let camera = ring.camera(place);
+        let camera = ring.camera(view);
         let pairs = old[camera]
             .rgba
             .chunks_exact(4)
@@ -312,11 +312,11 @@ fn surfaces_are_found_again_in_the_frame_before_and_in_the_camera_beside() {
     assert!(a < b * 0.6, "{a} {b}");
 
     // Cameras overlap: their cells share noise, and within one view no noise comes twice.
-    let shared = shared_cells(&then, &ring.places(), 8);
+    let shared = shared_cells(&then, &ring.views(), 8);
     assert_eq!(shared.len(), 6 * 10 * 16);
     let found = shared.iter().flatten().count();
     assert!(found > 20, "{found}");
-    let first = ring.places()[0];
+    let first = ring.views()[0];
     assert!(shared[first * 160..][..160].iter().all(Option::is_none));
     for (to, from) in shared.iter().enumerate() {
         let other = from.map_or(usize::MAX, |from| from as usize / 160);
@@ -353,8 +353,8 @@ fn a_drive_goes_on_from_what_was_painted() {
     let ring = Ring::sized(&rig.cameras, size).expect("a ring").expect("cameras");
     let [then, now] = [&rig, &ahead].map(|rig| RingFrame::from_input(&input(&frame, rig), &ring));
     let rgb = |images: &[Arc<CameraImage>], i: usize| {
-        let (place, at) = (i / (height * width), i % (height * width));
-        let image = &images[ring.camera(place)].rgba;
+        let (view, at) = (i / (height * width), i % (height * width));
+        let image = &images[ring.camera(view)].rgba;
         [image[at * 4], image[at * 4 + 1], image[at * 4 + 2]]
     };
     let from = pixels_before(&now, &then, 6);

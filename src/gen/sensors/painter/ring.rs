@@ -4,30 +4,31 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Brush, PaintError, network};
+use super::{Brush, PaintError, network_error};
 use crate::appearance::CameraImage;
 use nets::picture::RingSize;
 use scene::Camera;
 
-/// Pixels of a picture that the networks learned, about.
-const PIXELS: f64 = 256.0 * 144.0;
+/// Approximate number of pixels of the training pictures.
+const TRAINING_PIXELS: f64 = 256.0 * 144.0;
 /// Sides are multiples of this, px.
 const UNIT_PX: usize = 16;
 /// Shortest and longest side, px.
 const SIDE_PX: [usize; 2] = [64, 512];
 
 /// A rig's cameras in the order in which they stand around the vehicle: clockwise from above, beginning with the front
-/// camera (the rig's first, if none is called so). A place does not depend on the vehicle's heading.
+/// camera (the one whose name ends in FRONT; else the rig's first). The order goes round a circle, so it does not
+/// change when the vehicle turns.
 pub(super) struct Ring {
     /// Number of cameras, and the size of their pictures.
     pub size: RingSize,
-    /// Index in the rig of the camera at each place of the ring.
-    cameras: Vec<usize>,
+    /// Index in the rig of each view of the ring.
+    rig_indices: Vec<usize>,
 }
 
 impl Ring {
-    /// The ring at the size that the picture networks learned. `None` without cameras. Errors if there are more than
-    /// 64.
+    /// The ring with every picture in the native size of the first camera ([`native_px`]). `None` without cameras.
+    /// Errors if there are more than 64.
     pub fn of(cameras: &[Camera]) -> Result<Option<Self>, PaintError> {
         match cameras.first() {
             Some(camera) => Self::sized(cameras, native_px(camera)),
@@ -35,18 +36,18 @@ impl Ring {
         }
     }
 
-    /// The ring at a size, height and width in px. `None` without cameras. Errors if there are more than 64, or if the
+    /// The ring with every picture in this size. `None` without cameras. Errors if there are more than 64, or if the
     /// networks do not take the size.
-    pub fn sized(cameras: &[Camera], size: [usize; 2]) -> Result<Option<Self>, PaintError> {
+    pub fn sized(cameras: &[Camera], height_width_px: [usize; 2]) -> Result<Option<Self>, PaintError> {
         if cameras.is_empty() {
             return Ok(None);
         }
         let mut order: Vec<usize> = (0..cameras.len()).collect();
-        let clockwise = |i: &usize| {
+        let clockwise_bearing_rad = |i: &usize| {
             let ahead = cameras[*i].ego_from_camera().rotation * DVec3::Z;
             -ahead.y.atan2(ahead.x)
         };
-        order.sort_by(|a, b| clockwise(a).total_cmp(&clockwise(b)));
+        order.sort_by(|a, b| clockwise_bearing_rad(a).total_cmp(&clockwise_bearing_rad(b)));
         let front = cameras
             .iter()
             .position(|c| c.name.ends_with("FRONT"))
@@ -54,38 +55,38 @@ impl Ring {
         let first = order.iter().position(|i| *i == front).unwrap_or(0);
         order.rotate_left(first);
         Ok(Some(Self {
-            size: RingSize::new(cameras.len(), size).map_err(network)?,
-            cameras: order,
+            size: RingSize::new(cameras.len(), height_width_px).map_err(network_error)?,
+            rig_indices: order,
         }))
     }
 
-    /// Index in the rig of the camera at a place.
-    pub fn camera(&self, place: usize) -> usize {
-        self.cameras[place]
+    /// Index in the rig of the camera of a view.
+    pub fn camera(&self, view: usize) -> usize {
+        self.rig_indices[view]
     }
 
-    /// All places, that of the front camera first.
-    pub fn places(&self) -> Vec<usize> {
+    /// All views: 0 up to the number of cameras; 0 is the front.
+    pub fn views(&self) -> Vec<usize> {
         (0..self.size.views()).collect()
     }
 
-    /// Places that a brush touches, that of the front camera first.
-    pub fn order(&self, brush: &Brush<'_>) -> Vec<usize> {
-        let mut places = self.places();
-        places.retain(|place| brush.touches(*place));
-        places
+    /// Views that a brush touches, in the ring's order.
+    pub fn touched_views(&self, brush: &Brush<'_>) -> Vec<usize> {
+        let mut views = self.views();
+        views.retain(|view| brush.touches(*view));
+        views
     }
 
     /// Sorts pictures in the ring's order into the order of the rig.
     pub fn in_rig_order(&self, images: &[Arc<CameraImage>]) -> Vec<Arc<CameraImage>> {
-        let mut sorted: Vec<_> = self.cameras.iter().zip(images).collect();
-        sorted.sort_by_key(|(camera, _)| **camera);
-        sorted.into_iter().map(|(_, image)| image.clone()).collect()
+        let mut by_rig: Vec<_> = self.rig_indices.iter().zip(images).collect();
+        by_rig.sort_by_key(|(rig_index, _)| **rig_index);
+        by_rig.into_iter().map(|(_, image)| image.clone()).collect()
     }
 
     /// The cameras in the ring's order.
-    pub fn sorted<'a>(&self, cameras: &'a [Camera]) -> Vec<&'a Camera> {
-        self.cameras.iter().map(|i| &cameras[*i]).collect()
+    pub fn in_ring_order<'a>(&self, cameras: &'a [Camera]) -> Vec<&'a Camera> {
+        self.rig_indices.iter().map(|i| &cameras[*i]).collect()
     }
 }
 
@@ -97,5 +98,8 @@ pub fn native_px(camera: &Camera) -> [usize; 2] {
         let units = (px / UNIT_PX as f64).round() as usize;
         (units * UNIT_PX).clamp(SIDE_PX[0], SIDE_PX[1])
     };
-    [side((PIXELS / aspect).sqrt()), side((PIXELS * aspect).sqrt())]
+    [
+        side((TRAINING_PIXELS / aspect).sqrt()),
+        side((TRAINING_PIXELS * aspect).sqrt()),
+    ]
 }

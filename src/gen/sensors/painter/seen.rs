@@ -35,7 +35,7 @@ impl RingFrame {
     /// Looks at a scene.
     pub fn from_input(input: &PaintInput<'_>, ring: &Ring) -> Self {
         let [height, width] = ring.size.pixels().map(|n| n as u32);
-        let cameras = ring.sorted(&input.rig.cameras);
+        let cameras = ring.in_ring_order(&input.rig.cameras);
         let (teller, appearance) = rayon::join(
             || HintedFrame::new(input.frame),
             || Appearance::with_things(input.frame, input.background, input.rig, &input.conditions),
@@ -60,14 +60,14 @@ impl RingFrame {
         self.conditions.seed
     }
 
-    /// Name of the camera at a place of the ring.
-    pub fn camera_name(&self, place: usize) -> &str {
-        &self.cameras[place].name
+    /// Name of the camera of a view.
+    pub fn camera_name(&self, view: usize) -> &str {
+        &self.cameras[view].name
     }
 
-    /// The camera at a place of the ring, at the size of its picture.
-    pub fn camera(&self, place: usize) -> &Camera {
-        &self.cameras[place]
+    /// The camera of a view, at the size of its picture.
+    pub fn camera(&self, view: usize) -> &Camera {
+        &self.cameras[view]
     }
 
     /// True if the same cameras look from the same places in the same light.
@@ -76,8 +76,8 @@ impl RingFrame {
     }
 
     /// Hints and rendered colours of each pixel of a view.
-    pub fn pixels(&self, place: usize) -> (&PictureHints, &[[u8; 3]]) {
-        let view = &self.views[place];
+    pub fn pixels(&self, view: usize) -> (&PictureHints, &[[u8; 3]]) {
+        let view = &self.views[view];
         (&view.hints, &view.plain)
     }
 

@@ -74,8 +74,8 @@ fn an_edit_changes_what_it_touches_and_nothing_else() {
     let changed = mask::changed(&then, &now, ring.size);
     let [_, width] = ring.size.pixels();
     let (mut painted, mut touched_views) = (0, 0);
-    for (place, changed) in changed.iter().enumerate() {
-        let camera = ring.camera(place);
+    for (view, changed) in changed.iter().enumerate() {
+        let camera = ring.camera(view);
         let (old, new) = (&old[camera], &new[camera]);
         assert_eq!(old.camera, rig.cameras[camera].name);
         let touched = changed.contains(&true);
@@ -162,7 +162,7 @@ fn a_drive_goes_on_from_the_frame_before() {
     let ahead = input(&frame, &rig_ahead);
     let motions = seen(&ahead).motion_since(&then, ring.size).expect("near");
     // What is 10 m before the front camera now was 11 m before it then.
-    let front = (0..6).find(|place| rig.cameras[ring.camera(*place)].name == "CAM_FRONT");
+    let front = (0..6).find(|view| rig.cameras[ring.camera(*view)].name == "CAM_FRONT");
     let [_, _, z] = motions[front.expect("a front camera")].then_from_now;
     assert!((z[2] * 10.0 + z[3] - 11.0).abs() < 0.01, "{z:?}");
     let night = PaintInput {
@@ -216,15 +216,15 @@ fn odd_rigs_are_painted_or_refused() {
 
 #[test]
 fn the_ring_runs_clockwise_and_begins_in_front() {
-    // Wherever the vehicle heads: a camera keeps its place while it turns.
+    // Wherever the vehicle heads: a camera keeps its view of the ring while it turns.
     for yaw_rad in [0.0, 0.003, 1.5, 3.0, -3.0, -0.003] {
         let rig = SensorRig::default().standing_at(&Pose::planar(20.0, -5.0, yaw_rad));
         let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
         assert_eq!(ring.size.pixels(), [144, 256]);
         let names = ring
-            .places()
+            .views()
             .into_iter()
-            .map(|p| &rig.cameras[ring.camera(p)].name[4..]);
+            .map(|view| &rig.cameras[ring.camera(view)].name[4..]);
         assert_eq!(
             names.collect::<Vec<_>>(),
             [

@@ -131,7 +131,7 @@ impl Options {
             };
             let (one_region, other_region) = (region(&scene, one, &params)?, region(&scene, other, &params)?);
             let tokens =
-                [&one_region, &other_region].map(|r| tokens_of(&r.cells, params.halo_tokens as usize));
+                [&one_region, &other_region].map(|r| tokens_of(&r.latent_cells, params.halo_tokens as usize));
             if tokens[0].iter().any(|t| tokens[1].contains(t)) {
                 continue;
             }

@@ -4,7 +4,7 @@ use scene::Class;
 
 /// Way of moving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GetsOn {
+pub enum Locomotion {
     /// On its own wheels, with an engine.
     Drives,
     /// On foot.
@@ -14,10 +14,10 @@ pub enum GetsOn {
 }
 
 /// The way things of a class move.
-pub fn gets_on(class: Class) -> GetsOn {
+pub fn locomotion_of(class: Class) -> Locomotion {
     match class {
-        Class::Pedestrian => GetsOn::Walks,
-        class if class.is_vehicle() => GetsOn::Drives,
-        _ => GetsOn::Moves,
+        Class::Pedestrian => Locomotion::Walks,
+        class if class.is_vehicle() => Locomotion::Drives,
+        _ => Locomotion::Moves,
     }
 }
