@@ -12,7 +12,8 @@ import os
 import struct
 import sys
 import zipfile
-from typing import Any, TypeAlias
+import zlib
+from typing import Any, Sequence, TypeAlias
 
 Array: TypeAlias = Any  # numpy.ndarray or memoryview
 
@@ -75,3 +76,59 @@ def ply(path: str | os.PathLike[str]) -> dict[str, Array]:
     body = content[end + len(b"end_header\n") :][: count * row.size]
     columns = list(zip(*row.iter_unpack(body))) or [()] * len(names)
     return {n: _made(array.array(letter, of).tobytes(), letter, (count,)) for n, letter, of in zip(names, letters, columns)}
+
+
+def stacked(rows: Sequence[Sequence[float]], width: int | None = None) -> Array:
+    """Rows of `width` numbers as one array f64 [rows, width]; without a width rows of one number as f64 [rows]."""
+    shape = (len(rows),) if width is None else (len(rows), width)
+    return _made(array.array("d", (value for row in rows for value in row)).tobytes(), "d", shape)
+
+
+def png(content: bytes) -> Array:
+    """The pixels of a PNG file of 8 bits a channel, u8 [height, width, channels], without transparency. Errors (ValueError) if it is another kind."""
+    if content[:8] != b"\x89PNG\r\n\x1a\n":
+        raise ValueError("no PNG file")
+    at, packed, head = 8, [], b""
+    while at + 8 <= len(content):
+        length, kind = struct.unpack(">I4s", content[at : at + 8])
+        head = content[at + 8 : at + 8 + length] if kind == b"IHDR" else head
+        if kind == b"IDAT":
+            packed.append(content[at + 8 : at + 8 + length])
+        at += length + 12
+    width, height, depth, color, _, _, interlaced = struct.unpack(">IIBBBBB", head)
+    channels = {0: 1, 2: 3, 4: 2, 6: 4}.get(color)
+    if depth != 8 or channels is None or interlaced:
+        raise ValueError(f"a PNG file of {depth} bits, type {color}, expected 8 bits of grey or colour, not interlaced")
+    row, rows = width * channels, zlib.decompress(b"".join(packed))
+    if len(rows) != (row + 1) * height:
+        raise ValueError(f"a PNG file with {len(rows)} bytes of pixels, expected {(row + 1) * height}")
+    out, before = bytearray(), bytes(row)
+    for y in range(height):
+        start = y * (row + 1)
+        before = _unfiltered(rows[start], bytearray(rows[start + 1 : start + 1 + row]), before, channels)
+        out += before
+    if channels in (2, 4):
+        del out[channels - 1 :: channels]
+    return _made(out, "B", (height, width, channels - (channels in (2, 4))))
+
+
+def _unfiltered(kind: int, row: bytearray, up: bytes | bytearray, step: int) -> bytearray:
+    """A row of a PNG file without its filter (PNG specification, 9.2), given the row above."""
+    if kind == 1:
+        for i in range(step, len(row)):
+            row[i] = (row[i] + row[i - step]) & 255
+    elif kind == 2:
+        for i, above in enumerate(up):
+            row[i] = (row[i] + above) & 255
+    elif kind == 3:
+        for i, above in enumerate(up):
+            row[i] = (row[i] + ((above + (row[i - step] if i >= step else 0)) >> 1)) & 255
+    elif kind == 4:
+        for i, b in enumerate(up):
+            a, c = (row[i - step], up[i - step]) if i >= step else (0, 0)
+            from_a, from_b, from_c = abs(b - c), abs(a - c), abs(a + b - c - c)
+            best = a if from_a <= from_b and from_a <= from_c else b if from_b <= from_c else c
+            row[i] = (row[i] + best) & 255
+    elif kind:
+        raise ValueError(f"a PNG file with filter {kind}, expected 0 to 4")
+    return row

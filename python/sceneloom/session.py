@@ -9,11 +9,12 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sysconfig
 import tempfile
 import threading
-from typing import Any, Iterator, Sequence
+from typing import Any, Iterator, Literal, Sequence
 
-from .arrays import Array, npz, ply
+from .arrays import Array, npz, ply, png, stacked
 from .calls import Calls
 
 
@@ -25,12 +26,19 @@ class SessionEnded(Exception):
     """The program has ended, or was not found."""
 
 
+def _of_wheel() -> str | None:
+    """The program that came with this package, if it came as a wheel: it lies among the scripts of this Python."""
+    schemes = ("", sysconfig.get_preferred_scheme("user"))
+    places = [sysconfig.get_path("scripts", scheme) if scheme else sysconfig.get_path("scripts") for scheme in schemes]
+    return next((found for place in places if (found := shutil.which("sceneloom", path=place))), None)
+
+
 class Session(Calls):
     """One scene with its undo history. Calls are answered one by one, also if several threads make them.
 
     scene: file to begin with; the scene that ships with the program if left out.
     folder: the one folder whose files calls may read and write; it is made if it is missing.
-    program: path of `sceneloom`; else that of the environment variable SCENELOOM, else the one on the PATH.
+    program: path of `sceneloom`; else that of the environment variable SCENELOOM, else the one of the wheel, else the one on the PATH.
     weights: folder of weights instead of the bundled ones.
     """
 
@@ -41,7 +49,7 @@ class Session(Calls):
         program: str | os.PathLike[str] | None = None,
         weights: str | os.PathLike[str] | None = None,
     ) -> None:
-        found = program or os.environ.get("SCENELOOM") or shutil.which("sceneloom")
+        found = program or os.environ.get("SCENELOOM") or _of_wheel() or shutil.which("sceneloom")
         if not found:
             raise SessionEnded("sceneloom was not found: name it by program= or SCENELOOM, or put it on the PATH")
         self.folder = pathlib.Path(folder).absolute()
@@ -113,8 +121,33 @@ class Session(Calls):
             self.export(format="occ3d", name=f"{name}/voxels.npz", replace=True)
             return npz(path / "voxels.npz")["semantics"]
 
+    def boxes(self) -> dict[str, Array]:
+        """All boxes at the moment that is shown, the nearest first, at most 1000: `id` and `class` as lists; `center_m` and `size_m`
+        (f64 [boxes, 3]), `velocity_mps` (f64 [boxes, 2]) and `yaw_deg` (f64 [boxes]) in the world frame."""
+        found = self.state(most_boxes=1000, roads=False)["boxes"]
+        return {
+            "id": [box["id"] for box in found],
+            "class": [box["class"] for box in found],
+            "center_m": stacked([box["center_m"] for box in found], 3),
+            "size_m": stacked([box["size_m"] for box in found], 3),
+            "velocity_mps": stacked([box["velocity_mps"] for box in found], 2),
+            "yaw_deg": stacked([[box["yaw_deg"]] for box in found]),
+        }
+
+    def picture(self, camera: str, size: Sequence[int] = (480, 270), what: Literal["appearance", "learned"] = "appearance") -> Array:
+        """What a camera sees as a photograph, u8 [height, width, 3]. `size`: width, height."""
+        with self._written() as (name, path):
+            self.render(what=[what], cameras=[camera], size=size, folder=name, replace=True)
+            return png((path / f"{camera}_{what}.png").read_bytes())
+
+    def truth(self, camera: str, size: Sequence[int] = (480, 270)) -> dict[str, Array]:
+        """The picture of a camera as `picture`, and what is so at each of its pixels: class, instance, depth, normal and others, [height, width, …]."""
+        with self._written() as (name, path):
+            self.render(what=["truth"], cameras=[camera], size=size, folder=name, replace=True)
+            return {"picture": png((path / f"{camera}.png").read_bytes()), **npz(path / f"{camera}_truth.npz")}
+
     def maps(self, camera: str, size: Sequence[int] = (480, 270)) -> dict[str, Array]:
-        """What each pixel of a camera sees, [height, width]: `semantic` (class, u8), `depth_m` and others (f32). `size`: width, height."""
+        """Class and depth of the voxels at each pixel of a camera, [height, width]: `semantic` (u8), `depth_m` and others (f32). `size`: width, height."""
         with self._written() as (name, path):
             self.render(what=["semantic", "depth"], cameras=[camera], size=size, folder=name, replace=True)
             return npz(path / f"{camera}_maps.npz")

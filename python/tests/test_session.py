@@ -11,6 +11,7 @@ import tempfile
 import threading
 import unittest
 import unittest.mock
+import zlib
 from typing import Any
 
 ROOT = pathlib.Path(__file__).parent.parent
@@ -56,6 +57,49 @@ class TestSession(unittest.TestCase):
             self.assertEqual(shapes, {"labels": (200, 200, 16), "depth_m": (270, 480)})
             self.assertGreater(found["x"].shape[0], 1000)
         self.assertEqual(os.listdir(there), ["labels.npz"], "files of arrays do not stay")
+
+    def test_the_example_of_the_package_gives_arrays_in_memory_and_runs_twice(self) -> None:
+        example = (ROOT / "README.md").read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]
+        there = str(self.folder / "scenes")
+        for _ in range(2):
+            found: dict[str, Any] = {}
+            exec(compile(example.replace('"scenes"', repr(there)), "README.md", "exec"), found)
+            labels, sweep, front, truth, boxes = (found[name] for name in ("labels", "sweep", "front", "truth", "boxes"))
+            self.assertEqual(tuple(labels.shape), (200, 200, 16))
+            self.assertGreater(sweep["x"].shape[0], 1000)
+            self.assertEqual(tuple(front.shape), (270, 480, 3))
+            self.assertGreater(len(set(front.tobytes())), 100, "a picture has many shades")
+            self.assertEqual(tuple(truth["class"].shape), (270, 480))
+            count = len(boxes["id"])
+            self.assertEqual(tuple(boxes["center_m"].shape), (count, 3))
+            self.assertEqual(tuple(boxes["yaw_deg"].shape), (count,))
+            self.assertIn("pedestrian", boxes["class"])
+            self.assertEqual(os.listdir(there), ["a.loom"], "files of arrays do not stay")
+
+    def test_pixels_of_every_filter_come_back(self) -> None:
+        width, height = 5, 6
+        rows = [bytes((x * 37 + y * 91 + c * 13) * (y + 1) & 255 for x in range(width) for c in range(4)) for y in range(height)]
+        packed, before = b"", bytes(4 * width)
+        for y, row in enumerate(rows):
+            kind = y % 5
+            around = [(row[i - 4] if i >= 4 else 0, before[i], before[i - 4] if i >= 4 else 0) for i in range(4 * width)]
+            guesses = [(0, a, b, (a + b) // 2, min((a, b, c), key=lambda v, t=a + b - c: abs(t - v)))[kind] for a, b, c in around]
+            packed += bytes([kind]) + bytes((v - g) & 255 for v, g in zip(row, guesses))
+            before = row
+
+        def chunk(kind: bytes, content: bytes) -> bytes:
+            return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+        def file(depth: int, body: bytes) -> bytes:
+            head = struct.pack(">IIBBBBB", width, height, depth, 6, 0, 0, 0)
+            return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(body)) + chunk(b"IEND", b"")
+
+        pixels = arrays.png(file(8, packed))
+        self.assertEqual(tuple(pixels.shape), (height, width, 3))
+        self.assertEqual(pixels.tobytes(), b"".join(row[i : i + 3] for row in rows for i in range(0, len(row), 4)))
+        for bad in (b"", file(16, packed), file(8, packed[:-1]), file(8, b"\x07" + packed[1:])):
+            with self.assertRaises(ValueError):
+                arrays.png(bad)
 
     def test_arrays_hold_what_is_in_the_scene(self) -> None:
         with Session(folder=self.folder) as s:
