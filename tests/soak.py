@@ -57,7 +57,7 @@ def rounds(session: Session):
 def main() -> None:
     p = argparse.ArgumentParser(description=__doc__)
     p.add_argument("--calls", type=int, default=20_000, help="calls that are measured")
-    p.add_argument("--warm", type=int, default=8_000, help="calls before them")
+    p.add_argument("--warm", type=int, default=10_000, help="calls before them, in which the history fills up")
     p.add_argument("--program", default=os.environ.get("SCENELOOM", str(ROOT / "target/release/sceneloom")))
     args = p.parse_args()
     with tempfile.TemporaryDirectory() as folder, Session(folder=folder, program=args.program) as session:
