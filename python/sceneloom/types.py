@@ -1957,7 +1957,7 @@ Scope: TypeAlias = "Literal['whole_track', 'from_here_on', 'moment']"
 SensorRig = TypedDict(
     'SensorRig',
     {
-        # Cameras in ring order, front left first.
+        # Cameras, in any order; bundled rigs have them clockwise from above, beginning on the left.
         'cameras': 'Sequence[Camera]',
         # From the rear axle to the middle of the ego vehicle, m.
         'ego_center_m': 'Sequence[float]',
