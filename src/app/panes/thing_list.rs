@@ -110,7 +110,7 @@ pub fn row_ui(ui: &mut Ui, row: &ThingRow<'_>, scene: &Scene, hand: &mut Hand, c
         }
     };
     if clicked && !hand.things.is_open() {
-        let why = t("Background things are locked or hidden: see the list of layers").to_owned();
+        let why = t("Scenery is locked or hidden: see the list of layers").to_owned();
         commands.push(Command::Tools(ToolCommand::Act(Act::Note(why))));
     } else if clicked {
         let choose = ThingCommand::Choose(ids, how);

@@ -322,7 +322,7 @@ fn things_row(ui: &mut Ui, tools: &ToolState, commands: &mut Vec<Command>) {
     let things = &tools.things;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        if eye(ui, things.shown, t("Show background things")).clicked() {
+        if eye(ui, things.shown, t("Show scenery")).clicked() {
             send(ThingCommand::ToggleShown);
         }
         if lock(ui, things.locked, t("Lock scenery")).clicked() {
@@ -332,7 +332,7 @@ fn things_row(ui: &mut Ui, tools: &ToolState, commands: &mut Vec<Command>) {
             true => theme::text(),
             false => theme::text_weak(),
         };
-        ui.label(egui::RichText::new(t("Background things")).color(color));
+        ui.label(egui::RichText::new(t("Scenery")).color(color));
     });
 }
 

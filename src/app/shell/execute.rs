@@ -103,7 +103,7 @@ impl SceneloomApp {
             return self.fail(tf!("Layer \"{name}\" is locked", name = t(&layer.label())));
         }
         if self.state.tools.things.locked && edits.iter().any(Edit::is_of_things) {
-            return self.fail(t("Background things are locked").to_owned());
+            return self.fail(t("Scenery is locked").to_owned());
         }
         let open = self.unlocked(edits.to_vec(), true);
         if open.is_empty() && !edits.is_empty() {

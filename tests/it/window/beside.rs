@@ -210,7 +210,7 @@ fn locked_and_hidden_things_stay_as_they_are() {
     bench.click_ground(10.0, 22.0, Modifiers::NONE);
     assert_eq!(bench.background().len(), 4, "open again");
     bench.key(Modifiers::NONE, Key::V);
-    bench.click("Show background things");
+    bench.click("Show scenery");
     bench.click_ground(-20.0, 22.0, Modifiers::NONE);
     assert!(bench.things_chosen().is_empty());
 }

@@ -201,16 +201,12 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     keep(7),
     keep(8),
     keep(9),
-    action(Views, "show_things", "Show or hide background things", "", || {
+    action(Views, "show_things", "Show or hide scenery", "", || {
         Command::Tools(ToolCommand::Thing(ThingCommand::ToggleShown))
     }),
-    action(
-        Views,
-        "lock_things",
-        "Lock or unlock background things",
-        "",
-        || Command::Tools(ToolCommand::Thing(ThingCommand::ToggleLocked)),
-    ),
+    action(Views, "lock_things", "Lock or unlock scenery", "", || {
+        Command::Tools(ToolCommand::Thing(ThingCommand::ToggleLocked))
+    }),
     action(Views, "grid", "Grid", "G", || {
         Command::View(ViewCommand::ToggleGrid)
     }),

@@ -156,8 +156,8 @@ impl<D: Draft> DraftTool<D> {
         let things = &cx.hand.things;
         if !things.is_open() {
             let why = match things.locked {
-                true => "Background things are locked: their lock is in the list of layers",
-                false => "Background things are hidden: their eye is in the list of layers",
+                true => "Scenery is locked: its lock is in the list of layers",
+                false => "Scenery is hidden: its eye is in the list of layers",
             };
             return Response::act(Act::Note(why.to_owned()));
         }
@@ -268,7 +268,7 @@ impl<D: Draft> Tool for DraftTool<D> {
 
     fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint {
         if !hand.things.is_open() {
-            return hint_of(&["Background things are locked or hidden: see the list of layers"]);
+            return hint_of(&["Scenery is locked or hidden: see the list of layers"]);
         }
         let mut parts = D::hint(!self.points_m().is_empty());
         parts.extend(D::alt().filter(|_| view != Some(ViewKind::Space)));
