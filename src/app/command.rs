@@ -245,6 +245,10 @@ pub enum Command {
     Redo,
     /// Goes to a state of the history, by index.
     JumpTo(usize),
+    /// Leaves a step out of the history, by index.
+    LeaveOut(usize),
+    /// Replays the history from its origin and compares.
+    ReplayHistory,
     /// Confirms everything that was inferred on import: it is no longer marked as a guess.
     ConfirmInferred,
     /// Gives all painted voxels back to generation.

@@ -1,9 +1,13 @@
 //! The document: the only place where a scene changes. An edit is an undo step, a whole drag is one step, and a generated
-//! result goes into the step of its edit.
+//! result goes into the step of its edit. Every change is an [`Op`] of its log; the states between them are kept as a cache.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use scene::{Background, Frame, Scene, SceneRev, VoxelGrid};
+use crate::replay::{edited, with_result};
+use scene::grid::VoxelPatch;
+use scene::op::{Author, Change, LoggedState, Op, OpId};
+use scene::{Background, Scene, SceneRev, VoxelGrid};
 
 use scene::{Edit, EditError};
 
@@ -11,18 +15,30 @@ use scene::{Edit, EditError};
 /// There is no mutable access to the scene, on purpose.
 #[derive(Debug)]
 pub struct Document {
-    steps: Vec<UndoStep>, // never empty; the first is the state that was opened
-    at: usize,            // step being shown
-    drag: Option<Arc<Scene>>,
+    pub(crate) steps: Vec<UndoStep>, // never empty; the first is the oldest state
+    pub(crate) at: usize,            // step being shown
+    drag: Option<Drag>,
     saved: SceneRev,
     limit_bytes: usize,
+    pub(crate) author: Author,
+    pub(crate) origin: Arc<LoggedState>, // of the first step
+    pub(crate) next_op: u64,
+    pub(crate) opened_until: OpId, // changes below it were there when the document was opened
+}
+
+/// A drag in progress: the edits of its last preview, and the state that they lead to.
+#[derive(Debug)]
+struct Drag {
+    edits: Vec<Edit>,
+    scene: Arc<Scene>,
 }
 
 #[derive(Debug)]
-struct UndoStep {
-    label: Label, // of the edit that led here
-    scene: Arc<Scene>,
-    bytes: usize, // not shared with the step before; 0 for the first
+pub(crate) struct UndoStep {
+    pub(crate) label: Label, // of the change that led here
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) ops: Vec<Op>, // that led here; none for the first
+    bytes: usize,            // not shared with the step before; 0 for the first
 }
 
 /// Name of an undo step.
@@ -45,9 +61,12 @@ impl Document {
     /// A document that was just opened or made: nothing to undo, nothing unsaved.
     pub fn new(scene: Scene) -> Self {
         let saved = scene.content();
+        let scene = Arc::new(scene.without_log());
+        let origin = LoggedState::new(&scene);
         let first = UndoStep {
             label: "Open".into(),
-            scene: Arc::new(scene),
+            scene,
+            ops: Vec::new(),
             bytes: 0,
         };
         Self {
@@ -56,12 +75,22 @@ impl Document {
             drag: None,
             saved,
             limit_bytes: Self::LIMIT_BYTES,
+            author: Author::USER,
+            origin,
+            next_op: 1,
+            opened_until: OpId(0),
         }
+    }
+
+    /// Names the maker of the changes from now on; returns the one before.
+    pub fn set_author(&mut self, author: Author) -> Author {
+        std::mem::replace(&mut self.author, author)
     }
 
     /// The state that is shown, with the drag in progress: views draw it, and generation starts from it.
     pub fn scene(&self) -> &Arc<Scene> {
-        self.drag.as_ref().unwrap_or(&self.steps[self.at].scene)
+        let drag = self.drag.as_ref().map(|drag| &drag.scene);
+        drag.unwrap_or(&self.steps[self.at].scene)
     }
 
     /// The state without the drag in progress.
@@ -79,7 +108,7 @@ impl Document {
     pub fn apply_all(&mut self, label: impl Into<Label>, edits: &[Edit]) -> Result<(), EditError> {
         let next = self.edited(edits)?;
         self.drag = None;
-        self.push(label.into(), next);
+        self.push(label.into(), Arc::new(next), || Change::Edits(edits.into()));
         Ok(())
     }
 
@@ -91,7 +120,10 @@ impl Document {
 
     /// Like [`Self::preview`], with several edits.
     pub fn preview_all(&mut self, edits: &[Edit]) -> Result<(), EditError> {
-        self.drag = Some(Arc::new(self.edited(edits)?));
+        self.drag = Some(Drag {
+            scene: Arc::new(self.edited(edits)?),
+            edits: edits.to_vec(),
+        });
         Ok(())
     }
 
@@ -102,8 +134,8 @@ impl Document {
 
     /// Makes the last preview one undo step. Without a drag, or without a change, nothing happens.
     pub fn commit_drag(&mut self, label: impl Into<Label>) {
-        if let Some(dragged) = self.drag.take() {
-            self.push(label.into(), Arc::unwrap_or_clone(dragged));
+        if let Some(Drag { scene, edits }) = self.drag.take() {
+            self.push(label.into(), scene, || Change::Edits(edits.into()));
         }
     }
 
@@ -219,9 +251,12 @@ impl Document {
     /// was generated for, whatever moment is shown. It is the occupancy of [`Scene::for_generation`]'s frame, and becomes the
     /// source of what comes; painted voxels stay. No undo step is added. Returns the new state.
     pub fn adopt(&mut self, content: SceneRev, occupancy: VoxelGrid) -> Result<SceneRev, Stale> {
-        let scene = self.with_result(content, occupancy, None)?;
+        let (scene, change) = self.with_result(content, occupancy, None)?;
         let content = scene.content();
-        self.steps[self.at].scene = Arc::new(scene);
+        let op = self.op(self.steps[self.at].label.clone(), true, change);
+        let step = &mut self.steps[self.at];
+        step.scene = Arc::new(scene);
+        step.ops.push(op);
         self.weigh(self.at);
         self.weigh(self.at + 1);
         self.forget_oldest();
@@ -235,8 +270,8 @@ impl Document {
         content: SceneRev,
         occupancy: VoxelGrid,
     ) -> Result<SceneRev, Stale> {
-        let scene = self.with_result(content, occupancy, None)?;
-        self.push(label.into(), scene);
+        let (scene, change) = self.with_result(content, occupancy, None)?;
+        self.push(label.into(), Arc::new(scene), || change);
         Ok(self.settled_scene().content())
     }
 
@@ -248,36 +283,64 @@ impl Document {
         occupancy: VoxelGrid,
         background: Background,
     ) -> Result<SceneRev, Stale> {
-        let scene = self.with_result(content, occupancy, Some(background))?;
-        self.push(label.into(), scene);
+        let (scene, change) = self.with_result(content, occupancy, Some(Arc::new(background)))?;
+        self.push(label.into(), Arc::new(scene), || change);
         Ok(self.settled_scene().content())
     }
 
-    /// The step that is shown, with a generated occupancy.
+    /// The step that is shown, with a generated occupancy, and the change that leads there.
     fn with_result(
         &self,
         content: SceneRev,
         occupancy: VoxelGrid,
-        background: Option<Background>,
-    ) -> Result<Scene, Stale> {
+        background: Option<Arc<Background>>,
+    ) -> Result<(Scene, Change), Stale> {
         let shown = self.settled_scene();
         if self.drag.is_some() || shown.content() != content {
             return Err(Stale);
         }
-        let mut frame = Frame::clone(shown.for_generation().frame());
-        super::apply::adopt(&mut frame, occupancy).map_err(|_| Stale)?;
-        let mut scene = Scene::clone(shown);
-        if let Some(background) = background {
-            scene.background = Arc::new(background);
-        }
-        scene.set_generated(frame);
-        Ok(scene)
+        let asked = shown.for_generation();
+        let patch = VoxelPatch::between(&asked.frame().occupancy, &occupancy).ok_or(Stale)?;
+        let scene = with_result(shown, occupancy, background.as_ref()).map_err(|_| Stale)?;
+        let patch = Arc::new(patch);
+        Ok((scene, Change::Result { patch, background }))
     }
 
     /// Shows a state that was kept elsewhere (a version), as an undo step. Does nothing if that state is shown already.
     pub fn restore(&mut self, label: impl Into<Label>, scene: &Scene) {
         self.drag = None;
-        self.push(label.into(), scene.clone());
+        let scene = Arc::new(scene.clone().without_log());
+        let state = LoggedState::new(&scene);
+        self.push(label.into(), scene, || Change::Restore(state));
+    }
+
+    /// Takes over all that another document did since the state shown here, as one undo step. Errors if the other began with
+    /// another state.
+    pub fn take_over(&mut self, label: impl Into<Label>, other: Document) -> Result<(), Stale> {
+        let label = label.into();
+        if self.drag.is_some() || other.steps[0].scene.content() != self.settled_scene().content() {
+            return Err(Stale);
+        }
+        let scene = other.settled_scene().clone();
+        let ops = other
+            .steps
+            .into_iter()
+            .take(other.at + 1)
+            .flat_map(|step| step.ops);
+        let mut ops = ops.map(|op| (op.shown_s, op.change));
+        let Some((shown_s, change)) = ops.next() else {
+            return Ok(());
+        };
+        self.push(label.clone(), scene, || change);
+        for (shown_s, change) in ops {
+            let op = self.op(label.clone(), true, change);
+            self.steps[self.at].ops.push(Op { shown_s, ..op });
+        }
+        if let Some(op) = self.steps[self.at].ops.first_mut() {
+            op.shown_s = shown_s;
+        }
+        self.weigh(self.at);
+        Ok(())
     }
 
     /// Shows another moment of the scene; not an undo step, and nothing to save. False if it is shown already. Cancels a
@@ -294,35 +357,78 @@ impl Document {
     }
 
     fn edited(&self, edits: &[Edit]) -> Result<Scene, EditError> {
-        super::arranged::locked(self.settled_scene(), edits)?;
-        let mut scene = Scene::clone(self.settled_scene());
-        super::apply::apply_all(edits, &mut scene)?;
-        Ok(scene)
+        edited(self.settled_scene(), edits)
     }
 
-    fn push(&mut self, label: Label, scene: Scene) {
+    /// Adds a step, if its state differs from the one shown; steps that could be redone go.
+    pub(crate) fn push(&mut self, label: Label, scene: Arc<Scene>, change: impl FnOnce() -> Change) {
         if scene.content() == self.settled_scene().content() {
             return;
         }
         self.steps.truncate(self.at + 1);
-        let bytes = scene.bytes_beside(self.settled_scene());
+        let op = self.op(label.clone(), false, change());
+        let bytes = scene.bytes_beside(self.settled_scene()) + op.bytes();
         self.steps.push(UndoStep {
             label,
-            scene: Arc::new(scene),
+            scene,
+            ops: vec![op],
             bytes,
         });
         self.at = self.steps.len() - 1;
         self.forget_oldest();
     }
 
-    /// Counts again the bytes that a step does not share with the one before it.
-    fn weigh(&mut self, index: usize) {
-        if let Some([before, step]) = index.checked_sub(1).and_then(|i| self.steps.get_mut(i..=index)) {
-            step.bytes = step.scene.bytes_beside(&before.scene);
+    /// Forgets the steps that could be redone.
+    pub(crate) fn forget_redo(&mut self) {
+        self.steps.truncate(self.at + 1);
+    }
+
+    /// Puts a change that was replayed behind the last step, or into the step that it joins.
+    pub(crate) fn put(&mut self, op: Op, scene: Arc<Scene>) {
+        let joined = |step: &UndoStep| step.ops.last().map(|last| last.id) == op.parent;
+        let into = match op.joins {
+            true => self.steps.iter().rposition(joined),
+            false => None,
+        };
+        let index = into.unwrap_or_else(|| {
+            self.steps.push(UndoStep {
+                label: op.label.clone(),
+                scene: scene.clone(),
+                ops: Vec::new(),
+                bytes: 0,
+            });
+            self.steps.len() - 1
+        });
+        let step = &mut self.steps[index];
+        step.scene = scene;
+        step.ops.push(op);
+        self.weigh(index);
+    }
+
+    /// A new change of the state that is shown.
+    fn op(&mut self, label: Label, joins: bool, change: Change) -> Op {
+        let id = OpId(self.next_op);
+        self.next_op += 1;
+        Op {
+            id,
+            parent: self.steps[self.at].ops.last().map(|op| op.id),
+            author: self.author.clone(),
+            label,
+            joins,
+            shown_s: self.settled_scene().time_s(),
+            change,
         }
     }
 
-    fn forget_oldest(&mut self) {
+    /// Counts again the bytes that a step does not share with the one before it.
+    fn weigh(&mut self, index: usize) {
+        if let Some([before, step]) = index.checked_sub(1).and_then(|i| self.steps.get_mut(i..=index)) {
+            let ops: usize = step.ops.iter().map(Op::bytes).sum();
+            step.bytes = step.scene.bytes_beside(&before.scene) + ops;
+        }
+    }
+
+    pub(crate) fn forget_oldest(&mut self) {
         let (mut bytes, mut gone) = (self.history_bytes(), 0);
         let too_much = |bytes: usize, left: usize| bytes > self.limit_bytes || left > Self::MAX_STEPS;
         while gone + Self::LEAST_UNDO < self.at && too_much(bytes, self.steps.len() - gone) {
@@ -332,12 +438,33 @@ impl Document {
         }
         if gone > 0 {
             self.steps.drain(..gone);
-            self.steps[0].bytes = 0;
             self.at -= gone;
+            self.begin_at_oldest();
+        }
+    }
+
+    /// Lets the log begin at the oldest step that is left.
+    fn begin_at_oldest(&mut self) {
+        let oldest = &mut self.steps[0];
+        oldest.bytes = 0;
+        self.origin = LoggedState::new(&oldest.scene);
+        let last = std::mem::take(&mut oldest.ops).pop().map(|op| op.id);
+        let known: BTreeSet<OpId> = self.steps.iter().flat_map(|s| &s.ops).map(|op| op.id).collect();
+        for step in &mut self.steps[1..] {
+            for (i, op) in step.ops.iter_mut().enumerate() {
+                if op.parent.is_none_or(|parent| known.contains(&parent)) {
+                    continue;
+                }
+                // A change of a state that is not kept any more becomes the state that it led to.
+                if op.parent != last && i == 0 {
+                    op.change = Change::Restore(LoggedState::new(&step.scene));
+                }
+                op.parent = None;
+            }
         }
     }
 }
 
 #[cfg(test)]
 #[path = "document_tests.rs"]
-mod tests;
+pub(crate) mod tests;

@@ -227,10 +227,7 @@ fn a_result_settles_what_was_authored_anywhere() {
     // What is painted is kept, wherever it is.
     let [px, py] = extent.column_at(110.0, 60.0).expect("on the map");
     result.set(px, py, 10, Class::FREE);
-    let adopt = |occupancy: &VoxelGrid| Edit::AdoptResult {
-        occupancy: occupancy.clone(),
-    };
-    adopt(&result).apply(&mut scene).expect("of this map");
+    scene = crate::replay::with_result(&scene, result, None).expect("of this map");
     let frame = scene.frame();
     assert_eq!(frame.occupancy.get(x, y, 4), Class::Vegetation.id());
     assert_eq!(frame.occupancy.get(px, py, 10), Class::Manmade.id());
@@ -251,7 +248,7 @@ fn a_result_settles_what_was_authored_anywhere() {
     let source = source.clone();
     // A result of another map is none.
     let before = scene.clone();
-    let error = adopt(&VoxelGrid::new()).apply(&mut scene).expect_err("a window");
+    let error = crate::replay::with_result(&scene, VoxelGrid::new(), None).expect_err("a window");
     assert!(error.to_string().contains("expected 480 x 320 x 16"), "{error}");
     assert_eq!(scene.rev, before.rev);
     assert_eq!(scene.frame().source, source);

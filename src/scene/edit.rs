@@ -11,7 +11,7 @@ use crate::roads::RoadChange;
 use crate::shape::Shape;
 use crate::{
     Arrangement, BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Motion, Polyline, SceneBox,
-    Scope, SensorRig, Template, ThingId, VoxelGrid,
+    Scope, SensorRig, Template, ThingId,
 };
 
 /// One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:
@@ -312,12 +312,6 @@ pub enum Edit {
     SetRig {
         /// The new ones.
         rig: Box<SensorRig>,
-    },
-    /// Takes a generated occupancy as the frame's own and as the source of what comes. Not in JSON.
-    #[serde(skip)]
-    AdoptResult {
-        /// Occupancy generated for the current state.
-        occupancy: VoxelGrid,
     },
 }
 

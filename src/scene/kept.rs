@@ -1,14 +1,20 @@
-//! Parts of a project beside its scene: versions to return to, and the texts that were typed.
+//! Parts of a project beside its scene: versions to return to, the texts that were typed, and the log of its changes.
 
 use std::sync::Arc;
 
-/// Versions and typed words. They belong to a file, not to a state of the scene: undo leaves them as they are.
-#[derive(Clone, Debug, Default, PartialEq)]
+use crate::OpLog;
+
+/// Versions, typed words and the log. They belong to a file, not to a state of the scene: undo leaves them as they are.
+#[derive(Clone, Debug, Default)]
 pub struct ProjectHistory {
     /// The versions, the oldest first.
     pub versions: Vec<KeptVersion>,
     /// Texts typed in the prompt field, the oldest first, whether or not they had an effect.
     pub typed: Vec<String>,
+    /// Changes that led to the state of the file: undo goes on from them.
+    pub log: Option<Arc<OpLog>>,
+    /// Reason why the file's log cannot be used, in one line; the scene is whole all the same.
+    pub log_problem: Option<Arc<str>>,
 }
 
 impl ProjectHistory {
@@ -17,9 +23,10 @@ impl ProjectHistory {
     /// Most texts that were typed.
     pub const MAX_TYPED: usize = 1000;
 
-    /// True if there are neither versions nor texts.
+    /// True if there is nothing beside the scene.
     pub fn is_empty(&self) -> bool {
-        self.versions.is_empty() && self.typed.is_empty()
+        let no_log = self.log.is_none() && self.log_problem.is_none();
+        self.versions.is_empty() && self.typed.is_empty() && no_log
     }
 }
 

@@ -26,6 +26,7 @@ pub mod lens;
 pub mod message;
 pub mod model;
 pub mod moved;
+pub mod op;
 pub mod plain_name;
 pub mod pose;
 pub mod raster;
@@ -73,6 +74,7 @@ pub use layout::{BevLayout, Polyline, PolylineKind};
 pub use lens::{Lens, Optics, ReadOut, Shutter};
 pub use model::Model;
 pub use numeric::splitmix as draw;
+pub use op::{Author, Change, LoggedState, Op, OpId, OpLog};
 pub use pose::Pose;
 pub use recorded::Recorded;
 pub use relief::Relief;
@@ -184,6 +186,24 @@ impl Scene {
     /// The moment that is shown, s.
     pub fn time_s(&self) -> f64 {
         self.view.time_s
+    }
+
+    /// True if another scene is equal at all times, in all but its revisions, the moment shown, and its name.
+    pub fn is_same(&self, other: &Self) -> bool {
+        (self.seed, self.conditions) == (other.seed, other.conditions)
+            && (&self.prompt, &self.words) == (&other.prompt, &other.words)
+            && (&self.rig, &self.arranged) == (&other.rig, &other.arranged)
+            && (&self.background, &self.roads) == (&other.background, &other.roads)
+            && (&self.clip, &self.canvas) == (&other.clip, &other.canvas)
+    }
+
+    /// The same state without the log of the file that it came from: a document has its own.
+    pub fn without_log(mut self) -> Self {
+        if self.kept.log.is_some() || self.kept.log_problem.is_some() {
+            let kept = Arc::make_mut(&mut self.kept);
+            (kept.log, kept.log_problem) = (None, None);
+        }
+        self
     }
 
     /// Sets fresh revisions, after a change of its public fields.

@@ -13,6 +13,7 @@ mod cli_tools;
 mod crowd;
 mod diffusion;
 mod fuzz;
+mod history;
 mod hostile_names;
 mod house;
 mod inferred;

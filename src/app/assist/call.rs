@@ -144,6 +144,10 @@ calls! {
     Undo(calls::history::Undo),
     /// See [`calls::history`].
     Redo(calls::history::Redo),
+    /// See [`calls::history::History`].
+    History(calls::history::History),
+    /// See [`calls::history::LeaveOut`].
+    LeaveOut(calls::history::LeaveOut),
     /// See [`calls::versions`].
     KeepVersion(calls::versions::KeepVersion),
     /// See [`calls::versions`].

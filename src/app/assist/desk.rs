@@ -20,6 +20,7 @@ use formats::loom;
 use job::pipeline::OccPipeline;
 use job::region::edited_columns;
 use nets::OccModels;
+use scene::op::Author;
 use scene::{KeptVersion, Scene, SceneRev};
 
 /// True once the call in progress is not wanted any more.
@@ -43,7 +44,12 @@ impl Holder {
             Self::Own(document) => Ok(work(document)),
             Self::Elsewhere(hand) => {
                 let (answer, answered) = bounded(1);
-                let task: DocumentTask = Box::new(move |document| drop(answer.send(work(document))));
+                let task: DocumentTask = Box::new(move |document| {
+                    let before = document.set_author(Author::ASSISTANT);
+                    let done = work(document);
+                    document.set_author(before);
+                    drop(answer.send(done));
+                });
                 let handed = hand(task);
                 let answer = handed.then(|| answered.recv().ok()).flatten();
                 answer.context("the window that owns the scene lets nobody in any more")
@@ -93,7 +99,10 @@ pub struct Desk {
 
 impl Desk {
     /// On a document, with a folder for files. Networks come from `weights`, or are the bundled ones.
-    pub fn new(holder: Holder, folder: Folder, weights: Option<PathBuf>) -> Self {
+    pub fn new(mut holder: Holder, folder: Folder, weights: Option<PathBuf>) -> Self {
+        if let Holder::Own(document) = &mut holder {
+            document.set_author(Author::ASSISTANT);
+        }
         Self {
             holder,
             folder,
@@ -164,10 +173,21 @@ impl Desk {
             }
             is_current
         })?;
+        self.was_put(step, is_current, &states)
+    }
+
+    /// Puts what a copy of the document did into the document, as one undo step. Errors if the scene has changed since.
+    pub fn take_over(&mut self, step: String, copy: Document) -> anyhow::Result<Done> {
+        let label = step.clone();
+        let (is_current, states) = self.with(move |document| document.take_over(label, copy).is_ok())?;
+        self.was_put(step, is_current, &states)
+    }
+
+    fn was_put(&mut self, step: String, is_current: bool, states: &[Arc<Scene>; 2]) -> anyhow::Result<Done> {
         match is_current {
             true => Ok(Done {
                 warnings: Vec::new(),
-                ..self.done(step, &states)
+                ..self.done(step, states)
             }),
             false => bail!("the scene was changed in the window meanwhile: nothing was done, call again"),
         }
@@ -252,9 +272,9 @@ impl Desk {
         self.pipeline.as_mut().context("no networks")
     }
 
-    /// A scene as it is saved: its file keeps the versions of this session, with their names and a star.
-    pub fn with_versions(&self, scene: &Scene) -> anyhow::Result<Scene> {
-        let mut scene = scene.clone();
+    /// The scene as it is saved: its file keeps the history and the versions of this session, with their names and a star.
+    pub fn to_save(&mut self) -> anyhow::Result<Scene> {
+        let mut scene = self.look(Document::to_save)?;
         let kept = Arc::make_mut(&mut scene.kept);
         kept.versions
             .retain(|v| self.versions.iter().all(|(name, _)| *name != v.name));

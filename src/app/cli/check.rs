@@ -7,13 +7,13 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use serde_json::{Value, json};
 
+use super::document;
 use super::{CommandResult, Common, Moment, Stop, output};
 use app::findings;
 use app::open;
 use app::panes;
 use editor::checks::{self, Finding, SeverityCounts, waive};
 use editor::fix::{self, Repair};
-use formats::loom;
 use scene::Scene;
 
 /// Arguments.
@@ -78,9 +78,13 @@ impl CheckArgs {
         let (mut repairs, mut files) = (Vec::new(), Vec::new());
         if let Some(path) = &self.output {
             let plan = fix::plan_at_once(&scene, &findings);
-            editor::apply_all(&plan.edits(), &mut scene).context("a fix does not apply")?;
+            let mut document = document::opened(scene);
+            document
+                .apply_all("Fix findings", &plan.edits())
+                .context("a fix does not apply")?;
+            document::save(path, &document)?;
+            scene = Scene::clone(document.settled_scene());
             findings = self.findings(&scene);
-            loom::save(path, &scene)?;
             files.push(path);
             repairs = plan.repairs;
         }

@@ -198,7 +198,7 @@ impl Demo {
             document
                 .apply_all(label, &with_conditions(&edits, seed))
                 .with_context(|| label.to_string())?;
-            let result = run_and_adopt(&mut document, &mut pipeline, params.clone(), &progress)?;
+            let result = run_and_adopt(&mut document, &mut pipeline, params.clone(), &progress, None)?;
             let wall_s = edit_start.elapsed().as_secs_f64();
             let stem = format!("{}_{}", i + 1, label.replace(' ', "_"));
             let after = sink.row(document.scene())?;

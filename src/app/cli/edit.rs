@@ -5,14 +5,15 @@ use std::path::PathBuf;
 use anyhow::Context;
 use serde_json::json;
 
+use super::document;
 use super::generate::run_and_adopt;
 use super::progress::ProgressLine;
 use super::{CommandResult, Common, Gen, Stop, Weights, output};
 use app::open;
 use app::text::with_conditions;
 use authoring::new_ground::with_scenery;
-use editor::{Document, Edit};
-use formats::{input, loom};
+use editor::Edit;
+use formats::input;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use metrics::agreement::layout_agreement;
@@ -54,7 +55,7 @@ impl EditCommand {
         let progress = ProgressLine::new(&self.common);
         let params = self.generation.params(GenParams::default())?;
         let seed = scene.conditions.seed;
-        let mut document = Document::new(scene);
+        let mut document = document::opened(scene);
         let before = document.scene().clone();
         let said = editor::remarks(&before, &edits);
         document
@@ -70,9 +71,9 @@ impl EditCommand {
         } else {
             None
         };
-        let result = run_and_adopt(&mut document, &mut pipeline, params.clone(), &progress)?;
+        let result = run_and_adopt(&mut document, &mut pipeline, params.clone(), &progress, None)?;
+        document::save(&self.output, &document)?;
         let scene = document.scene();
-        loom::save(&self.output, scene)?;
         let r = &result.report;
         let agreement = layout_agreement(scene.frame());
         let report = json!({

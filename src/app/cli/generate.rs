@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use serde_json::json;
 
+use super::document;
 use super::progress::ProgressLine;
 use super::{CommandResult, Common, Gen, Weights, output};
 use app::open;
 use authoring::whole::scenery_first;
 use editor::Document;
-use formats::loom;
 use job::pipeline::OccPipeline;
 use job::{GenParams, GenResult, Job, Pipeline};
 use metrics::agreement::layout_agreement;
@@ -38,19 +38,24 @@ pub struct GenerateArgs {
     common: Common,
 }
 
-/// Runs the pipeline on a document's scene and adopts the result.
+/// Runs the pipeline on a document's scene and adopts the result: as an undo step of that name, or into the step shown.
 pub fn run_and_adopt(
     document: &mut Document,
     pipeline: &mut OccPipeline,
     params: GenParams,
     progress: &ProgressLine,
+    step: Option<&'static str>,
 ) -> anyhow::Result<GenResult> {
     let job = Job {
         scene: document.scene().clone(),
         params,
     };
     let result = progress.with_ctx(|ctx| pipeline.run(&job, ctx))?;
-    document.adopt(result.rev(), result.occupancy.clone())?;
+    let (of, occupancy) = (result.rev(), result.occupancy.clone());
+    match step {
+        Some(step) => document.adopt_as_step(step, of, occupancy)?,
+        None => document.adopt(of, occupancy)?,
+    };
     Ok(result)
 }
 
@@ -70,7 +75,7 @@ pub fn sense(scene: &Scene) -> (f64, f64) {
 /// Draws scenery first if the scene does not say what kind of place it is; true if it did.
 fn draw_scenery(document: &mut Document, params: &GenParams) -> anyhow::Result<bool> {
     let edits = scenery_first(document.scene(), params)?;
-    document.apply_all("Draw scenery", &edits)?;
+    document.apply_all("Generate", &edits)?;
     Ok(!edits.is_empty())
 }
 
@@ -81,11 +86,12 @@ impl GenerateArgs {
         let progress = ProgressLine::new(&self.common);
         let params = self.generation.params(GenParams::whole_scene())?;
         let before = scene.frame().occupancy.clone();
-        let mut document = Document::new(scene);
+        let mut document = document::opened(scene);
         let drawn = !self.bare && draw_scenery(&mut document, &params)?;
-        let result = run_and_adopt(&mut document, &mut pipeline, params.clone(), &progress)?;
+        let step = (!drawn).then_some("Generate");
+        let result = run_and_adopt(&mut document, &mut pipeline, params.clone(), &progress, step)?;
+        document::save(&self.output, &document)?;
         let scene = document.scene();
-        loom::save(&self.output, scene)?;
         let (lidar_s, cameras_s) = sense(scene);
         let agreement = layout_agreement(scene.frame());
         let occupied = scene.frame().occupancy.count_set();

@@ -12,11 +12,13 @@ mod dataset_recorded;
 mod demo;
 mod diff;
 mod doctor;
+mod document;
 mod edit;
 mod endpoint;
 mod eval;
 mod export;
 pub(crate) mod generate;
+mod history;
 mod import;
 mod licences;
 mod mcp;
@@ -96,6 +98,8 @@ enum Command {
     Place(place::PlaceArgs),
     /// The versions that a scene's file keeps: listed, taken out, added.
     Versions(versions::VersionsCommand),
+    /// The steps that led to a scene, as its file keeps them: listed, replayed, one left out.
+    History(history::History),
     /// Files for other programs.
     Export(export::Export),
     /// Training and evaluation data from procedural worlds.
@@ -170,6 +174,7 @@ pub fn main() -> ExitCode {
         Some(Command::Place(c)) => c.run(),
         Some(Command::Perceive(c)) => c.run(),
         Some(Command::Versions(c)) => c.run(),
+        Some(Command::History(c)) => c.run(),
         Some(Command::Export(c)) => c.run(),
         Some(Command::Dataset(c)) => c.run(),
         Some(Command::Eval(c)) => c.run(),

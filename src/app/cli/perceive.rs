@@ -7,12 +7,11 @@ use std::path::PathBuf;
 use anyhow::{Context, anyhow};
 use serde_json::json;
 
+use super::document;
 use super::progress::ProgressLine;
 use super::{CommandResult, Common, Moment, Stop, output};
 use app::open;
 use authoring::corner_case::{self, NetworkSensors, Vary};
-use editor::Document;
-use formats::loom;
 use scene::{BoxId, Scene};
 use sensors::perceived_voxels::{self, Hears, PerceptionInput, VoxelReport};
 use sensors::{perceived, perceived_sweep};
@@ -164,9 +163,9 @@ impl Perceive {
         let last = search.tried.last().context("nothing was tried")?;
         let edits = search.found.as_ref();
         if let (Some(path), Some(edits)) = (&self.output, edits) {
-            let mut document = Document::new(scene.clone());
+            let mut document = document::opened(scene.clone());
             document.apply_all("Corner case", edits)?;
-            loom::save(path, document.scene())?;
+            document::save(path, &document)?;
         }
         let tried = search.tried.iter().map(|t| {
             json!({

@@ -6,11 +6,12 @@ use anyhow::{Context, anyhow};
 use glam::DVec2;
 use serde_json::json;
 
+use super::document;
 use super::{CommandResult, Common, output};
 use app::open;
+use editor::Edit;
 use editor::models::{self, ModelPlacement};
-use editor::{Document, Edit};
-use formats::{loom, model};
+use formats::model;
 use scene::{BoxId, Scene};
 
 /// Arguments.
@@ -47,10 +48,10 @@ impl PlaceArgs {
         let model = model::read(&self.model, self.of.map(BoxId))?;
         let scene = open::scene(&self.scene)?;
         let placed = self.placed(&scene, &model)?;
-        let mut document = Document::new(scene);
+        let mut document = document::opened(scene);
         document.apply_all("Place a model", &placed.edits)?;
+        document::save(&self.output, &document)?;
         let scene = document.scene();
-        loom::save(&self.output, scene)?;
         let b = scene
             .frame()
             .boxes

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use serde_json::json;
 
+use super::document;
 use super::generate::run_and_adopt;
 use super::new::class_counts;
 use super::progress::ProgressLine;
@@ -117,24 +118,20 @@ impl PromptArgs {
     }
 
     /// The occupancy of a document's scene by the networks, and how it went.
-    fn generated(
-        &self,
-        mut document: Document,
-        params: GenParams,
-    ) -> anyhow::Result<(Scene, serde_json::Value)> {
+    fn generated(&self, document: &mut Document, params: GenParams) -> anyhow::Result<serde_json::Value> {
         let mut pipeline = OccPipeline::new(OccModels::open(self.weights.folder.as_deref())?);
         let params = GenParams {
             seed: self.seed,
             ..params
         };
         let result = run_and_adopt(
-            &mut document,
+            document,
             &mut pipeline,
             params,
             &ProgressLine::new(&self.common),
+            None,
         )?;
-        let report = json!({ "network_calls": result.report.network_calls, "wall_s": result.report.wall_s });
-        Ok((Scene::clone(document.scene()), report))
+        Ok(json!({ "network_calls": result.report.network_calls, "wall_s": result.report.wall_s }))
     }
 
     /// Prints a reading.
@@ -182,8 +179,9 @@ impl PromptArgs {
         made.scene.words = std::sync::Arc::new(vec![self.text.clone()]);
         made.scene.name = text::title(&self.text).into();
         let generated = if self.generate {
-            let (scene, report) = self.generated(Document::new(made.scene), GenParams::whole_scene())?;
-            made.scene = scene;
+            let mut document = Document::new(made.scene);
+            let report = self.generated(&mut document, GenParams::whole_scene())?;
+            made.scene = Scene::clone(document.scene());
             Some(report)
         } else {
             None
@@ -281,7 +279,7 @@ impl PromptArgs {
         }
         let output = self.output.clone().context("-o is missing")?;
         let (edits, answer) = (edited.edits(), edited.answer_on(&scene));
-        let mut document = Document::new(scene);
+        let mut document = document::opened(scene);
         if !edits.is_empty() {
             let words = self.text.clone();
             let all = [edits.as_slice(), &[Edit::KeepWords { words }]].concat();
@@ -296,11 +294,11 @@ impl PromptArgs {
             .collect();
         // With an open question nothing is written: the answer may change the meaning of the rest.
         let write = asked.is_empty() && !edits.is_empty();
-        let (mut scene, mut generated) = (document.scene().clone(), None);
-        if self.generate && write {
-            let (made, report) = self.generated(document, GenParams::default())?;
-            (scene, generated) = (std::sync::Arc::new(made), Some(report));
-        }
+        let generated = match self.generate && write {
+            true => Some(self.generated(&mut document, GenParams::default())?),
+            false => None,
+        };
+        let scene = document.scene();
         let remarks: Vec<String> = edited.outcome.remarks.iter().map(|r| r.1.to_string()).collect();
         let notes = doubts(&edited.heard);
         let report = json!({
@@ -323,7 +321,7 @@ impl PromptArgs {
             "file": write.then_some(&output),
         });
         if write {
-            loom::save(&output, &scene)?;
+            document::save(&output, &document)?;
         }
         output::report(&self.common, &report, || {
             let mut lines = Vec::from_iter(Some(answer.clone()).filter(|a| !a.is_empty()));

@@ -5,12 +5,11 @@ use std::path::PathBuf;
 use anyhow::bail;
 use serde_json::json;
 
+use super::document;
 use super::region_arg::RegionArg;
 use super::{CommandResult, Common, output};
 use app::open;
 use app::scenery::{SceneryMethod, SceneryWish};
-use editor::Document;
-use formats::loom;
 use job::inpaint::InpaintMask;
 use world::scenery::RoadsideKind;
 
@@ -85,10 +84,10 @@ impl Scenery {
         let scene = open::scene(&self.scene)?;
         let before = scene.frame().occupancy.clone();
         let edits = wish.edits(&scene)?;
-        let mut document = Document::new(scene);
+        let mut document = document::opened(scene);
         document.apply_all("Draw scenery", &edits)?;
+        document::save(&self.output, &document)?;
         let scene = document.scene();
-        loom::save(&self.output, scene)?;
         let (things, changed) = (
             scene.background.len(),
             before.count_different(&scene.frame().occupancy),

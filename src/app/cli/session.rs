@@ -5,10 +5,9 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 
-use super::CommandResult;
+use super::{CommandResult, document};
 use app::open;
 use assist::{Desk, Folder, Holder};
-use editor::Document;
 use nets::OccModels;
 
 /// Arguments.
@@ -43,7 +42,7 @@ impl On {
         if self.weights.is_some() {
             OccModels::open(self.weights.as_deref()).context("--weights")?;
         }
-        let document = Box::new(Document::new(scene));
+        let document = Box::new(document::opened(scene));
         Ok(Desk::new(Holder::Own(document), folder, self.weights))
     }
 }

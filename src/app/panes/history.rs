@@ -1,4 +1,4 @@
-//! The undo steps. A click goes to any of them.
+//! The undo steps. A click goes to any of them; the menu of a step leaves it out.
 
 use egui::Ui;
 
@@ -7,6 +7,7 @@ use super::pane::{Pane, PaneContext, PanePlacement};
 use crate::command::Command;
 use editor::Document;
 use language::{t, tf};
+use scene::op::Author;
 use widgets::icons::Icon;
 use widgets::theme;
 
@@ -58,14 +59,32 @@ pub fn history_title(document: &Document) -> String {
     )
 }
 
+/// Commands of one step.
+fn step_menu(ui: &mut Ui, step: usize, at: usize, is_left_out: bool, commands: &mut Vec<Command>) {
+    let can_leave = (1..=at).contains(&step) && !is_left_out;
+    let leave = egui::Button::new(t("Leave this step out"));
+    let leave = ui.add_enabled(can_leave, leave).on_hover_text(t(
+        "The later steps are applied again, as far as they can be without it",
+    ));
+    let command = if leave.clicked() {
+        Command::LeaveOut(step)
+    } else if ui.button(t("Replay the history from its origin")).clicked() {
+        Command::ReplayHistory
+    } else {
+        return;
+    };
+    commands.push(command);
+    ui.close();
+}
+
 /// Draws every step; a click goes to its state.
 pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
-    let (labels, at): (Vec<&str>, usize) = (document.history().collect(), document.position());
+    let (steps, at) = (document.history_steps(), document.position());
     ui.spacing_mut().item_spacing.y = HISTORY_ROW - (theme::ROW - 4.0);
     let mut area = egui::ScrollArea::vertical()
         .id_salt("history")
         .auto_shrink([false, false])
-        .stick_to_bottom(at + 1 == labels.len());
+        .stick_to_bottom(at + 1 == steps.len());
     // When the state changes, the list scrolls to its line.
     let shown = ui.scope_id().with("history position");
     if ui.data_mut(|d| d.get_temp::<usize>(shown)) != Some(at) {
@@ -73,10 +92,10 @@ pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>)
         // The line is centred, but the offset stays within the list, or the list would jump back in the next frame.
         let room = ui.available_height();
         let above = at as f32 * HISTORY_ROW - room / 2.0;
-        let most = labels.len() as f32 * HISTORY_ROW - room;
+        let most = steps.len() as f32 * HISTORY_ROW - room;
         area = area.vertical_scroll_offset(above.min(most).max(0.0));
     }
-    area.show_rows(ui, theme::ROW - 4.0, labels.len(), |ui, range| {
+    area.show_rows(ui, theme::ROW - 4.0, steps.len(), |ui, range| {
         for i in range {
             let color = match i.cmp(&at) {
                 std::cmp::Ordering::Less => theme::text(),
@@ -87,7 +106,8 @@ pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>)
             // The id is the number of the step, whatever the scroll offset.
             let row = |ui: &mut Ui| ui.allocate_exact_size(size, egui::Sense::click());
             let (rect, response) = ui.push_id(i, row).inner;
-            let name = tf!("History {number} {step}", number = i, step = t(labels[i]));
+            let step = steps[i];
+            let name = tf!("History {number} {step}", number = i, step = t(step.label));
             response.widget_info(|| {
                 egui::WidgetInfo::selected(egui::accesskit::Role::Button, true, i == at, &name)
             });
@@ -98,19 +118,30 @@ pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>)
             };
             ui.painter().rect_filled(rect, theme::RADIUS, fill);
             let font = egui::TextStyle::Body.resolve(ui.style());
-            let mut line = egui::text::LayoutJob::simple_singleline(t(labels[i]).to_owned(), font, color);
+            let mut format = egui::TextFormat::simple(font, color);
+            if step.is_left_out {
+                format.color = theme::text_weak();
+                format.strikethrough = egui::Stroke::new(1.0, theme::text_weak());
+            }
+            let mut line = egui::text::LayoutJob::single_section(t(step.label).to_owned(), format.clone());
+            if let Some(author) = step.author.filter(|author| **author != Author::USER) {
+                format.color = theme::text_weak();
+                format.strikethrough = egui::Stroke::NONE;
+                line.append(t(author.name()), 8.0, format);
+            }
             line.wrap = egui::text::TextWrapping::truncate_at_width(rect.width() - 16.0);
             let galley = ui.fonts_mut(|fonts| fonts.layout_job(line));
-            let at = rect.left_center() + egui::vec2(8.0, -galley.size().y / 2.0);
+            let corner = rect.left_center() + egui::vec2(8.0, -galley.size().y / 2.0);
             let cut = galley.elided;
-            ui.painter().galley(at, galley, color);
+            ui.painter().galley(corner, galley, color);
             let response = match cut {
-                true => response.on_hover_text(t(labels[i])),
+                true => response.on_hover_text(t(step.label)),
                 false => response,
             };
             if response.clicked() {
                 commands.push(Command::JumpTo(i));
             }
+            response.context_menu(|ui| step_menu(ui, i, at, step.is_left_out, commands));
         }
     });
 }

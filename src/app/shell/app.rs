@@ -173,10 +173,11 @@ impl SceneloomApp {
         let view3d = View3d::new(render_state.clone());
         let VersionedScene {
             scene,
+            document,
             versions: kept,
             damaged,
             made,
-            notes: _,
+            notes,
         } = match &config.picture {
             Some(picture) => VersionedScene::from_scene(config.scene).told_by(picture),
             None => VersionedScene::from_scene(config.scene),
@@ -215,7 +216,7 @@ impl SceneloomApp {
             new_scene: config.new_scene,
         };
         let mut app = Self {
-            document: Document::new(scene),
+            document,
             state,
             toasts,
             files: Files::new(config.path, disk, config.native_dialogs),
@@ -238,6 +239,9 @@ impl SceneloomApp {
             ctx: ctx.clone(),
         };
         app.tell_damaged(damaged);
+        for note in notes {
+            app.toasts.push(MessageLevel::Info, note, 0.0);
+        }
         if let Some(made) = made {
             app.take_knobs(&made);
         }

@@ -21,7 +21,10 @@ impl SceneloomApp {
     pub fn execute(&mut self, command: Command, ctx: &Context) {
         self.state.note_paint();
         let before = self.document.settled_scene().content();
-        let travels = matches!(command, Command::Undo | Command::Redo | Command::JumpTo(_));
+        let travels = matches!(
+            command,
+            Command::Undo | Command::Redo | Command::JumpTo(_) | Command::LeaveOut(_)
+        );
         self.state.remember_selection(before);
         match command {
             Command::Apply(label, edits) => self.apply(label, &edits),
@@ -39,10 +42,10 @@ impl SceneloomApp {
             }
             Command::CancelDrag => self.document.cancel_drag(),
             Command::Undo => self.undo(),
-            Command::Redo => {
-                self.document.redo();
-            }
+            Command::Redo => drop(self.document.redo_own()),
             Command::JumpTo(index) => drop(self.document.jump_to(index)),
+            Command::LeaveOut(index) => self.leave_out(index),
+            Command::ReplayHistory => self.replay_history(),
             Command::Tools(command) => self.tool_command(command, ctx),
             Command::Select(id) => self.state.choose(id.as_slice(), Choose::Only),
             Command::SelectNext(step) => {

@@ -248,12 +248,14 @@ impl SceneloomApp {
         }
     }
 
-    /// A scene with the data that its file keeps beside it: versions, and typed prompts.
+    /// A scene with the data that its file keeps beside it: versions, typed prompts, and the log.
     pub(crate) fn with_kept(&self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         scene.kept = Arc::new(ProjectHistory {
             versions: self.generation.versions.kept(scene.content()),
             typed: self.views.prompt.typed().to_vec(),
+            log: self.document.log(),
+            log_problem: None,
         });
         scene
     }

@@ -9,7 +9,6 @@ use super::files::{Arrived, Left, Next, Opening};
 use super::toasts::MessageLevel;
 use super::versions::VersionedScene;
 use crate::panes::compare::CompareMode;
-use editor::Document;
 use job::ChosenDensities;
 use job::inpaint::InpaintMask;
 use language::tf;
@@ -93,6 +92,7 @@ impl SceneloomApp {
         let now_s = self.now_s();
         let VersionedScene {
             scene,
+            document,
             versions,
             damaged,
             made,
@@ -118,7 +118,7 @@ impl SceneloomApp {
                 label
             }
             None => {
-                self.document = Document::new(scene);
+                self.document = document;
                 self.generation.versions.replace(versions);
                 "As opened"
             }

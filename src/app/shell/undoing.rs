@@ -2,13 +2,16 @@
 
 use super::app::SceneloomApp;
 use super::toasts::MessageLevel;
-use language::t;
+use editor::{LeftOut, Undone};
+use language::{t, tf};
 
 impl SceneloomApp {
     /// Undoes one step. If a requested operation runs that would become its own step, it is cancelled instead.
     pub(crate) fn undo(&mut self) {
         if self.document.is_dragging() || self.asked_for().is_none() {
-            self.document.undo();
+            if let Some(Undone::LeftOut(left)) = self.document.undo_own() {
+                self.tell_left_out(&left);
+            }
             return;
         }
         let now_s = self.now_s();
@@ -22,9 +25,48 @@ impl SceneloomApp {
             .push(MessageLevel::Info, t("Generation cancelled"), now_s);
     }
 
+    /// Leaves a step out of the history; the later ones are applied again.
+    pub(crate) fn leave_out(&mut self, index: usize) {
+        match self.document.leave_out(index) {
+            Ok(left) => self.tell_left_out(&left),
+            Err(error) => self.fail(error.to_string()),
+        }
+    }
+
+    /// Replays the history from its origin and says whether that gives the scene shown.
+    pub(crate) fn replay_history(&mut self) {
+        let steps = self.document.position();
+        match self.document.replays() {
+            Ok(true) => {
+                let text = tf!(
+                    "{n} steps replayed from the origin: the same scene, bit for bit",
+                    n = steps
+                );
+                let now_s = self.now_s();
+                self.toasts.push(MessageLevel::Info, text, now_s);
+            }
+            Ok(false) => self.fail(t("Replaying the history gives another scene").into()),
+            Err(error) => self.fail(tf!("The history cannot be replayed: {error}", error = error)),
+        }
+    }
+
+    /// Says which later steps could not follow when a step was left out.
+    fn tell_left_out(&mut self, left: &LeftOut) {
+        let step = t(&left.label);
+        let mut text = match left.changed {
+            true => tf!("Left out: {step}. Later steps stay", step = step),
+            false => tf!("Left out: {step}. Later steps replace all it did", step = step),
+        };
+        for skipped in left.skipped.iter().take(3) {
+            text = tf!("{text}; not applied: {skipped}", text = text, skipped = skipped);
+        }
+        let now_s = self.now_s();
+        self.toasts.push(MessageLevel::Info, text, now_s);
+    }
+
     /// Label of the step that undo reverts, in English.
     pub fn undo_step(&self) -> Option<&str> {
-        self.asked_for().or_else(|| self.document.undo_label())
+        self.asked_for().or_else(|| self.document.undo_own_label())
     }
 
     /// Label of the step that the running operation will become, if it was requested in the state shown.

@@ -8,6 +8,7 @@ use egui::TextureHandle;
 use rayon::prelude::*;
 
 use super::made_with::MadeWith;
+use editor::Document;
 use editor::checks::SeverityCounts;
 use formats::loom;
 use formats::recipe::{self, Recipe};
@@ -88,6 +89,8 @@ fn pack(scene: Handed<Arc<Scene>>) -> Option<Arc<Vec<u8>>> {
 pub struct VersionedScene {
     /// The scene.
     pub scene: Scene,
+    /// The scene with the history of its file.
+    pub document: Document,
     /// The versions, the oldest first.
     pub versions: Vec<Version>,
     /// Number of versions that cannot be read.
@@ -100,10 +103,9 @@ pub struct VersionedScene {
 
 impl From<authoring::open::OpenedScene> for VersionedScene {
     fn from(found: authoring::open::OpenedScene) -> Self {
-        Self {
-            notes: found.notes,
-            ..Self::from_scene(found.scene)
-        }
+        let mut opened = Self::from_scene(found.scene);
+        opened.notes.splice(0..0, found.notes);
+        opened
     }
 }
 
@@ -114,7 +116,7 @@ impl From<Scene> for VersionedScene {
 }
 
 impl VersionedScene {
-    /// Opens all versions; takes about 10 ms for each.
+    /// Opens all versions and replays the history; takes about 10 ms for each version.
     pub fn from_scene(scene: Scene) -> Self {
         let own = match scene.kept.versions.is_empty() {
             true => None,
@@ -135,12 +137,14 @@ impl VersionedScene {
             })
         };
         let versions: Vec<Version> = scene.kept.versions.par_iter().filter_map(version).collect();
+        let (document, note) = Document::open(scene.clone());
         Self {
             damaged: scene.kept.versions.len() - versions.len(),
             versions,
             scene,
+            document,
             made: None,
-            notes: Vec::new(),
+            notes: Vec::from_iter(note),
         }
     }
 
@@ -484,6 +488,7 @@ mod tests {
         saved.kept = Arc::new(scene::ProjectHistory {
             versions: kept,
             typed: Vec::new(),
+            ..Default::default()
         });
         let opened = VersionedScene::from_scene(saved);
         let found: Vec<_> = opened

@@ -113,7 +113,7 @@ impl SceneloomApp {
             dirty: self.document.is_dirty(),
             recent: &self.preferences.settings.recent,
             undo: self.undo_step(),
-            redo: self.document.redo_label(),
+            redo: self.document.redo_own_label(),
             live: self.generation.live.on,
             busy: self.generation.live.running.is_some(),
             marked: !self.state.tools.region.is_empty(),

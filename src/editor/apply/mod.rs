@@ -30,7 +30,7 @@ const LONGEST_WORDS: usize = 2000;
 pub trait Apply {
     /// Applies the edit to the scene's current frame: changes the data and puts a rough version into the voxels (a
     /// correction changes no voxels). On error the scene is as before. An edit that changes nothing keeps the revision.
-    /// Only [`Edit::AdoptResult`] and [`Edit::Correct`] change the frame's `source`.
+    /// Of the edits only [`Edit::Correct`] changes the frame's `source`.
     fn apply(&self, scene: &mut Scene) -> Result<(), EditError>;
 }
 

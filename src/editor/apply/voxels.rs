@@ -21,7 +21,6 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
             }
         }
         Edit::ClearPaint {} => frame.painted = VoxelPaint::over(frame.extent()),
-        Edit::AdoptResult { occupancy } => adopt(frame, occupancy.clone())?,
         _ => return Ok(false),
     }
     Ok(true)

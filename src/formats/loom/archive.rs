@@ -122,6 +122,11 @@ impl<R: Read + Seek> Reader<R> {
         self.unread.contains(entry)
     }
 
+    /// Counts the entries of a folder as read, whether or not they were.
+    pub(super) fn forget(&mut self, folder: &str) {
+        self.unread.retain(|entry| !entry.starts_with(folder));
+    }
+
     /// Reads all of an entry, unpacked, if that is at most `limit` bytes. The size that the zip declares is checked
     /// first, but memory grows only with the bytes that are really there.
     pub(super) fn bytes(&mut self, entry: &str, limit: u64) -> Result<Vec<u8>, ProjectError> {

@@ -10,6 +10,7 @@ use scene::kept::{KeptVersion, ProjectHistory};
 use scene::message::{of_lines, quoted};
 
 use super::archive::{MAX_JSON, Reader, Writer, parse, within};
+use super::log;
 use super::{LARGEST_FILE, ProjectError};
 
 const KEPT: &str = "kept.json";
@@ -54,9 +55,13 @@ fn check(versions: usize, typed: usize) -> Result<(), ProjectError> {
 
 /// Writes nothing if nothing is kept.
 pub(super) fn write(out: &mut Writer, kept: &ProjectHistory) -> Result<(), ProjectError> {
-    if kept.is_empty() {
-        return Ok(());
+    if !kept.versions.is_empty() || !kept.typed.is_empty() {
+        write_versions(out, kept)?;
     }
+    log::write(out, kept)
+}
+
+fn write_versions(out: &mut Writer, kept: &ProjectHistory) -> Result<(), ProjectError> {
     check(kept.versions.len(), kept.typed.len())?;
     let version = |v: &KeptVersion| VersionHeader {
         name: v.name.clone(),
@@ -75,8 +80,14 @@ pub(super) fn write(out: &mut Writer, kept: &ProjectHistory) -> Result<(), Proje
     Ok(())
 }
 
-/// Reads the kept versions and typed texts; the versions are not opened.
+/// Reads the kept versions, typed texts and the log; the versions are not opened.
 pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<ProjectHistory, ProjectError> {
+    let mut kept = read_versions(file)?;
+    log::read(file, &mut kept);
+    Ok(kept)
+}
+
+fn read_versions<R: Read + Seek>(file: &mut Reader<R>) -> Result<ProjectHistory, ProjectError> {
     if !file.has(KEPT) {
         return Ok(ProjectHistory::default());
     }
@@ -95,5 +106,6 @@ pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<ProjectHistor
     Ok(ProjectHistory {
         versions: versions.collect::<Result<_, ProjectError>>()?,
         typed: header.typed,
+        ..ProjectHistory::default()
     })
 }

@@ -12,6 +12,7 @@
 //! | `canvas/source_layout.u32`, `source_relief.f32`, `source_occupancy.u8` | of the source, only where it differs from the canvas |
 //! | `tracks/0000000007.u8` | class labels of a moving object, where it was made, `[x][y][z]`, a byte per voxel |
 //! | `kept.json`, `versions/0007.loom` | versions with their names and stars, and what was typed; only if there are any |
+//! | `log.json`, `log/<hash>.loom`, `log/results.voxels` | every change since an origin, with its author and the change before it; states and generated voxels by the hash of their bytes; only if anything was changed |
 //!
 //! The canvas has 200 x 200 columns around the origin of the world frame, unless `scene.json` gives it another `extent`.
 //!
@@ -23,9 +24,13 @@ mod beside;
 mod check;
 mod error;
 mod header;
+mod log;
+#[cfg(test)]
+mod log_tests;
 mod manifest;
 pub mod migrate;
 mod names;
+mod patch_bytes;
 mod read;
 #[cfg(test)]
 mod tests;

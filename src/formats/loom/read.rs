@@ -7,8 +7,8 @@ use std::sync::Arc;
 use scene::clip::ObjectVoxels;
 use scene::grid::NOT_PAINTED;
 use scene::{
-    Background, BoxId, Clip, Extent, Frame, Inferred, Relief, Scene, SceneBox, SourceFrame, Track,
-    Unobserved, VoxelGrid, VoxelPaint,
+    Background, BoxId, Clip, Extent, Frame, Inferred, ProjectHistory, Relief, Scene, SceneBox, SourceFrame,
+    Track, Unobserved, VoxelGrid, VoxelPaint,
 };
 
 use super::archive::{MAX_JSON, Reader, parse, within, wrong_voxels};
@@ -19,8 +19,24 @@ use super::manifest::{AnyManifest, Manifest};
 use super::migrate::{Migration, Old};
 use super::{MANIFEST, ProjectError, SCENE};
 
-/// The scene in a project file. `migrations` lead from older versions to this one, each by one.
+/// The scene in a project file with all that is kept beside it. `migrations` lead from older versions to this one, each by one.
 pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Result<Scene, ProjectError> {
+    read_with(reader, migrations, beside::read)
+}
+
+/// The scene in a project file alone. A file within a file is read so: it may hold others, to any depth.
+pub(super) fn read_alone<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Result<Scene, ProjectError> {
+    read_with(reader, migrations, |file| {
+        file.forget("");
+        Ok(ProjectHistory::default())
+    })
+}
+
+fn read_with<R: Read + Seek>(
+    reader: R,
+    migrations: &[Migration],
+    beside: impl FnOnce(&mut Reader<R>) -> Result<ProjectHistory, ProjectError>,
+) -> Result<Scene, ProjectError> {
     let mut file = Reader::new(reader)?;
     let text = file.bytes(MANIFEST, MAX_JSON)?;
     let version = AnyManifest::parse(&text)?.version(migrations)?;
@@ -36,7 +52,7 @@ pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Resul
         Some(clip) => read_clip(&mut file, clip)?,
         None => Clip::default(),
     };
-    let kept = beside::read(&mut file)?;
+    let kept = beside(&mut file)?;
     file.expect_all_read()?;
     let things = header.background.len();
     let background: Background = header.background.into_iter().collect();

@@ -20,7 +20,7 @@ use super::migrate::{self, Entries, Migration, MigrationChange};
 use super::*;
 
 /// What the bundled file of a version holds.
-fn sample(version: u32) -> Scene {
+pub(super) fn sample(version: u32) -> Scene {
     // Version 4 has maps of any extent.
     let extent = match version {
         4.. => Extent::new([-120, -100], [230, 203]).expect("sound"),
@@ -85,6 +85,9 @@ fn sample(version: u32) -> Scene {
     if version >= 8 {
         scene.arranged = Arc::new(arranged(&scene));
     }
+    if version >= 10 {
+        Arc::make_mut(&mut scene.kept).log = Some(Arc::new(super::log_tests::log()));
+    }
     scene
 }
 
@@ -146,6 +149,7 @@ fn kept() -> ProjectHistory {
     ProjectHistory {
         versions: vec![version("before the rain", true, 1), version("", false, 2)],
         typed: vec!["add a car".into(), "regen \"x\"".into()],
+        ..ProjectHistory::default()
     }
 }
 
@@ -223,7 +227,7 @@ fn bundled(version: u32) -> PathBuf {
     PathBuf::from(root).join(format!("v{version}.loom"))
 }
 
-fn assert_same(a: &Scene, b: &Scene) {
+pub(super) fn assert_same(a: &Scene, b: &Scene) {
     assert_eq!(
         (
             &a.name,
@@ -259,6 +263,10 @@ fn assert_same(a: &Scene, b: &Scene) {
     }
     assert_eq!(a.roads, b.roads);
     assert_eq!(a.arranged, b.arranged);
+    match (&a.kept.log, &b.kept.log) {
+        (Some(a), Some(b)) => super::log_tests::assert_same_log(a, b),
+        (a, b) => assert!(a.is_none() && b.is_none(), "one has a log"),
+    }
 }
 
 #[test]
@@ -323,7 +331,7 @@ fn each_step_leads_to_the_next_and_the_last_to_the_present() {
     assert!(migrate::ALL.iter().all(|step| !step.what.is_empty()));
 }
 
-fn unpack(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
+pub(super) fn unpack(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
     let mut zip = ZipArchive::new(Cursor::new(bytes)).expect("a zip");
     let mut entry = |i| {
         let mut entry = zip.by_index(i).expect("listed");
@@ -338,7 +346,7 @@ fn zip_len(bytes: &[u8]) -> usize {
     ZipArchive::new(Cursor::new(bytes)).expect("a zip").len()
 }
 
-fn pack(entries: &[(String, Vec<u8>)]) -> Vec<u8> {
+pub(super) fn pack(entries: &[(String, Vec<u8>)]) -> Vec<u8> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, content) in entries {
         zip.start_file(name.as_str(), SimpleFileOptions::default())
@@ -392,8 +400,8 @@ const FROM_0: Migration = Migration {
 
 #[test]
 fn an_older_version_goes_through_every_step() {
-    let [v1, v2, v3, v4, v5, v6, v7, v8] = migrate::ALL;
-    let chain = [FROM_0, v1, v2, v3, v4, v5, v6, v7, v8];
+    let [v1, v2, v3, v4, v5, v6, v7, v8, v9] = migrate::ALL;
+    let chain = [FROM_0, v1, v2, v3, v4, v5, v6, v7, v8, v9];
     let found = read::read(Cursor::new(of_version_0()), &chain).expect("version 0 opens");
     assert_same(&found, &sample(1));
     // The steps are for their versions only.

@@ -2,11 +2,13 @@
 //! only the bricks it touches, and changes are found by comparing pointers. All empty bricks share one memory.
 
 mod extent;
+mod patch;
 mod window;
 
 use std::sync::{Arc, LazyLock};
 
 pub use extent::{Extent, Overlap};
+pub use patch::{BrickPatch, VoxelPatch};
 pub use window::Window;
 
 use super::Class;

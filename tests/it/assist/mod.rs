@@ -1,5 +1,6 @@
 //! `sceneloom session`, `mcp` and `schema` as other programs use them: over their pipes and over HTTP.
 
+mod history;
 mod hostile;
 pub mod http;
 pub mod mcp;

@@ -65,6 +65,7 @@ fn names_of_versions_move_no_cursor() {
     scene.kept = std::sync::Arc::new(scene::ProjectHistory {
         versions: vec![version],
         typed: Vec::new(),
+        ..Default::default()
     });
     let bytes = changed(&loom::to_bytes(&scene).expect("sound"), "kept.json", |value| {
         let version = &mut value["versions"][0];

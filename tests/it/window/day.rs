@@ -126,10 +126,17 @@ fn a_day_of_work() {
     bench.key(Modifiers::CTRL, Key::O);
     bench.click("Discard changes");
     bench.give_path(&path, "Open file");
-    bench.wait_until("the file", |b| b.app().document.history().len() == 1);
+    bench.wait_until("the file", |b| !b.app().document.is_dirty());
     let reopened = bench.frame();
     assert_eq!(reopened.boxes, last.boxes);
     assert!(reopened.occupancy == last.occupancy && reopened.layout == last.layout);
     assert_eq!(bench.app().state.tool, select::ID);
     sweep(&mut bench);
+    // The file has the whole day: undo goes on to its beginning.
+    assert_eq!(bench.history().len() - 1, steps);
+    for _ in 0..steps {
+        bench.harness.key_press_modifiers(Modifiers::CTRL, Key::Z);
+        bench.steps(1);
+    }
+    assert_eq!(bench.frame(), first);
 }

@@ -61,10 +61,20 @@ fn a_scene_is_saved_and_opened_again_by_the_path_field() {
     bench.key(Modifiers::CTRL, Key::O);
     bench.click("Discard changes");
     bench.give_path(&path, "Open file");
-    bench.wait_until("the scene", |b| b.app().document.history().len() == 1);
+    bench.wait_until("the scene", |b| !b.app().document.is_dirty());
+    assert_eq!(bench.history().len(), 2, "the deletion was not saved");
     assert_eq!(bench.frame().boxes, saved.boxes);
     assert_eq!(bench.frame().occupancy, saved.occupancy);
     assert_eq!(bench.frame().layout, saved.layout);
+    // Undo goes on, and the history can be replayed.
+    bench.key(Modifiers::CTRL, Key::Z);
+    assert_ne!(bench.frame().boxes, saved.boxes);
+    bench.key(Modifiers::CTRL, Key::Y);
+    assert_eq!(bench.frame().boxes, saved.boxes);
+    let ctx = bench.harness.ctx.clone();
+    bench.app().execute(Command::ReplayHistory, &ctx);
+    let told = "1 steps replayed from the origin: the same scene, bit for bit";
+    assert_eq!(bench.app().toasts.last(), Some(told));
     // Saved again without a question, now that there is a file.
     bench.click("Box 7 car");
     bench.key(Modifiers::NONE, Key::ArrowLeft);

@@ -86,6 +86,51 @@ fn assistants_come_in_when_they_may_and_work_on_the_scene_that_is_shown() {
     assert!(TcpStream::connect(&address).is_err(), "nobody listens any more");
 }
 
+/// Both at one scene: each takes back its own, and what the other did stays.
+#[test]
+fn user_and_assistant_undo_their_own_steps() {
+    let mut bench = bench();
+    bench.app().preferences.settings.assistants = true;
+    bench.wait_until("the door", |b| b.app().guests.open().is_some());
+    let open = bench.app().guests.open().expect("open");
+    let address = open
+        .url
+        .trim_start_matches("http://")
+        .trim_end_matches("/mcp")
+        .to_owned();
+    let token = open.token.clone();
+    let ask = |name: &'static str, args: Value| {
+        let (address, token) = (address.clone(), token.clone());
+        std::thread::spawn(move || call(&address, &token, name, &args).1["result"].clone())
+    };
+    let first = bench.frame();
+    bench.click("Box 7 car");
+    bench.key(Modifiers::NONE, Key::ArrowLeft);
+    let mine = bench.frame();
+    let edits = json!([{ "set_prompt": { "prompt": "fog" } }]);
+    let thread = ask("apply", json!({ "edits": edits, "step": "theirs" }));
+    while_drawing(&mut bench, thread);
+    bench.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(bench.frame().boxes, first.boxes);
+    assert_eq!(&*bench.app().document.scene().prompt, "fog");
+    let told = "Left out: Move box. Later steps stay";
+    assert_eq!(bench.app().toasts.last(), Some(told));
+    bench.key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(bench.frame().boxes, mine.boxes);
+    // The assistant takes back its own step and none of the user's.
+    let thread = ask("undo", json!({}));
+    let undone = while_drawing(&mut bench, thread);
+    assert_eq!(undone["structuredContent"]["steps"], json!(["theirs"]));
+    let thread = ask("undo", json!({}));
+    assert_eq!(while_drawing(&mut bench, thread)["isError"], true);
+    assert_eq!(bench.frame().boxes, mine.boxes);
+    let thread = ask("history", json!({}));
+    let found = while_drawing(&mut bench, thread);
+    let steps = found["structuredContent"]["steps"].as_array().expect("steps");
+    assert_eq!(steps[1]["author"], "user", "{found}");
+    assert_eq!(steps[2]["author"], "assistant", "{found}");
+}
+
 #[test]
 fn a_door_that_cannot_open_is_told_once() {
     let mut bench = Bench::new();

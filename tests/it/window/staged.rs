@@ -281,7 +281,7 @@ fn the_seed_that_made_a_result_is_kept_with_it_and_used_again() {
     let ctx = bench.harness.ctx.clone();
     let open = app::command::FileCommand::OpenPath(path);
     bench.app().execute(Command::File(open), &ctx);
-    bench.wait_until("the scene", |b| b.app().document.history().len() == 1);
+    bench.wait_until("the scene", |b| b.app().state.seed.value.is_none());
     assert_eq!(bench.app().state.seed.value, None, "the scene's own");
     let list = bench.app().generation.versions.list();
     let found = list

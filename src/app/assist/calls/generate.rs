@@ -92,7 +92,6 @@ impl Operation for GenerateCall {
     fn run(self, desk: &mut Desk) -> anyhow::Result<Generated> {
         let params = self.params()?;
         let scene = desk.scene()?;
-        let from = scene.content();
         // On a copy: scenery and voxels become one step of the document together.
         let mut copy = Document::new(Scene::clone(&scene));
         copy.apply_all("Draw scenery", &scenery_first(&scene, &params)?)?;
@@ -107,7 +106,7 @@ impl Operation for GenerateCall {
         let report = result.report;
         let wall_s = report.wall_s.iter().map(|(stage, s)| ((*stage).to_owned(), *s));
         Ok(Generated {
-            done: desk.put("Generate".into(), from, Scene::clone(copy.scene()))?,
+            done: desk.take_over("Generate".into(), copy)?,
             region_columns: report.region_columns,
             untouched_voxels_changed: report.untouched_voxels_changed,
             network_calls: report.network_calls,

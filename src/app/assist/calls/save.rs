@@ -31,7 +31,7 @@ pub struct Saved {
 
 impl Operation for Save {
     const NAME: &'static str = "save";
-    const ABOUT: &'static str = "Writes the scene with everything in it and the kept versions as a project file (.loom), whole or not at all.";
+    const ABOUT: &'static str = "Writes the scene with everything in it, its history and the kept versions as a project file (.loom), whole or not at all.";
     const EXAMPLE: &'static str = r#"{"file": "a.loom", "replace": true}"#;
     const CHANGES: bool = false;
     type Receipt = Saved;
@@ -41,8 +41,8 @@ impl Operation for Save {
             bail!("file is {:?}, expected a name that ends in .loom", self.file);
         }
         let path = desk.folder.target(&self.file, self.replace)?;
-        let scene = desk.scene()?;
-        let bytes = loom::save(&path, &desk.with_versions(&scene)?)?;
+        let scene = desk.to_save()?;
+        let bytes = loom::save(&path, &scene)?;
         // (a window knows its own file)
         if desk.is_own() {
             desk.with(|document| document.mark_saved())?;

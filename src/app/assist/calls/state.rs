@@ -247,12 +247,21 @@ impl Operation for GetState {
     type Receipt = StateReceipt;
 
     fn run(self, desk: &mut Desk) -> anyhow::Result<StateReceipt> {
-        let (scene, undo, redo, unsaved) = desk.look(|document| {
+        let own = desk.is_own();
+        let (scene, undo, redo, unsaved) = desk.look(move |document| {
             let name = |label: Option<&str>| label.map(str::to_owned);
             (
                 document.settled_scene().clone(),
-                name(document.undo_label()),
-                name(document.redo_label()),
+                name(if own {
+                    document.undo_label()
+                } else {
+                    document.undo_own_label()
+                }),
+                name(if own {
+                    document.redo_label()
+                } else {
+                    document.redo_own_label()
+                }),
                 document.is_dirty(),
             )
         })?;

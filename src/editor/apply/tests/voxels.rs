@@ -37,11 +37,7 @@ fn painted_voxels_are_locked() {
         [15, FREE, 4]
     );
     // A result cannot overrule them either.
-    Edit::AdoptResult {
-        occupancy: VoxelGrid::new(),
-    }
-    .apply(&mut scene)
-    .expect("always");
+    scene = crate::replay::with_result(&scene, VoxelGrid::new(), None).expect("always");
     assert_eq!([column(&scene)[0], column(&scene)[12]], [15, 4]);
     assert_eq!(scene.frame().occupancy.count_set(), 2);
     assert!(!Arc::ptr_eq(&source, &scene.frame().source));

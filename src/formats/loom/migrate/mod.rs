@@ -10,6 +10,7 @@ mod v5;
 mod v6;
 mod v7;
 mod v8;
+mod v9;
 
 use std::io::{Read, Seek};
 
@@ -38,7 +39,7 @@ pub enum MigrationChange {
 }
 
 /// Every step, oldest first, each to the version that the next one takes.
-pub const ALL: [Migration; 8] = [
+pub const ALL: [Migration; 9] = [
     v1::TO_V2,
     v2::TO_V3,
     v3::TO_V4,
@@ -47,6 +48,7 @@ pub const ALL: [Migration; 8] = [
     v6::TO_V7,
     v7::TO_V8,
     v8::TO_V9,
+    v9::TO_V10,
 ];
 
 /// The entries of a file that a step may change.
