@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use crate::replay::{edited, with_result};
+use crate::replay::{edited, numbered, with_result};
 use scene::grid::VoxelPatch;
 use scene::op::{Author, Change, LoggedState, Op, OpId};
 use scene::{Background, Scene, SceneRev, VoxelGrid};
@@ -19,7 +19,7 @@ pub struct Document {
     pub(crate) at: usize,            // step being shown
     drag: Option<Drag>,
     saved: SceneRev,
-    limit_bytes: usize,
+    pub(crate) limit_bytes: usize,
     pub(crate) author: Author,
     pub(crate) origin: Arc<LoggedState>, // of the first step
     pub(crate) next_op: u64,
@@ -108,7 +108,9 @@ impl Document {
     pub fn apply_all(&mut self, label: impl Into<Label>, edits: &[Edit]) -> Result<(), EditError> {
         let next = self.edited(edits)?;
         self.drag = None;
-        self.push(label.into(), Arc::new(next), || Change::Edits(edits.into()));
+        let before = self.settled_scene().clone();
+        let next = Arc::new(next);
+        self.push(label.into(), next.clone(), || numbered(edits, &before, &next));
         Ok(())
     }
 
@@ -135,7 +137,8 @@ impl Document {
     /// Makes the last preview one undo step. Without a drag, or without a change, nothing happens.
     pub fn commit_drag(&mut self, label: impl Into<Label>) {
         if let Some(Drag { scene, edits }) = self.drag.take() {
-            self.push(label.into(), scene, || Change::Edits(edits.into()));
+            let before = self.settled_scene().clone();
+            self.push(label.into(), scene.clone(), || numbered(&edits, &before, &scene));
         }
     }
 
@@ -310,7 +313,7 @@ impl Document {
     pub fn restore(&mut self, label: impl Into<Label>, scene: &Scene) {
         self.drag = None;
         let scene = Arc::new(scene.clone().without_log());
-        let state = LoggedState::new(&scene);
+        let state = self.logged(&scene);
         self.push(label.into(), scene, || Change::Restore(state));
     }
 
@@ -318,7 +321,7 @@ impl Document {
     /// another state.
     pub fn take_over(&mut self, label: impl Into<Label>, other: Document) -> Result<(), Stale> {
         let label = label.into();
-        if self.drag.is_some() || other.steps[0].scene.content() != self.settled_scene().content() {
+        if self.drag.is_some() || other.origin.scene.content() != self.settled_scene().content() {
             return Err(Stale);
         }
         let scene = other.settled_scene().clone();
@@ -354,6 +357,21 @@ impl Document {
             *scene = Arc::new(other);
         }
         shown
+    }
+
+    /// A state for the log: the one that the log has already, if there is one.
+    pub(crate) fn logged(&self, scene: &Arc<Scene>) -> Arc<LoggedState> {
+        let restored = |op: &Op| match &op.change {
+            Change::Restore(state) => Some(state.clone()),
+            _ => None,
+        };
+        let in_steps = self.steps.iter().flat_map(|step| &step.ops).filter_map(restored);
+        let known = std::iter::once(self.origin.clone()).chain(in_steps);
+        let same = |state: &Arc<LoggedState>| state.scene.content() == scene.content();
+        known
+            .into_iter()
+            .find(same)
+            .unwrap_or_else(|| LoggedState::new(scene))
     }
 
     fn edited(&self, edits: &[Edit]) -> Result<Scene, EditError> {
@@ -443,25 +461,45 @@ impl Document {
         }
     }
 
-    /// Lets the log begin at the oldest step that is left.
+    /// Lets the log begin at the oldest step that is left. A step that needs a state or a change that is gone becomes the
+    /// state that it led to.
     fn begin_at_oldest(&mut self) {
         let oldest = &mut self.steps[0];
         oldest.bytes = 0;
         self.origin = LoggedState::new(&oldest.scene);
         let last = std::mem::take(&mut oldest.ops).pop().map(|op| op.id);
-        let known: BTreeSet<OpId> = self.steps.iter().flat_map(|s| &s.ops).map(|op| op.id).collect();
+        let mut known = BTreeSet::new();
         for step in &mut self.steps[1..] {
-            for (i, op) in step.ops.iter_mut().enumerate() {
-                if op.parent.is_none_or(|parent| known.contains(&parent)) {
-                    continue;
-                }
-                // A change of a state that is not kept any more becomes the state that it led to.
-                if op.parent != last && i == 0 {
-                    op.change = Change::Restore(LoggedState::new(&step.scene));
-                }
-                op.parent = None;
+            let Some(first) = step.ops.first_mut() else {
+                continue;
+            };
+            if first.parent == last {
+                first.parent = None;
+            } else if first.parent.is_none_or(|parent| !known.contains(&parent)) {
+                step.become_state();
             }
+            let gone = |op: &Op| match &op.change {
+                Change::Without { ops, .. } => ops.iter().any(|id| !known.contains(id)),
+                _ => false,
+            };
+            if step.ops.iter().any(gone) {
+                step.become_state();
+            }
+            known.extend(step.ops.iter().map(|op| op.id));
         }
+    }
+}
+
+impl UndoStep {
+    /// Replaces the changes by one: the state that they led to.
+    fn become_state(&mut self) {
+        let Some(last) = self.ops.pop() else { return };
+        self.ops = vec![Op {
+            parent: None,
+            joins: false,
+            change: Change::Restore(LoggedState::new(&self.scene)),
+            ..last
+        }];
     }
 }
 

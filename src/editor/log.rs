@@ -3,9 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use crate::document::{Document, UndoStep};
-use crate::replay::{Replayed, replay};
+use crate::replay::{Renumbered, Replayed, replay};
 use language::{t, tf};
 use scene::op::{Author, Change, LoggedState, Op, OpId, OpLog};
 use scene::{ProjectHistory, Scene};
@@ -32,9 +33,15 @@ pub enum LeaveOutError {
         /// Number of the step that is shown.
         most: usize,
     },
-    /// Left out already, or itself a step that leaves others out.
-    #[error("step {0} is left out already, or leaves out others")]
+    /// Left out already.
+    #[error("step {0} is left out already")]
     Already(usize),
+    /// A step that leaves others out: undo takes it back.
+    #[error("step {0} leaves out others, expected another step")]
+    LeavesOut(usize),
+    /// A step that put another scene or version in place of the whole.
+    #[error("step {0} replaced the whole scene, expected another step")]
+    Whole(usize),
 }
 
 /// One step back, for an editor that shares its document.
@@ -55,9 +62,16 @@ pub struct HistoryStep<'a> {
     pub author: Option<&'a Author>,
     /// True if a later step leaves it out.
     pub is_left_out: bool,
+    /// True if [`Document::leave_out`] takes it.
+    pub can_leave_out: bool,
 }
 
 impl Document {
+    /// Memory that a history may take while it is opened; the user's limit comes after that.
+    const OPENED_BYTES: usize = 1 << 30;
+    /// Longest time that a replay takes before it breaks off.
+    const LONGEST_REPLAY: Duration = Duration::from_secs(60);
+
     /// A document with the history that its file keeps, if there is one: undo goes on where it was saved. A history that
     /// this program replays to another state is kept as far as it goes, and said in a line.
     pub fn open(scene: Scene) -> (Self, Option<String>) {
@@ -95,7 +109,9 @@ impl Document {
     /// The state shown, with the log as its file keeps it.
     pub fn to_save(&self) -> Scene {
         let mut scene = Scene::clone(self.settled_scene());
-        Arc::make_mut(&mut scene.kept).log = self.log();
+        if let Some(log) = self.log() {
+            Arc::make_mut(&mut scene.kept).log = Some(log);
+        }
         scene
     }
 
@@ -103,11 +119,12 @@ impl Document {
     pub fn history_steps(&self) -> Vec<HistoryStep<'_>> {
         let left_out = self.left_out();
         let mut lines = Vec::with_capacity(self.steps.len());
-        for step in &self.steps {
+        for (i, step) in self.steps.iter().enumerate() {
             lines.push(HistoryStep {
                 label: &step.label,
                 author: step.ops.first().filter(|op| !op.joins).map(|op| &op.author),
                 is_left_out: step.ops.iter().any(|op| left_out.contains(&op.id)),
+                can_leave_out: self.leaves_out(i, &left_out).is_ok(),
             });
         }
         lines
@@ -118,7 +135,7 @@ impl Document {
     pub fn replays(&self) -> Result<bool, String> {
         let log = self.log();
         let Some(log) = log else { return Ok(true) };
-        let mut again = Self::begun(&log);
+        let mut again = Self::begun(&log, &self.settled_scene().kept);
         again.play(&log.ops)?;
         let step = again.steps.get(self.at);
         Ok(step.is_some_and(|step| step.scene.is_same(self.settled_scene())))
@@ -127,34 +144,48 @@ impl Document {
     /// Leaves a step up to the one shown out of the history: the later ones are applied again where they can be. This is
     /// a step of its own, which undo takes back.
     pub fn leave_out(&mut self, index: usize) -> Result<LeftOut, LeaveOutError> {
+        self.leave_out_as(index, false)
+    }
+
+    fn leave_out_as(&mut self, index: usize, is_undo: bool) -> Result<LeftOut, LeaveOutError> {
+        self.leaves_out(index, &self.left_out())?;
+        self.cancel_drag();
+        let step = &self.steps[index];
+        let ops: Vec<OpId> = step.ops.iter().map(|op| op.id).collect();
+        let mut left = LeftOut {
+            label: step.label.to_string(),
+            skipped: Vec::new(),
+            changed: false,
+        };
+        // A step before a state that replaced the whole is not behind the scene any more.
+        let Some((scene, skipped)) = self.without(self.tip(), &ops) else {
+            return Ok(left);
+        };
+        let scene = scene.at(self.settled_scene().time_s());
+        if !scene.is_same(self.settled_scene()) {
+            left.changed = true;
+            left.skipped = skipped;
+            let name = if is_undo { "Undo" } else { "Leave out a step" };
+            self.push(name.into(), Arc::new(scene), || Change::Without { ops, is_undo });
+        }
+        Ok(left)
+    }
+
+    /// Errors if a step cannot be left out; `left_out` are those that are already.
+    fn leaves_out(&self, index: usize, left_out: &BTreeSet<OpId>) -> Result<(), LeaveOutError> {
         let (found, most) = (index, self.at);
         if !(1..=most).contains(&index) {
             return Err(LeaveOutError::NoStep { found, most });
         }
-        self.cancel_drag();
-        let step = &self.steps[index];
-        let ids: Vec<OpId> = step.ops.iter().map(|op| op.id).collect();
-        let label = step.label.to_string();
-        let leaves_out = step.ops.iter().any(|op| matches!(op.change, Change::Without(_)));
-        let left_out = self.left_out();
-        if leaves_out || ids.iter().any(|id| left_out.contains(id)) {
-            return Err(LeaveOutError::Already(index));
+        for op in &self.steps[index].ops {
+            match &op.change {
+                _ if left_out.contains(&op.id) => return Err(LeaveOutError::Already(index)),
+                Change::Without { .. } => return Err(LeaveOutError::LeavesOut(index)),
+                Change::Restore(_) => return Err(LeaveOutError::Whole(index)),
+                Change::Edits { .. } | Change::Result { .. } => {}
+            }
         }
-        let (scene, skipped) = self
-            .without(self.tip(), &ids)
-            .map_err(|_| LeaveOutError::Already(index))?;
-        let scene = scene.at(self.settled_scene().time_s());
-        let changed = !scene.is_same(self.settled_scene());
-        if changed {
-            self.push("Leave out a step".into(), Arc::new(scene), || {
-                Change::Without(ids)
-            });
-        }
-        Ok(LeftOut {
-            label,
-            skipped,
-            changed,
-        })
+        Ok(())
     }
 
     /// Takes back the last change of the editor that works on the document now; see [`Self::set_author`]. Changes that others
@@ -165,16 +196,23 @@ impl Document {
             self.cancel_drag();
             return None;
         }
-        let index = self.next_to_undo()?;
-        if index == self.at {
-            return self.undo().map(|label| Undone::Back(label.to_owned()));
+        for index in self.to_undo() {
+            if index == self.at {
+                return self.undo().map(|label| Undone::Back(label.to_owned()));
+            }
+            // A step that later ones replaced, or that replaced the whole scene, cannot be taken back from under them.
+            let left = self.leave_out_as(index, true).ok().filter(|left| left.changed);
+            if let Some(left) = left {
+                return Some(Undone::LeftOut(left));
+            }
         }
-        self.leave_out(index).ok().map(Undone::LeftOut)
+        None
     }
 
     /// Name of the step that [`Self::undo_own`] would take back.
     pub fn undo_own_label(&self) -> Option<&str> {
-        self.next_to_undo().map(|index| &*self.steps[index].label)
+        let index = self.to_undo().first().copied()?;
+        Some(&self.steps[index].label)
     }
 
     /// Brings back what [`Self::undo_own`] took back; the name of the step.
@@ -196,30 +234,43 @@ impl Document {
         self.own_left_out().map(|index| &*self.steps[index].label)
     }
 
-    /// The step that the one shown leaves out, if the present editor did that.
+    /// The step that the present editor took back last from under others, if nothing came after that.
     fn own_left_out(&self) -> Option<usize> {
-        let op = self.steps[self.at].ops.first()?;
-        let ids = without_ids(op).filter(|_| op.author == self.author)?;
-        let holds = |step: &UndoStep| step.ops.iter().any(|op| ids.contains(&op.id));
+        let op = self.steps[self.at].ops.first();
+        let op = op.filter(|op| op.author == self.author)?;
+        let Change::Without { ops, is_undo: true } = &op.change else {
+            return None;
+        };
+        let holds = |step: &UndoStep| step.ops.iter().any(|op| ops.contains(&op.id));
         self.steps.iter().position(holds)
     }
 
-    /// The step that the present editor would take back next.
-    fn next_to_undo(&self) -> Option<usize> {
+    /// Steps that the present editor may take back, the next one first.
+    fn to_undo(&self) -> Vec<usize> {
         let left_out = self.left_out();
         let is_user = self.author == Author::USER;
         let open = |index: &usize| {
             let op = self.steps[*index].ops.first();
-            op.is_some_and(|op| !matches!(op.change, Change::Without(_)) && !left_out.contains(&op.id))
+            op.is_some_and(|op| match &op.change {
+                // Only as the last one: it was made on all that came before.
+                Change::Without { is_undo, .. } => !is_undo && *index == self.at,
+                _ => !left_out.contains(&op.id),
+            })
         };
         let own = |index: &usize| {
             let op = self.steps[*index].ops.first();
             // Steps of earlier sessions are the user's, whoever made them.
-            op.is_some_and(|op| op.author == self.author || is_user && op.id < self.opened_until)
+            op.is_some_and(|op| match op.id < self.opened_until {
+                true => is_user,
+                false => op.author == self.author,
+            })
         };
-        let mut open_steps = (1..=self.at).rev().filter(open);
-        let last_open = open_steps.clone().next().filter(|_| is_user);
-        open_steps.find(own).or(last_open)
+        let steps = (1..=self.at).rev().filter(open);
+        let (mine, others): (Vec<usize>, Vec<usize>) = steps.partition(own);
+        match is_user {
+            true => [mine, others].concat(),
+            false => mine,
+        }
     }
 
     /// Changes that a step up to the one shown leaves out.
@@ -233,9 +284,12 @@ impl Document {
         self.steps[self.at].ops.last().map(|op| op.id)
     }
 
-    /// A document at the origin of a log.
-    fn begun(log: &OpLog) -> Self {
-        let mut document = Self::new(Scene::clone(&log.origin.scene));
+    /// A document at the origin of a log; all its states have what their file keeps beside them.
+    fn begun(log: &OpLog, kept: &Arc<ProjectHistory>) -> Self {
+        let mut origin = Scene::clone(&log.origin.scene);
+        origin.kept = kept.clone();
+        let mut document = Self::new(origin);
+        document.limit_bytes = Self::OPENED_BYTES;
         document.origin = log.origin.clone();
         document.steps[0].label = log.label.clone();
         document
@@ -243,7 +297,7 @@ impl Document {
 
     /// The document that a log leads to, with `scene` as the state shown.
     fn replayed(scene: Scene, log: &OpLog) -> (Self, Option<String>) {
-        let mut document = Self::begun(log);
+        let mut document = Self::begun(log, &scene.kept);
         let problem = document.play(&log.ops).err();
         document.at = log.at.min(document.steps.len() - 1);
         let shown = Arc::new(scene.without_log());
@@ -273,39 +327,56 @@ impl Document {
     }
 
     /// Applies the changes of a log to the origin, each to the state that it was made on. Errors with the first that does not
-    /// apply; those before it stay.
+    /// apply, or once it takes longer than [`Self::LONGEST_REPLAY`]; those before it stay.
     fn play(&mut self, ops: &[Op]) -> Result<(), String> {
-        let mut states: BTreeMap<OpId, Arc<Scene>> = BTreeMap::new();
-        for op in ops {
-            let named = |reason: String| format!("{:?}: {reason}", &*op.label);
-            let before = match op.parent {
-                Some(parent) => states.get(&parent).cloned(),
-                None => Some(self.origin.scene.clone()),
+        let start = Instant::now();
+        let kept = self.settled_scene().kept.clone();
+        // A state is held until the last change that was made on it.
+        let uses = ops.iter().enumerate().map(|(i, op)| (op.parent, i));
+        let last_use: BTreeMap<Option<OpId>, usize> = uses.collect();
+        let mut states = BTreeMap::from([(None, self.settled_scene().clone())]);
+        for (i, op) in ops.iter().enumerate() {
+            let named = |reason: &str| format!("{:?}: {reason}", &*op.label);
+            if start.elapsed() > Self::LONGEST_REPLAY {
+                return Err(named("replaying it takes too long"));
+            }
+            let before = states.get(&op.parent);
+            let before = before.ok_or_else(|| named("the change before it is missing"))?;
+            let mut scene = match &op.change {
+                Change::Without { ops, .. } => {
+                    let left = self.without(op.parent, ops);
+                    let (scene, _) = left.ok_or_else(|| named("it leaves out what is not there"))?;
+                    scene.at(op.shown_s)
+                }
+                _ => replay(before, op).map_err(|reason| named(&reason))?.scene,
             };
-            let before = before.ok_or_else(|| named("the change before it is missing".into()))?;
-            let scene = match &op.change {
-                Change::Without(ids) => self.without(op.parent, ids).map_err(named)?.0.at(op.shown_s),
-                _ => replay(&before, op).map_err(named)?.scene,
-            };
+            scene.kept = kept.clone();
             let scene = Arc::new(scene);
-            states.insert(op.id, scene.clone());
+            if last_use.get(&op.parent) == Some(&i) {
+                states.remove(&op.parent);
+            }
+            if last_use.contains_key(&Some(op.id)) {
+                states.insert(Some(op.id), scene.clone());
+            }
             self.put(op.clone(), scene);
         }
         Ok(())
     }
 
     /// The state that the changes up to `tip` lead to without some of them and without all that were left out before; and
-    /// those that do not apply then, a line each. Errors in one line if there is none of them.
-    fn without(&self, tip: Option<OpId>, ids: &[OpId]) -> Result<(Scene, Vec<String>), String> {
+    /// those that do not apply then, a line each. `None` if none of them led to that state.
+    fn without(&self, tip: Option<OpId>, ids: &[OpId]) -> Option<(Scene, Vec<String>)> {
         let chain = self.chain(tip);
         let mut out: BTreeSet<OpId> = ids.iter().copied().collect();
+        if !chain.iter().any(|op| out.contains(&op.id)) {
+            return None;
+        }
         out.extend(chain.iter().filter_map(|op| without_ids(op)).flatten());
-        let first = chain.iter().position(|op| out.contains(&op.id));
-        let mut from = first.ok_or("there is nothing to leave out")?;
+        let mut from = chain.iter().position(|op| out.contains(&op.id))?;
         // The nearest state that is there is a step's, or the origin.
         let mut state = loop {
             let Some(before) = from.checked_sub(1) else {
-                break self.origin.scene.clone();
+                break self.first_state();
             };
             let is_last = |step: &&UndoStep| step.ops.last().is_some_and(|op| op.id == chain[before].id);
             match self.steps.iter().find(is_last) {
@@ -314,17 +385,23 @@ impl Document {
             }
         };
         let mut skipped = Vec::new();
+        let mut renumbered = Renumbered::default();
         let mut is_skipped = false;
         for op in &chain[from..] {
-            if matches!(op.change, Change::Without(_)) {
+            if without_ids(op).is_some() {
                 continue;
             }
             // The result of an edit goes with it.
             is_skipped = out.contains(&op.id) || op.joins && is_skipped;
             if is_skipped {
+                renumbered.note(op);
                 continue;
             }
-            match replay(&state, op) {
+            let again = match renumbered.problem(op) {
+                Some(problem) => Err(problem.to_owned()),
+                None => replay(&state, op),
+            };
+            match again {
                 Ok(Replayed { scene, unmatched }) => {
                     if unmatched > 0 {
                         skipped.push(format!(
@@ -336,11 +413,19 @@ impl Document {
                 }
                 Err(reason) => {
                     skipped.push(format!("{}: {reason}", op.label));
+                    renumbered.note(op);
                     is_skipped = true;
                 }
             }
         }
-        Ok((Arc::unwrap_or_clone(state), skipped))
+        Some((Arc::unwrap_or_clone(state), skipped))
+    }
+
+    /// The state before the first change.
+    fn first_state(&self) -> Arc<Scene> {
+        let mut scene = Scene::clone(&self.origin.scene);
+        scene.kept = self.steps[0].scene.kept.clone();
+        Arc::new(scene)
     }
 
     /// Changes from the origin up to `tip`, each the parent of the next.
@@ -360,7 +445,7 @@ impl Document {
 /// The changes that a change leaves out, if it does.
 fn without_ids(op: &Op) -> Option<&Vec<OpId>> {
     match &op.change {
-        Change::Without(ids) => Some(ids),
+        Change::Without { ops, .. } => Some(ops),
         _ => None,
     }
 }

@@ -8,7 +8,7 @@ use std::sync::{Arc, OnceLock};
 use serde::{Deserialize, Serialize};
 
 use crate::grid::VoxelPatch;
-use crate::{Background, Edit, Scene};
+use crate::{Background, Edit, Scene, ThingId};
 
 /// Number of a change within its log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -56,7 +56,12 @@ pub struct Op {
 #[derive(Clone, Debug)]
 pub enum Change {
     /// Edits, applied in order.
-    Edits(Arc<[Edit]>),
+    Edits {
+        /// The edits; boxes that they add bear their numbers.
+        edits: Arc<[Edit]>,
+        /// Number of the first thing that they add, if they add any.
+        things_from: Option<ThingId>,
+    },
     /// A generated occupancy, and scenery that came with it.
     Result {
         /// Difference from the occupancy of [`Scene::for_generation`]'s frame.
@@ -67,7 +72,12 @@ pub enum Change {
     /// Another state as a whole: a version, or a scene that was made elsewhere.
     Restore(Arc<LoggedState>),
     /// Earlier changes left out, and those after them applied again.
-    Without(Vec<OpId>),
+    Without {
+        /// The changes that are left out.
+        ops: Vec<OpId>,
+        /// True if their maker took them back by undo, behind changes of others.
+        is_undo: bool,
+    },
 }
 
 impl Op {
@@ -80,10 +90,10 @@ impl Op {
             _ => 0,
         };
         let inside = match &self.change {
-            Change::Edits(edits) => edits.iter().map(|e| size_of::<Edit>() + of_edit(e)).sum(),
+            Change::Edits { edits, .. } => edits.iter().map(|e| size_of::<Edit>() + of_edit(e)).sum(),
             Change::Result { patch, .. } => 4 * patch.voxels() + size_of_val(patch.bricks()),
             Change::Restore(state) => state.file().map_or(0, |file| file.len()),
-            Change::Without(ops) => size_of_val(&ops[..]),
+            Change::Without { ops, .. } => size_of_val(&ops[..]),
         };
         size_of::<Self>() + inside
     }
@@ -145,6 +155,8 @@ pub struct OpLog {
 impl OpLog {
     /// Most changes of a log.
     pub const MAX_OPS: usize = 10_000;
+    /// Most changes to be applied again because others before them were left out.
+    pub const MOST_AGAIN: usize = 100_000;
 
     /// Number of undo steps.
     pub fn steps(&self) -> usize {
@@ -159,6 +171,7 @@ impl OpLog {
         }
         let mut known: BTreeSet<OpId> = BTreeSet::new();
         let mut last: Option<&Op> = None;
+        let (mut withouts, mut again) = (0usize, 0usize);
         for op in &self.ops {
             let id = op.id.0;
             if let Some(parent) = op.parent.filter(|parent| !known.contains(parent)) {
@@ -170,13 +183,15 @@ impl OpLog {
             if op.joins && op.parent != last.map(|last| last.id) {
                 return Some(format!("change {id} joins another step than the last"));
             }
-            if let Change::Without(ids) = &op.change
-                && let Some(missing) = ids.iter().find(|id| !known.contains(*id))
-            {
-                return Some(format!(
-                    "change {id} leaves out change {}, which is not before it",
-                    missing.0
-                ));
+            if let Change::Without { ops, .. } = &op.change {
+                if let Some(missing) = ops.iter().find(|id| !known.contains(*id)) {
+                    return Some(format!(
+                        "change {id} leaves out change {}, which is not before it",
+                        missing.0
+                    ));
+                }
+                withouts += 1;
+                again += known.len();
             }
             if !known.insert(op.id) || id == u64::MAX {
                 return Some(format!("change {id} is there twice, or beyond all numbers"));
@@ -185,6 +200,13 @@ impl OpLog {
                 return Some(format!("change {id} is of no moment"));
             }
             last = Some(op);
+        }
+        // Each of them applies those after it again.
+        let most = Self::MOST_AGAIN;
+        if again > most {
+            return Some(format!(
+                "{withouts} changes leave out others, which is {again} changes to apply again, expected at most {most}"
+            ));
         }
         let (at, steps) = (self.at, self.steps());
         (at > steps).then(|| format!("step {at} is shown, but there are {steps}"))

@@ -6,7 +6,7 @@ use editor::Document;
 use formats::loom;
 use scene::Scene;
 
-/// The document of a scene that was read. What its history cannot be replayed from is said on standard error.
+/// The document of a scene that was read. Says on standard error why its history cannot be used, if so.
 pub(super) fn opened(scene: Scene) -> Document {
     let (document, note) = Document::open(scene);
     if let Some(note) = note {

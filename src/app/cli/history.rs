@@ -7,14 +7,14 @@ use serde_json::json;
 
 use super::{CommandResult, Common, Stop, document, output};
 use app::open;
-use editor::HistoryStep;
+use editor::{Document, HistoryStep};
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct History {
     /// Scene whose history is meant.
     scene: PathBuf,
-    /// Replay all steps from the origin; exit 1 if that gives another scene than the file holds.
+    /// Replay all steps from the origin; exit 1 if that gives another scene than the file holds, or the history is damaged.
     #[arg(long)]
     replay: bool,
     /// Leave this step out and apply the later ones again; its number as listed.
@@ -29,7 +29,12 @@ pub struct History {
 
 impl History {
     pub(super) fn run(self) -> CommandResult {
-        let mut document = document::opened(open::scene(&self.scene)?);
+        let (mut document, note) = Document::open(open::scene(&self.scene)?);
+        match note {
+            Some(note) if self.replay => return Err(Stop::Short(note)),
+            Some(note) => eprintln!("sceneloom: {note}"),
+            None => {}
+        }
         let name = || self.scene.display().to_string();
         let replayed = match self.replay {
             true => Some(document.replays().map_err(|e| anyhow!(e)).with_context(name)?),

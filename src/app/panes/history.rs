@@ -60,8 +60,7 @@ pub fn history_title(document: &Document) -> String {
 }
 
 /// Commands of one step.
-fn step_menu(ui: &mut Ui, step: usize, at: usize, is_left_out: bool, commands: &mut Vec<Command>) {
-    let can_leave = (1..=at).contains(&step) && !is_left_out;
+fn step_menu(ui: &mut Ui, step: usize, can_leave: bool, commands: &mut Vec<Command>) {
     let leave = egui::Button::new(t("Leave this step out"));
     let leave = ui.add_enabled(can_leave, leave).on_hover_text(t(
         "The later steps are applied again, as far as they can be without it",
@@ -141,7 +140,7 @@ pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>)
             if response.clicked() {
                 commands.push(Command::JumpTo(i));
             }
-            response.context_menu(|ui| step_menu(ui, i, at, step.is_left_out, commands));
+            response.context_menu(|ui| step_menu(ui, i, step.can_leave_out, commands));
         }
     });
 }

@@ -11,6 +11,7 @@ use super::app::{SceneloomApp, one_line};
 use editor::Document;
 use job::guard::guarded;
 use language::tf;
+use scene::op::Author;
 
 /// A task on the document, to be done by the window's thread.
 pub type DocumentTask = Box<dyn FnOnce(&mut Document) + Send>;
@@ -119,7 +120,10 @@ impl SceneloomApp {
         }
         for task in tasks {
             // The document changes completely or not at all.
-            if let Err(panicked) = guarded("assistant", || task(&mut self.document)) {
+            let user = self.document.set_author(Author::ASSISTANT);
+            let done = guarded("assistant", || task(&mut self.document));
+            self.document.set_author(user);
+            if let Err(panicked) = done {
                 self.fail(panicked.to_string());
             }
         }

@@ -57,10 +57,19 @@ impl SceneloomApp {
             true => tf!("Left out: {step}. Later steps stay", step = step),
             false => tf!("Left out: {step}. Later steps replace all it did", step = step),
         };
-        for skipped in left.skipped.iter().take(3) {
-            text = tf!("{text}; not applied: {skipped}", text = text, skipped = skipped);
-        }
         let now_s = self.now_s();
+        for skipped in &left.skipped {
+            let text = tf!("Not applied without it: {skipped}", skipped = skipped);
+            self.toasts.log(text, now_s);
+        }
+        if !left.skipped.is_empty() {
+            let n = left.skipped.len();
+            text = tf!(
+                "Left out: {step}. {n} later steps do not apply without it: see the log",
+                step = step,
+                n = n
+            );
+        }
         self.toasts.push(MessageLevel::Info, text, now_s);
     }
 

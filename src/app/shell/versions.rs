@@ -116,7 +116,7 @@ impl From<Scene> for VersionedScene {
 }
 
 impl VersionedScene {
-    /// Opens all versions and replays the history; takes about 10 ms for each version.
+    /// Opens all versions, about 10 ms for each, and replays the history, a few milliseconds a step.
     pub fn from_scene(scene: Scene) -> Self {
         let own = match scene.kept.versions.is_empty() {
             true => None,

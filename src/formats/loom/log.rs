@@ -11,9 +11,9 @@ use sha2::{Digest, Sha256};
 use scene::grid::VoxelPatch;
 use scene::message::quoted;
 use scene::op::{Author, Change, LoggedState, Op, OpId, OpLog};
-use scene::{Background, Edit, ProjectHistory, Scene, Thing};
+use scene::{Background, Edit, Extent, ProjectHistory, Scene, Thing, ThingId};
 
-use super::archive::{MAX_JSON, Reader, Writer, parse};
+use super::archive::{MAX_JSON, Reader, Writer, parse, within};
 use super::migrate;
 use super::patch_bytes::{patch_from_bytes, patch_to_bytes};
 use super::read::read_alone;
@@ -59,14 +59,22 @@ struct OpHeader {
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 enum ChangeHeader {
-    Edits(Arc<[Edit]>),
+    Edits {
+        edits: Arc<[Edit]>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        things_from: Option<ThingId>,
+    },
     Result {
         voxels: String,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         background: Option<Vec<Thing>>,
     },
     Restore(String),
-    Without(Vec<OpId>),
+    Without {
+        changes: Vec<OpId>,
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        is_undo: bool,
+    },
 }
 
 fn is_zero(number: &f64) -> bool {
@@ -99,7 +107,10 @@ impl Blobs {
 
     fn change(&mut self, change: &Change) -> Result<ChangeHeader, ProjectError> {
         Ok(match change {
-            Change::Edits(edits) => ChangeHeader::Edits(edits.clone()),
+            Change::Edits { edits, things_from } => ChangeHeader::Edits {
+                edits: edits.clone(),
+                things_from: *things_from,
+            },
             Change::Result { patch, background } => {
                 let bytes = patch_to_bytes(patch);
                 let voxels = hash(&bytes);
@@ -108,15 +119,46 @@ impl Blobs {
                 ChangeHeader::Result { voxels, background }
             }
             Change::Restore(state) => ChangeHeader::Restore(self.state(state)?),
-            Change::Without(ids) => ChangeHeader::Without(ids.clone()),
+            Change::Without { ops, is_undo } => ChangeHeader::Without {
+                changes: ops.clone(),
+                is_undo: *is_undo,
+            },
         })
     }
 }
 
-/// Writes the log, if there is one. States that are versions of the file too are written once, as those. A log that is too
-/// large for a file is left out.
+/// The entries of a log.
+struct Packed {
+    header: Vec<u8>,
+    states: BTreeMap<String, Arc<Vec<u8>>>,
+    results: Vec<u8>,
+}
+
+/// Writes the log, if there is one. A log that is too large for a file, or not sound, is left out: the scene is worth more.
 pub(super) fn write(out: &mut Writer, kept: &ProjectHistory) -> Result<(), ProjectError> {
     let Some(log) = &kept.log else { return Ok(()) };
+    let packed = match packed(log, kept) {
+        Ok(packed) => packed,
+        Err(problem) => {
+            tracing::warn!("the history is left out of the file: {problem}");
+            return Ok(());
+        }
+    };
+    out.put(LOG, &packed.header)?;
+    for (name, bytes) in &packed.states {
+        out.packed(&state_entry(name), bytes)?;
+    }
+    if !packed.results.is_empty() {
+        out.put(RESULTS, &packed.results)?;
+    }
+    Ok(())
+}
+
+/// The entries of a log. States that are versions of the file too are written once, as those.
+fn packed(log: &OpLog, kept: &ProjectHistory) -> Result<Packed, ProjectError> {
+    if let Some(problem) = log.problem() {
+        return Err(ProjectError::Unsound(problem));
+    }
     let mut blobs = Blobs::default();
     let origin = blobs.state(&log.origin)?;
     let op = |op: &Op| {
@@ -131,39 +173,31 @@ pub(super) fn write(out: &mut Writer, kept: &ProjectHistory) -> Result<(), Proje
         })
     };
     let changes = log.ops.iter().map(op).collect::<Result<_, ProjectError>>()?;
+    let lengths = blobs.patches.iter();
     let header = LogHeader {
         origin,
         label: log.label.clone(),
         at: log.at,
         changes,
-        results: blobs
-            .patches
-            .iter()
-            .map(|(name, bytes)| (name.clone(), bytes.len()))
-            .collect(),
+        results: lengths.map(|(name, bytes)| (name.clone(), bytes.len())).collect(),
     };
-    let text = serde_json::to_vec(&header).map_err(|e| ProjectError::Json {
+    let header = serde_json::to_vec(&header).map_err(|e| ProjectError::Json {
         entry: LOG.into(),
         detail: e.to_string(),
     })?;
-    let states: usize = blobs.states.values().map(|bytes| bytes.len()).sum();
-    let patches: usize = blobs.patches.values().map(Vec::len).sum();
-    if text.len() as u64 > MAX_JSON || (states + patches) as u64 > LARGEST_FILE / 4 {
-        tracing::warn!("the history is too large for the file and is left out");
-        return Ok(());
-    }
-    out.put(LOG, &text)?;
+    within("the size of log.json", header.len() as u64, MAX_JSON)?;
     for version in &kept.versions {
         blobs.states.remove(&hash(&version.loom));
     }
-    for (name, bytes) in &blobs.states {
-        out.packed(&state_entry(name), bytes)?;
-    }
-    if !blobs.patches.is_empty() {
-        let bytes: Vec<u8> = blobs.patches.into_values().flatten().collect();
-        out.put(RESULTS, &bytes)?;
-    }
-    Ok(())
+    let results: Vec<u8> = blobs.patches.into_values().flatten().collect();
+    let states: usize = blobs.states.values().map(|bytes| bytes.len()).sum();
+    let bytes = (states + results.len()) as u64;
+    within("the size of the history", bytes, LARGEST_FILE / 4)?;
+    Ok(Packed {
+        header,
+        states: blobs.states,
+        results,
+    })
 }
 
 /// Reads the log into `kept`, which has the versions already. A log that is not sound is no reason to refuse the scene: the
@@ -184,6 +218,7 @@ fn read_log<R: Read + Seek>(file: &mut Reader<R>, kept: &ProjectHistory) -> Resu
     let mut found = Found {
         versions: versions.collect(),
         states: BTreeMap::new(),
+        columns: 0,
         patches: read_results(file, &header.results)?,
         file,
     };
@@ -250,6 +285,8 @@ struct Found<'a, R> {
     file: &'a mut Reader<R>,
     versions: BTreeMap<String, Arc<Vec<u8>>>,
     states: BTreeMap<String, Arc<LoggedState>>,
+    /// Columns of all states that were read: a small file could hold many large maps.
+    columns: usize,
     patches: BTreeMap<String, Arc<VoxelPatch>>,
 }
 
@@ -269,6 +306,12 @@ impl<R: Read + Seek> Found<'_, R> {
             });
         }
         let scene = read_alone(Cursor::new(&bytes[..]), &migrate::ALL)?;
+        self.columns += scene.canvas().extent().columns();
+        within(
+            "the number of columns of all states",
+            self.columns as u64,
+            2 * Extent::MAX_COLUMNS as u64,
+        )?;
         let state = LoggedState::read(scene, bytes);
         self.states.insert(name.to_owned(), state.clone());
         Ok(state)
@@ -276,7 +319,7 @@ impl<R: Read + Seek> Found<'_, R> {
 
     fn change(&mut self, change: ChangeHeader) -> Result<Change, ProjectError> {
         Ok(match change {
-            ChangeHeader::Edits(edits) => Change::Edits(edits),
+            ChangeHeader::Edits { edits, things_from } => Change::Edits { edits, things_from },
             ChangeHeader::Result { voxels, background } => {
                 let missing =
                     || ProjectError::Unsound(format!("{LOG}: the result {} is missing", quoted(&voxels, 40)));
@@ -298,7 +341,10 @@ impl<R: Read + Seek> Found<'_, R> {
                 }
             }
             ChangeHeader::Restore(name) => Change::Restore(self.state(&name)?),
-            ChangeHeader::Without(ids) => Change::Without(ids),
+            ChangeHeader::Without { changes, is_undo } => Change::Without {
+                ops: changes,
+                is_undo,
+            },
         })
     }
 }

@@ -27,7 +27,14 @@ pub(super) fn log() -> OpLog {
     let mut other = sample(5);
     other.prompt = "another".into();
     let changes = [
-        ("Edit", false, Change::Edits(edits.into())),
+        (
+            "Edit",
+            false,
+            Change::Edits {
+                edits: edits.into(),
+                things_from: Some(scene::ThingId(7)),
+            },
+        ),
         (
             "Edit",
             true,
@@ -49,7 +56,14 @@ pub(super) fn log() -> OpLog {
             false,
             Change::Restore(LoggedState::new(&Arc::new(other))),
         ),
-        ("Leave out a step", false, Change::Without(vec![OpId(3)])),
+        (
+            "Leave out a step",
+            false,
+            Change::Without {
+                ops: vec![OpId(3)],
+                is_undo: true,
+            },
+        ),
     ];
     let op = |(i, (label, joins, change)): (usize, (&'static str, bool, Change))| Op {
         id: OpId(i as u64 + 1),
@@ -84,9 +98,21 @@ pub(super) fn assert_same_log(a: &OpLog, b: &OpLog) {
         };
         assert_eq!(about(a), about(b));
         match (&a.change, &b.change) {
-            (Change::Edits(a), Change::Edits(b)) => assert_eq!(a, b),
+            (
+                Change::Edits { edits, things_from },
+                Change::Edits {
+                    edits: other,
+                    things_from: others,
+                },
+            ) => assert_eq!((edits, things_from), (other, others)),
             (Change::Restore(a), Change::Restore(b)) => assert!(a.scene.is_same(&b.scene)),
-            (Change::Without(a), Change::Without(b)) => assert_eq!(a, b),
+            (
+                Change::Without { ops, is_undo },
+                Change::Without {
+                    ops: other,
+                    is_undo: others,
+                },
+            ) => assert_eq!((ops, is_undo), (other, others)),
             (
                 Change::Result { patch, background },
                 Change::Result {
@@ -187,7 +213,7 @@ fn a_damaged_log_costs_the_history_alone() {
         ("\"at\":2", "\"at\":-1", "log.json"),
         ("\"author\"", "\"maker\"", "unknown field"),
         ("\"set_prompt\"", "\"set_fire\"", "unknown variant"),
-        ("\"without\":[3]", "\"without\":[5]", "which is not before it"),
+        ("\"changes\":[3]", "\"changes\":[5]", "which is not before it"),
         ("\"origin\":\"", "\"origin\":\"../", "is missing"),
     ] {
         let line = problem(|entries| {

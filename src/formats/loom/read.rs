@@ -24,7 +24,8 @@ pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Resul
     read_with(reader, migrations, beside::read)
 }
 
-/// The scene in a project file alone. A file within a file is read so: it may hold others, to any depth.
+/// The scene in a project file without what is kept beside it. Files within files are read so: those may hold others, to any
+/// depth.
 pub(super) fn read_alone<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Result<Scene, ProjectError> {
     read_with(reader, migrations, |file| {
         file.forget("");

@@ -9,6 +9,11 @@ use thiserror::Error;
 /// Errors of this crate.
 #[derive(Debug, Error)]
 pub enum StableError {
+    /// The program was built without the networks.
+    #[error(
+        "this program was built without the networks for public weights; one with them: cargo run --release --features pictures"
+    )]
+    Absent,
     /// The system could not read a file or folder.
     #[error("{}: {source}", path.display())]
     Read {
@@ -103,6 +108,7 @@ pub enum StableError {
     Backend(String),
 }
 
+#[cfg(feature = "networks")]
 impl From<candle_core::Error> for StableError {
     fn from(error: candle_core::Error) -> Self {
         // The lines after the first tell where in the program the error came from.

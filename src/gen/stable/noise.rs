@@ -1,5 +1,6 @@
 //! The noise that pictures are drawn from.
 
+#[cfg(feature = "networks")]
 use diffusion::schedule::NoiseLevel;
 use numeric::philox::{Stream, normal};
 
@@ -74,6 +75,7 @@ pub fn with_prior(noise: &[f32], warped: &[f32], lambda: f32) -> Result<Vec<f32>
 }
 
 /// Clean latents with noise at a level, in 64 bits.
+#[cfg(feature = "networks")]
 pub(crate) fn noised(clean: &[f32], noise: &[f32], level: &NoiseLevel) -> Vec<f64> {
     let pairs = clean.iter().zip(noise);
     pairs

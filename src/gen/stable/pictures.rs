@@ -1,8 +1,11 @@
 //! Pictures as plain numbers.
 
+#[cfg(feature = "networks")]
 use candle_core::{DType, Device, Tensor};
 
-use crate::{Machine, StableError, check_finite, check_length, wrong};
+#[cfg(feature = "networks")]
+use crate::Machine;
+use crate::{StableError, check_finite, check_length, wrong};
 
 /// Most pixels of a picture along a side.
 const MOST_PX: usize = 8192;
@@ -64,7 +67,10 @@ impl PictureBatch {
     pub fn rgb(&self) -> &[f32] {
         &self.rgb
     }
+}
 
+#[cfg(feature = "networks")]
+impl PictureBatch {
     /// These pictures with the pixels of `other` wherever `mask` `[picture][row][column]` is false, to the bit. Both
     /// are of the same size.
     pub(crate) fn except(mut self, mask: &[bool], other: &Self) -> Self {

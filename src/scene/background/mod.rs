@@ -206,6 +206,7 @@ impl Thing {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Background {
     things: BTreeMap<ThingId, Thing>,
+    next_at_least: u32, // 0 but while a change is applied again
 }
 
 impl Background {
@@ -238,9 +239,15 @@ impl Background {
             .things
             .keys()
             .next_back()
-            .map_or(Some(1), |id| id.0.checked_add(1));
+            .map_or(Some(1), |id| id.0.checked_add(1))
+            .map(|next| next.max(self.next_at_least));
         let gap = || (1..u32::MAX).find(|id| !self.things.contains_key(&ThingId(*id)));
         ThingId(next.or_else(gap).unwrap_or(u32::MAX))
+    }
+
+    /// Gives no id below one, until another limit is set: things that are added again keep their ids.
+    pub fn give_from(&mut self, id: ThingId) {
+        self.next_at_least = id.0;
     }
 
     /// Inserts a thing. Returns the one of the same id that it replaces.
@@ -318,7 +325,10 @@ pub fn in_extent<'a>(extent: Extent, things: impl IntoIterator<Item = &'a Thing>
 impl FromIterator<Thing> for Background {
     fn from_iter<T: IntoIterator<Item = Thing>>(things: T) -> Self {
         let things = things.into_iter().map(|t| (t.id, t)).collect();
-        Self { things }
+        Self {
+            things,
+            next_at_least: 0,
+        }
     }
 }
 

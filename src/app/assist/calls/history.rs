@@ -28,6 +28,9 @@ pub struct Redo {
     steps: u32,
 }
 
+/// Later steps that do not apply any more, named in a receipt at most.
+const MOST_SKIPPED: usize = 8;
+
 fn one() -> u32 {
     1
 }
@@ -80,9 +83,9 @@ pub struct Moved {
 
 /// One step back or forward: its name, and the later steps of others that do not apply any more. A document of a window has
 /// steps of others too, which stay.
-fn step(document: &mut Document, own: bool, back: bool) -> Option<(String, Vec<String>)> {
+fn step(document: &mut Document, alone: bool, back: bool) -> Option<(String, Vec<String>)> {
     let plain = |name: Option<String>| name.map(|name| (name, Vec::new()));
-    match (own, back) {
+    match (alone, back) {
         (true, true) => plain(document.undo().map(str::to_owned)),
         (true, false) => plain(document.redo().map(str::to_owned)),
         (false, false) => plain(document.redo_own()),
@@ -97,11 +100,11 @@ fn travel(desk: &mut Desk, steps: u32, back: bool) -> anyhow::Result<Moved> {
     if !(1..=1000).contains(&steps) {
         bail!("steps is {steps}, expected 1 to 1000");
     }
-    let own = desk.is_own();
+    let alone = desk.is_own();
     let ((names, skipped), states) = desk.with(move |document| {
         let (mut names, mut skipped) = (Vec::new(), Vec::new());
         for _ in 0..steps {
-            match step(document, own, back) {
+            match step(document, alone, back) {
                 Some((name, mut lines)) => {
                     names.push(name);
                     skipped.append(&mut lines);
@@ -116,8 +119,11 @@ fn travel(desk: &mut Desk, steps: u32, back: bool) -> anyhow::Result<Moved> {
         bail!("there is nothing to {verb}");
     }
     let mut done = desk.done(format!("{what} {}", names.join(", ")), &states);
-    // A state that comes back was checked when it was made.
-    done.warnings = skipped;
+    // A state that comes back was checked when it was made; the findings of one that others changed since are told.
+    if skipped.is_empty() && alone {
+        done.warnings.clear();
+    }
+    done.warnings.splice(0..0, skipped.into_iter().take(MOST_SKIPPED));
     if names.len() < steps as usize {
         let found = names.len();
         done.warnings.push(format!(
@@ -190,7 +196,8 @@ impl Operation for LeaveOut {
         let (left, states) = desk.with(move |document| document.leave_out(self.step))?;
         let left = left?;
         let mut done = desk.done(format!("Leave out {}", left.label), &states);
-        done.warnings.splice(0..0, left.skipped);
+        done.warnings
+            .splice(0..0, left.skipped.into_iter().take(MOST_SKIPPED));
         Ok(done)
     }
 }

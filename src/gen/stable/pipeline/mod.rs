@@ -4,7 +4,6 @@ mod checks;
 mod draw;
 mod open;
 mod preview;
-mod request;
 
 use candle_core::{DType, Device, Tensor};
 
@@ -18,9 +17,8 @@ use crate::unet::Unet;
 use crate::vae::Vae;
 use crate::{Machine, StableError, check_finite, check_length};
 
+pub(crate) use crate::request::{Control, PictureRequest};
 pub use draw::{DenoisingStep, GeneratedPictures};
-pub use open::Folders;
-pub use request::{Control, PictureRequest, SemanticPlanes, StartPictures};
 
 /// All networks of a model, checked against each other.
 pub struct Pipeline {

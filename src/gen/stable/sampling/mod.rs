@@ -5,7 +5,9 @@
 //! which is DDIM with noise levels between two training steps.
 
 mod plan;
+#[cfg(feature = "networks")]
 mod solver;
 
 pub use plan::{Call, SamplingPlan};
+#[cfg(feature = "networks")]
 pub(crate) use solver::Solver;
