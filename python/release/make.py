@@ -1,5 +1,7 @@
 """Release artefacts of a built program: python3 python/release/make.py [--program target/release/sceneloom] [-o dist]
 
+The program is best built for it: cargo build --profile dist --features full, then --program target/dist/sceneloom.
+
 Writes a wheel (the Python package with the program inside), a .deb with desktop entry and file type, and a .tar.gz. Needs Python alone. The
 same program and commit give the same bytes. Prints name and size of each; exit 1 if one is larger than 100 MB. `check.py` tries them.
 """
