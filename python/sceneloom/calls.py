@@ -152,6 +152,14 @@ class Calls:
         receipt: types.Generated = self.call("generate", args)
         return receipt
 
+    def history(self) -> types.Steps:
+        """Lists the steps that led to the scene, with their makers: those of the file it was opened from, of
+        this session and of a window. The file keeps them.
+        """
+        args = _given({}, [])
+        receipt: types.Steps = self.call("history", args)
+        return receipt
+
     def keep_version(self, *, name: str) -> types.VersionList:
         """Keeps the scene as it is now under a name, for diff and restore_version; at most 64. save writes
         them into the project file, open brings them back.
@@ -383,8 +391,8 @@ class Calls:
         return receipt
 
     def save(self, *, file: str, replace: bool | None = None) -> types.Saved:
-        """Writes the scene with everything in it and the kept versions as a project file (.loom), whole or not
-        at all.
+        """Writes the scene with everything in it, its history and the kept versions as a project file (.loom),
+        whole or not at all.
 
         file: File in the folder of this session; it ends in `.loom`.
         replace: Write over a file that is there.
@@ -415,12 +423,15 @@ class Calls:
         receipt: types.StateReceipt = self.call("state", args)
         return receipt
 
-    def undo(self, *, steps: int | None = None) -> types.Moved:
+    def undo(self, *, step: int | None = None, steps: int | None = None) -> types.Moved:
         """Takes back the last change of the scene, or the last few: each call that changed it is one step. A
-        failed call is none.
+        failed call is none. In a window the changes of this session are taken back, and those of the user
+        stay.
 
+        step: In place of the last steps this one alone, by its number in `history`: later ones are applied
+            again, and warnings name those that cannot be without it.
         steps: How many steps.
         """
-        args = _given({'steps': steps}, [])
+        args = _given({'step': step, 'steps': steps}, [])
         receipt: types.Moved = self.call("undo", args)
         return receipt

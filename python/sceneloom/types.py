@@ -2161,6 +2161,32 @@ StateReceipt = TypedDict(
     },
 )
 
+# A step of the history.
+Step = TypedDict(
+    'Step',
+    {
+        # Maker: `user`, `assistant`, or another name; none for the state that was opened.
+        'author': 'NotRequired[str | None]',
+        # True if a later step leaves it out.
+        'left_out': 'bool',
+        # Its name.
+        'name': 'str',
+        # Its number; 0 is the state that was opened.
+        'step': 'int',
+    },
+)
+
+# Receipt of `history`.
+Steps = TypedDict(
+    'Steps',
+    {
+        # The step whose state is shown; later ones can be redone.
+        'shown': 'int',
+        # All steps, the oldest first.
+        'steps': 'Sequence[Step]',
+    },
+)
+
 # Where the sun (at night the moon) stands.
 Sun = TypedDict(
     'Sun',

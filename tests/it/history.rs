@@ -17,7 +17,10 @@ fn edited(steps: usize, generated: usize) -> Document {
     let mut document = Document::new(app::open::bundled().expect("bundled"));
     let mut pipeline = OccPipeline::new(OccModels::bundled().expect("bundled"));
     let never = || false;
-    for i in 0..steps {
+    for i in 0.. {
+        if document.position() == steps {
+            break;
+        }
         let (a, b) = ((i * 37 % 60) as f64 - 30.0, (i * 23 % 40) as f64 - 20.0);
         let edit = match i % 5 {
             0 => Edit::AddBox {

@@ -146,8 +146,6 @@ calls! {
     Redo(calls::history::Redo),
     /// See [`calls::history::History`].
     History(calls::history::History),
-    /// See [`calls::history::LeaveOut`].
-    LeaveOut(calls::history::LeaveOut),
     /// See [`calls::versions`].
     KeepVersion(calls::versions::KeepVersion),
     /// See [`calls::versions`].

@@ -1,4 +1,4 @@
-//! Tests of the log in a project file: it comes back, equal states are kept once, and a damaged one costs nothing else.
+//! Tests of what a project file keeps beside its scene. The log: it comes back, equal states are kept once, and a damaged one costs nothing else.
 
 use std::sync::Arc;
 
@@ -255,4 +255,55 @@ fn a_foreign_author_is_kept() {
         name.starts_with("some body!!") && name.chars().count() == Author::LONGEST + 1,
         "{name}"
     );
+}
+
+#[test]
+fn what_is_kept_is_no_part_of_the_scene() {
+    let scene = sample(VERSION);
+    let (with, alone) = (
+        to_bytes(&scene).expect("sound"),
+        alone_to_bytes(&scene).expect("sound"),
+    );
+    assert!(with.len() > alone.len());
+    let mut bare = scene.clone();
+    bare.kept = Arc::default();
+    assert_eq!(to_bytes(&bare).expect("sound"), alone);
+    // Every version opens by itself.
+    let back = from_bytes(&with).expect("its own");
+    assert_same(
+        &from_bytes(&back.kept.versions[1].loom).expect("a version"),
+        &sample(2),
+    );
+    assert_eq!(back.kept.versions[0].title(), "before the rain");
+    assert_eq!(back.kept.versions[1].title(), "Add a car");
+    // A version that is damaged does not keep the scene from opening; one that is missing or too much is named.
+    let mut entries = unpack(&with);
+    let at = entries
+        .iter()
+        .position(|e| e.0 == "versions/0001.loom")
+        .expect("there");
+    entries[at].1.truncate(100);
+    let damaged = from_bytes(&pack(&entries)).expect("the scene is whole");
+    assert!(from_bytes(&damaged.kept.versions[1].loom).is_err());
+    let line = |entries: &[(String, Vec<u8>)]| from_bytes(&pack(entries)).expect_err("refused").to_string();
+    let gone = entries.remove(at);
+    assert_eq!(line(&entries), "entry \"versions/0001.loom\" is missing");
+    entries.push((gone.0, gone.1.clone()));
+    entries.push(("versions/0002.loom".into(), gone.1));
+    assert_eq!(line(&entries), "entry \"versions/0002.loom\" is not known");
+    entries.pop();
+    let at = entries.iter().position(|e| e.0 == "kept.json").expect("there");
+    for (bytes, expected) in [
+        (b"[".to_vec(), "kept.json"),
+        (br#"{"versions":[{"name":3}]}"#.to_vec(), "kept.json"),
+        (br#"{"kept":1}"#.to_vec(), "unknown field"),
+        (
+            format!(r#"{{"typed":[{}""]}}"#, r#""","#.repeat(1000)).into_bytes(),
+            "the number of typed lines",
+        ),
+    ] {
+        entries[at].1 = bytes;
+        let line = line(&entries);
+        assert!(line.contains(expected), "{line}");
+    }
 }

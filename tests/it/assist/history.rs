@@ -18,7 +18,7 @@ fn a_session_goes_on_with_the_history_of_its_file() {
     let away = json!([{ "move_box": { "id": id, "center_m": [24, 0, 0.8] } }]);
     talk.did("apply", json!({ "edits": away, "step": "away" }));
     talk.did("save", json!({ "file": "a.loom" }));
-    let left = talk.did("leave_out", json!({ "step": 2 }));
+    let left = talk.did("undo", json!({ "step": 2 }));
     assert_eq!(left["step"], "Leave out car");
     let warning = left["warnings"][0].as_str().expect("a warning");
     assert!(
@@ -41,7 +41,7 @@ fn a_session_goes_on_with_the_history_of_its_file() {
         (&json!(4), &json!("assistant"))
     );
     talk.did("undo", json!({}));
-    let refused = talk.call("leave_out", json!({ "step": 9 })).expect_err("no step");
+    let refused = talk.call("undo", json!({ "step": 9 })).expect_err("no step");
     assert_eq!(refused, "step 9 does not exist, expected 1 to 3");
     drop(talk);
     // By the command line, and in a session that begins with the file.

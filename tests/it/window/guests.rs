@@ -113,7 +113,7 @@ fn user_and_assistant_undo_their_own_steps() {
     bench.key(Modifiers::COMMAND, Key::Z);
     assert_eq!(bench.frame().boxes, first.boxes);
     assert_eq!(&*bench.app().document.scene().prompt, "fog");
-    let told = "Left out: Move box. Later steps stay";
+    let told = "Left out: Nudge box. Later steps stay";
     assert_eq!(bench.app().toasts.last(), Some(told));
     bench.key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     assert_eq!(bench.frame().boxes, mine.boxes);

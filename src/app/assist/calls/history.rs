@@ -1,4 +1,4 @@
-//! `undo` and `redo`, the list of steps, and steps left out of it.
+//! `undo` and `redo`, and the list of steps.
 
 use anyhow::bail;
 use schemars::JsonSchema;
@@ -16,6 +16,10 @@ pub struct Undo {
     #[serde(default = "one")]
     #[schemars(range(min = 1, max = 1000))]
     steps: u32,
+    /// In place of the last steps this one alone, by its number in `history`: later ones are applied again, and warnings name
+    /// those that cannot be without it.
+    #[serde(default)]
+    step: Option<usize>,
 }
 
 /// Arguments of `redo`.
@@ -39,14 +43,6 @@ fn one() -> u32 {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct History {}
-
-/// Arguments of `leave_out`.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LeaveOut {
-    /// Number of the step, as `history` lists it.
-    step: usize,
-}
 
 /// A step of the history.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -133,6 +129,17 @@ fn travel(desk: &mut Desk, steps: u32, back: bool) -> anyhow::Result<Moved> {
     Ok(Moved { done, steps: names })
 }
 
+/// Leaves one step out, wherever it is.
+fn leave_out(desk: &mut Desk, step: usize) -> anyhow::Result<Moved> {
+    let (left, states) = desk.with(move |document| document.leave_out(step))?;
+    let left = left?;
+    let mut done = desk.done(format!("Leave out {}", left.label), &states);
+    done.warnings
+        .splice(0..0, left.skipped.into_iter().take(MOST_SKIPPED));
+    let steps = vec![left.label];
+    Ok(Moved { done, steps })
+}
+
 impl Operation for Undo {
     const NAME: &'static str = "undo";
     const ABOUT: &'static str = "Takes back the last change of the scene, or the last few: each call that changed it is one step. A failed call is none. In a window the changes of this session are taken back, and those of the user stay.";
@@ -141,7 +148,10 @@ impl Operation for Undo {
     type Receipt = Moved;
 
     fn run(self, desk: &mut Desk) -> anyhow::Result<Moved> {
-        travel(desk, self.steps, true)
+        match self.step {
+            Some(step) => leave_out(desk, step),
+            None => travel(desk, self.steps, true),
+        }
     }
 }
 
@@ -182,22 +192,5 @@ impl Operation for History {
                 shown: document.position(),
             }
         })
-    }
-}
-
-impl Operation for LeaveOut {
-    const NAME: &'static str = "leave_out";
-    const ABOUT: &'static str = "Leaves one earlier step out of the history: the later ones are applied again, and warnings name those that do not apply without it. It is a step itself and can be undone.";
-    const EXAMPLE: &'static str = r#"{"step": 1}"#;
-    const CHANGES: bool = true;
-    type Receipt = Done;
-
-    fn run(self, desk: &mut Desk) -> anyhow::Result<Done> {
-        let (left, states) = desk.with(move |document| document.leave_out(self.step))?;
-        let left = left?;
-        let mut done = desk.done(format!("Leave out {}", left.label), &states);
-        done.warnings
-            .splice(0..0, left.skipped.into_iter().take(MOST_SKIPPED));
-        Ok(done)
     }
 }
