@@ -4,12 +4,14 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::document::tests::{add, any_edit, slide, start};
-use scene::{BoxId, Edit, VoxelGrid};
+use scene::background::{Tree, TreeKind};
+use scene::{BoxId, Edit, Form, ThingId, VoxelGrid};
 
 /// An action on a document with its log.
 #[derive(Clone, Debug)]
 enum Action {
     Apply(Edit),
+    Things(Vec<Edit>),
     Drag(Edit, Edit),
     Adopt(u8),
     AdoptAsStep(u8),
@@ -23,9 +25,29 @@ enum Action {
     RedoAs(bool),
 }
 
+fn tree(x: f64) -> Form {
+    Form::Tree(Tree {
+        position_m: glam::DVec2::new(x, 12.0),
+        height_m: 6.0,
+        crown_radius_m: 1.5,
+        kind: TreeKind::Conifer,
+    })
+}
+
+fn any_thing_edit() -> impl Strategy<Value = Edit> {
+    let forms = || prop::collection::vec((-20.0..20.0f64).prop_map(tree), 1..3);
+    let ids = prop::collection::vec((1u32..6).prop_map(ThingId), 1..3);
+    prop_oneof![
+        2 => forms().prop_map(|forms| Edit::AddThings { forms }),
+        1 => forms().prop_map(|forms| Edit::DrawScenery { forms }),
+        2 => ids.prop_map(|ids| Edit::RemoveThings { ids }),
+    ]
+}
+
 fn any_action() -> impl Strategy<Value = Action> {
     prop_oneof![
         6 => any_edit().prop_map(Action::Apply),
+        3 => prop::collection::vec(any_thing_edit(), 1..4).prop_map(Action::Things),
         2 => (any_edit(), any_edit()).prop_map(|(a, b)| Action::Drag(a, b)),
         2 => (0u8..16).prop_map(Action::Adopt),
         1 => (0u8..16).prop_map(Action::AdoptAsStep),
@@ -54,6 +76,7 @@ fn act(document: &mut Document, action: Action) {
     let author = |user: bool| if user { Author::USER } else { Author::ASSISTANT };
     match action {
         Action::Apply(edit) => drop(document.apply("apply", &edit)),
+        Action::Things(edits) => drop(document.apply_all("things", &edits)),
         Action::Drag(first, last) => {
             drop(document.preview(&first));
             drop(document.preview(&last));
@@ -406,17 +429,7 @@ fn numbers_stay_when_an_earlier_step_is_left_out() {
     assert_eq!((boxes[&b].center_m.x, boxes[&BoxId(6)].center_m.x), (9.0, 0.0));
     assert_same(&document, &reopened(&document));
     // The same of things.
-    let tree = |x: f64| {
-        let tree = scene::background::Tree {
-            position_m: glam::DVec2::new(x, 12.0),
-            height_m: 6.0,
-            crown_radius_m: 1.5,
-            kind: scene::background::TreeKind::Conifer,
-        };
-        Edit::AddThings {
-            forms: vec![scene::Form::Tree(tree)],
-        }
-    };
+    let tree = |x: f64| Edit::AddThings { forms: vec![tree(x)] };
     let mut document = Document::new(start());
     document.apply("A", &tree(0.0)).expect("sound");
     document.apply("B", &tree(5.0)).expect("sound");
@@ -429,6 +442,16 @@ fn numbers_stay_when_an_earlier_step_is_left_out() {
         .map(|thing| thing.id.0)
         .collect();
     assert_eq!(ids, [2, 3]);
+    assert_same(&document, &reopened(&document));
+    // Scenery that is drawn anew takes the numbers of the old.
+    let again = [
+        Edit::RemoveThings {
+            ids: vec![ThingId(2), ThingId(3)],
+        },
+        tree(1.0),
+        tree(2.0),
+    ];
+    document.apply_all("Draw scenery", &again).expect("sound");
     assert_same(&document, &reopened(&document));
 }
 

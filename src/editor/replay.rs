@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use scene::op::{Change, Op};
-use scene::{Background, BoxId, Edit, EditError, Frame, Scene, ThingId, VoxelGrid};
+use scene::{Background, BoxId, Edit, EditError, Frame, Scene, Thing, ThingId, VoxelGrid};
 
 /// The state with edits applied; all of them, or an error.
 pub(crate) fn edited(scene: &Scene, edits: &[Edit]) -> Result<Scene, EditError> {
@@ -79,12 +79,28 @@ pub(crate) fn numbered(edits: &[Edit], before: &Scene, after: &Scene) -> Change 
             open.iter_mut().zip(new).for_each(|(open, id)| **open = Some(id));
         }
     }
-    let adds = |edit: &Edit| matches!(edit, Edit::AddThings { .. } | Edit::DrawScenery { .. });
-    let things_from = edits.iter().any(adds).then(|| before.background.next_id());
+    let things_from = things_from(&edits, before, after);
     Change::Edits {
         edits: edits.into(),
         things_from,
     }
+}
+
+/// The number of the first thing that edits add, if they add any.
+fn things_from(edits: &[Edit], before: &Scene, after: &Scene) -> Option<ThingId> {
+    let adds = |edit: &Edit| matches!(edit, Edit::AddThings { .. } | Edit::DrawScenery { .. });
+    let first = edits.iter().position(adds)?;
+    // Numbers of things that were taken out before it are given again.
+    let mut background = before.background.clone();
+    for edit in edits[..first].iter().filter(|edit| edit.is_of_things()) {
+        if let Ok(Some(changed)) = super::things::changed(edit, &background) {
+            background = Arc::new(changed);
+        }
+    }
+    // Other edits may change things as well: no number below the first that is new is held back.
+    let is_new = |thing: &&Thing| before.background.get(thing.id) != Some(*thing);
+    let new = after.background.iter().find(is_new)?;
+    Some(background.next_id().min(new.id))
 }
 
 /// The number of a box that an edit adds without one.
