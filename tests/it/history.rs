@@ -100,7 +100,8 @@ fn two_hundred_steps_are_undone_after_the_file_is_opened_again() {
         } else {
             assert!(again.scene().is_same(document.scene()), "step {step}");
         }
-        (document.undo(), again.undo());
+        document.undo();
+        again.undo();
     }
     assert!(again.scene().is_same(&app::open::bundled().expect("bundled")));
     while again.redo().is_some() {}
