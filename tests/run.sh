@@ -31,6 +31,8 @@ cargo clippy --profile checked --workspace --all-targets --quiet -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --profile checked --workspace --no-deps --document-private-items --quiet
 # No comment holds an example to run, so doc tests, which would read every room again, are left out.
 cargo test --profile checked --workspace --tests
+# The room of public weights as the plain program has it, without its networks.
+cargo test --profile checked -p sceneloom-stable --no-default-features --lib
 
 # The Python package, with the program that was just built.
 if python3 -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
