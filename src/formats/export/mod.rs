@@ -70,10 +70,13 @@ pub fn all() -> &'static [&'static Exporter] {
     TABLE
 }
 
-/// The formats that *all* writes: every format but Gaussians, which take a minute and more.
+/// The formats that *all* writes: every format but Gaussians, which take a minute and more, and MP4 where the program lacks
+/// its encoder.
 pub fn usual() -> Vec<&'static Exporter> {
     let is_slow = |f: &&'static Exporter| f.needs.contains(&Product::Gaussians);
-    all().iter().copied().filter(|f| !is_slow(f)).collect()
+    let is_absent = |f: &&'static Exporter| !cfg!(feature = "video") && f.id == control_video::EXPORTER.id;
+    let written = all().iter().copied();
+    written.filter(|f| !is_slow(f) && !is_absent(f)).collect()
 }
 
 /// The format of that name.

@@ -2,6 +2,10 @@
 
 mod apng;
 mod gif;
+#[cfg(feature = "video")]
+mod mp4;
+#[cfg(not(feature = "video"))]
+#[path = "absent.rs"]
 mod mp4;
 
 use std::path::Path;
