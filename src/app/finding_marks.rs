@@ -76,7 +76,7 @@ impl FindingMarks {
         let mut columns: Vec<[usize; 2]> = self.cells.iter().map(|[x, y, _]| [*x, *y]).collect();
         columns.sort_unstable();
         columns.dedup();
-        let half = DVec2::splat(Extent::VOXEL_M / 2.0);
+        let half = DVec2::splat(frame.extent().voxel_m() / 2.0);
         for [x, y] in columns {
             let middle = frame.extent().center(x, y, 0).truncate();
             let cell = map.rect_of(middle - half, middle + half);

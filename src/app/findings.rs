@@ -89,8 +89,8 @@ mod tests {
         let mut cells = Vec::new();
         for (i, j) in (x - 5..=x + 5).flat_map(|i| (y - 5..=y + 5).map(move |j| (i, j))) {
             match ring(i, j) {
-                5 => cells.extend((0..Extent::NZ).map(|z| [i, j, z])),
-                _ => cells.push([i, j, Extent::NZ - 1]),
+                5 => cells.extend((0..Window::NZ).map(|z| [i, j, z])),
+                _ => cells.push([i, j, Window::NZ - 1]),
             }
         }
         let class = Class::Manmade;

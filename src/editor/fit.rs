@@ -24,9 +24,10 @@ pub fn fit(frame: &Frame, id: BoxId) -> Option<Edit> {
     if points_m.len() < FEWEST {
         return None;
     }
-    let own = FittedRectangle::around(&points_m, b.yaw_rad);
+    let cell_m = frame.extent().voxel_m();
+    let own = FittedRectangle::around(&points_m, cell_m, b.yaw_rad);
     let steps = (90.0 / STEP_DEG) as usize;
-    let turned = (0..steps).map(|k| FittedRectangle::around(&points_m, (k as f64 * STEP_DEG).to_radians()));
+    let turned = (0..steps).map(|k| FittedRectangle::around(&points_m, cell_m, (k as f64 * STEP_DEG).to_radians()));
     let best = turned.min_by(|a, b| a.area().total_cmp(&b.area()))?;
     let found = if best.area() < SMALLER * own.area() {
         best.like(own.yaw_rad)
@@ -95,8 +96,9 @@ struct FittedRectangle {
 }
 
 impl FittedRectangle {
-    /// The smallest rectangle of a heading around voxels with these centres, with half of a voxel's edge beyond them.
-    fn around(points_m: &[DVec2], yaw_rad: f64) -> Self {
+    /// The smallest rectangle of a heading around columns with these centres, with half of a column, `cell_m` wide, beyond
+    /// them.
+    fn around(points_m: &[DVec2], cell_m: f64, yaw_rad: f64) -> Self {
         let turn = DVec2::from_angle(-yaw_rad);
         let (low, high) = points_m
             .iter()
@@ -106,7 +108,7 @@ impl FittedRectangle {
             });
         Self {
             middle_m: DVec2::from_angle(yaw_rad).rotate((low + high) / 2.0),
-            size_m: high - low + DVec2::splat(Extent::VOXEL_M),
+            size_m: high - low + DVec2::splat(cell_m),
             yaw_rad,
         }
     }

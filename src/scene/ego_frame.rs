@@ -13,8 +13,8 @@ use crate::{
     SourceFrame, Unobserved, VoxelGrid, VoxelPaint,
 };
 
-/// Reach of its grids around the vehicle, columns: 100 m.
-const REACH: i32 = 250;
+/// Reach of its grids around the vehicle, m.
+const REACH_M: f64 = 100.0;
 
 impl Scene {
     /// The scene at the moment that is shown, in the ego frame, standing still. The scene itself if the ego vehicle is
@@ -30,7 +30,11 @@ impl Scene {
         }
         let extent = match frame.extent() == Extent::WINDOW {
             true => Extent::WINDOW,
-            false => Extent::new([-REACH; 2], [2 * REACH as usize; 2]).unwrap_or(Extent::WINDOW),
+            false => {
+                let reach = (REACH_M * frame.extent().lattice().per_m()).round() as i32;
+                let around = frame.extent().with_columns([-reach; 2], [2 * reach as usize; 2]);
+                around.unwrap_or(Extent::WINDOW)
+            }
         };
         let mut scene = self.still();
         if scene.rig.vehicle != Pose::IDENTITY {
@@ -365,7 +369,7 @@ impl VoxelGrid {
     /// These voxels with the map's lower corner at column `from`.
     pub fn moved_to(&self, from: [i32; 2]) -> Result<VoxelGrid, String> {
         let size = [self.extent().nx(), self.extent().ny()];
-        Ok(self.relabelled(Extent::new(from, size)?))
+        Ok(self.relabelled(self.extent().with_columns(from, size)?))
     }
 }
 

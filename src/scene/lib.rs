@@ -67,7 +67,7 @@ pub use density::Density;
 pub use edit::{Edit, EditError};
 pub use frame::{Frame, SourceFrame};
 pub use gaussians::{Baking, GaussianScene, SceneGaussian};
-pub use grid::{Extent, VoxelGrid, VoxelPaint, Window};
+pub use grid::{Extent, Lattice, VoxelGrid, VoxelPaint, Window};
 pub use inferred::{Inferred, Unobserved};
 pub use kept::{KeptVersion, ProjectHistory};
 pub use layout::{BevLayout, Polyline, PolylineKind};

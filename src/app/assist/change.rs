@@ -168,7 +168,7 @@ pub fn changed_voxels(before: &Frame, after: &Frame) -> Vec<[usize; 3]> {
         for x in from[0]..from[0] + size[0] {
             for y in from[1]..from[1] + size[1] {
                 let (a, b) = (a.column(x, y), b.column(x, y));
-                out.extend((0..Extent::NZ).filter(|z| a[*z] != b[*z]).map(|z| [x, y, z]));
+                out.extend((0..a.len()).filter(|z| a[*z] != b[*z]).map(|z| [x, y, z]));
             }
         }
     }

@@ -99,7 +99,7 @@ pub(super) fn sceneries(scene: &Scene) -> Vec<Class> {
 }
 
 /// The scenery class on top of a column; `None` if another class is on top.
-fn scenery(column: &[u8; Extent::NZ]) -> Option<Class> {
+fn scenery(column: &[u8]) -> Option<Class> {
     let top = column.iter().rev().find(|v| **v != Class::FREE)?;
     Class::from_id(*top).filter(|c| matches!(c, Class::Manmade | Class::Vegetation))
 }

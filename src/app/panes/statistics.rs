@@ -60,7 +60,7 @@ impl SceneCounts {
         Self {
             voxels,
             boxes,
-            drivable_m2: cells as f64 * Extent::VOXEL_M * Extent::VOXEL_M,
+            drivable_m2: cells as f64 * frame.extent().voxel_m().powi(2),
             occupied: set as f64 / frame.extent().voxels() as f64,
             things: scene.background.len(),
         }

@@ -64,7 +64,7 @@ fn a_street_has_its_lanes_and_is_drawn_once() {
     ];
     add(&mut scene, &[[-20.0, 0.0], [20.0, 0.0]], &STREET, &right);
     let layout = &scene.canvas().layout;
-    let across = |layer| (0..200).filter(|y| layout.has(layer, 100, *y)).count() as f64 * Extent::VOXEL_M;
+    let across = |layer| (0..200).filter(|y| layout.has(layer, 100, *y)).count() as f64 * Window::VOXEL_M;
     assert!((across(BevLayer::DrivableArea) - 10.5).abs() < 0.5);
     assert!((across(BevLayer::CarparkArea) - 2.3).abs() < 0.5);
     assert!((across(BevLayer::Walkway) - 4.8).abs() < 0.5);

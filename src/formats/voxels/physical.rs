@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 use scene::solid::fill::{SMEAR, smear_down};
-use scene::{Class, Extent, Unobserved, VoxelGrid};
+use scene::{Class, Extent, Unobserved, VoxelGrid, Window};
 
 /// Classes of voxels of 0.4 m with the ground of a flat map in bin 2, from -1 to 6.2 m of the ego frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ const NEAR_M: f64 = 20.0;
 
 impl Physical {
     /// Bins of a column.
-    pub const NZ: usize = Extent::NZ + SMEAR;
+    pub const NZ: usize = Window::NZ + SMEAR;
 
     /// A map without anything.
     pub fn over(extent: Extent) -> Self {
@@ -34,7 +34,7 @@ impl Physical {
     /// a thing is less than three bins high, its highest bin is kept; one that stands on the ground or on the bottom of the
     /// grid stays on it.
     pub fn raised(grid: &VoxelGrid) -> Self {
-        let columns = grid.extent().all_columns().map(|[x, y]| raise(grid.column(x, y)));
+        let columns = grid.extent().all_columns().map(|[x, y]| raise(grid.window_column(x, y)));
         Self {
             extent: grid.extent(),
             columns: columns.collect(),
@@ -56,7 +56,7 @@ impl Physical {
         let mut grid = VoxelGrid::over(self.extent);
         for ([x, y], column) in self.extent.all_columns().zip(&self.columns) {
             if column.iter().any(|label| *label != Class::FREE) {
-                *grid.column_mut(x, y) = *of(column).first_chunk().expect("taller than a column");
+                *grid.window_column_mut(x, y) = *of(column).first_chunk().expect("taller than a column");
             }
         }
         grid
@@ -142,16 +142,16 @@ fn is_ground(label: u8) -> bool {
     Class::from_id(label).is_some_and(Class::is_ground)
 }
 
-fn raise(column: &[u8; Extent::NZ]) -> [u8; Physical::NZ] {
+fn raise(column: &[u8; Window::NZ]) -> [u8; Physical::NZ] {
     let mut out = [Class::FREE; Physical::NZ];
     let is_thing = |z: usize| column[z] != Class::FREE && !is_ground(column[z]);
     for (z, label) in column.iter().enumerate().filter(|(_, label)| is_ground(**label)) {
         out[z + SMEAR] = *label;
     }
     let mut next = 0;
-    while next < Extent::NZ {
+    while next < Window::NZ {
         let from = next;
-        while next < Extent::NZ && is_thing(next) {
+        while next < Window::NZ && is_thing(next) {
             next += 1;
         }
         let stands = from == 0 || is_ground(column[from - 1]);
@@ -173,7 +173,7 @@ fn raise(column: &[u8; Extent::NZ]) -> [u8; Physical::NZ] {
 
 fn lower(column: &[u8; Physical::NZ]) -> [u8; Physical::NZ] {
     let mut out = column.map(|label| if is_ground(label) { Class::FREE } else { label });
-    smear_down(&mut out);
+    smear_down(&mut out, SMEAR);
     for (z, label) in column.iter().enumerate().filter(|(_, label)| is_ground(**label)) {
         let place = &mut out[z.saturating_sub(SMEAR)];
         if *place == Class::FREE {
@@ -186,7 +186,7 @@ fn lower(column: &[u8; Physical::NZ]) -> [u8; Physical::NZ] {
 /// The unobserved voxels in labels of Occ3D's convention where these bins of each column `[x][y]` are observed. A voxel
 /// is observed if one of the bins that it may stand for is: its own or one of the two above it.
 pub(crate) fn unobserved(extent: Extent, observed: &[u32]) -> Option<Unobserved> {
-    let word = |bits: &u32| !((0..=SMEAR).fold(0, |all, up| all | bits >> up) as u16);
+    let word = |bits: &u32| u64::from(!((0..=SMEAR).fold(0, |all, up| all | bits >> up) as u16));
     Unobserved::from_words(extent, observed.iter().map(word).collect())
 }
 

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use glam::DVec3;
-use scene::{Class, Extent, Pose};
+use scene::{Class, Extent, Pose, Window};
 
 use super::{Lattice, Physical};
 
@@ -21,7 +21,7 @@ pub(crate) struct LabelledCell {
 /// there is none, that of the voxel that holds its own middle.
 pub(crate) fn cells_of(physical: &Physical, lattice: &Lattice, ego_from_lattice: &Pose) -> Vec<LabelledCell> {
     let extent = physical.extent();
-    let finer = lattice.cell_m <= Extent::VOXEL_M;
+    let finer = lattice.cell_m <= Window::VOXEL_M;
     let overlap = Overlap::new(lattice, ego_from_lattice);
     let mut found = Vec::new();
     let mut votes = Vec::new();
@@ -78,7 +78,7 @@ impl<'a> Overlap<'a> {
             lattice,
             ego_from_lattice,
             lattice_from_ego,
-            reach: (axes[0] + axes[1] + axes[2]) * (Extent::VOXEL_M / 2.0 / lattice.cell_m),
+            reach: (axes[0] + axes[1] + axes[2]) * (Window::VOXEL_M / 2.0 / lattice.cell_m),
         }
     }
 
@@ -127,7 +127,7 @@ impl<'a> VoxelVotes<'a> {
         let from = [low.x, low.y].map(columns);
         let size = [high.x, high.y].map(columns);
         let size = [0, 1].map(|axis| (size[axis] - from[axis] + 1) as usize);
-        let is_coarse = lattice.cell_m > Extent::VOXEL_M;
+        let is_coarse = lattice.cell_m > Window::VOXEL_M;
         Ok(Self {
             lattice,
             ego_from_lattice,

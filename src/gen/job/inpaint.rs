@@ -24,7 +24,7 @@ impl std::fmt::Debug for InpaintMask {
 }
 
 /// Margin around an unchanged box in which nothing is inpainted, m.
-pub const KEPT_M: f64 = Extent::VOXEL_M;
+pub const KEPT_M: f64 = Window::VOXEL_M;
 
 impl InpaintMask {
     /// Largest distance of a cell from the corner of the window; no map is larger, so farther cells are refused.

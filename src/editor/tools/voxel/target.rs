@@ -22,7 +22,8 @@ pub(super) fn tipped(
         if verb != VoxelVerb::Attach {
             return Vec::new();
         }
-        let floor_m = Extent::BOTTOM_M + Extent::VOXEL_M / 2.0;
+        let lattice = frame.extent().lattice();
+        let floor_m = lattice.bottom_m() + lattice.voxel_m() / 2.0;
         let ground = pick::ray_ground(ray, floor_m).and_then(|p| frame.extent().voxel_at(p));
         let floor = ground.map(|[x, y, _]| VoxelHit {
             cell: [x, y, 0],

@@ -43,7 +43,7 @@ const LEAST_DIRECTIONS: u32 = 3;
 /// Lowest height of ground in the ego frame, m: labelled clouds have the road at -0.8 m.
 const LOWEST_M: f64 = -0.9;
 /// Highest height of ground in the ego frame, m: the top of the map.
-const HIGHEST_M: f64 = Extent::TOP_M;
+const HIGHEST_M: f64 = Window::MAX_M[2];
 /// Greatest height at which a vehicle carries a sensor, m.
 const HIGHEST_MOUNT_M: f64 = 5.0;
 /// Smallest tilt that is reported, degrees: the ground is 0.7 m off at 20 m.

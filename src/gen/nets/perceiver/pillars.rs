@@ -14,7 +14,7 @@ const BIN_M: f32 = 0.4;
 const HEIGHTS_M: [f32; 2] = [-3.0, 6.0];
 /// Half the side of the window, m.
 const HALF_M: f32 = 40.0;
-const COLUMN_M: f32 = Extent::VOXEL_M as f32;
+const COLUMN_M: f32 = Window::VOXEL_M as f32;
 
 /// Sums over the returns of a column.
 #[derive(Clone, Copy)]
