@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::canvas::ScreenMap;
 use editor::apply_all;
 use editor::checks::Finding;
-use scene::{BoxId, Extent, Frame, Scene, SceneBox};
+use scene::{BoxId, Frame, Scene, SceneBox};
 use viewport::MarkedVoxels;
 
 /// Colour of the marks in both views; no class and no layer has this colour.

@@ -67,7 +67,7 @@ mod tests {
     use super::*;
     use crate::open;
     use editor::{Apply, Edit};
-    use scene::{BoxLabel, Class, Extent, Key, Motion};
+    use scene::{BoxLabel, Class, Extent, Key, Motion, Window};
 
     #[test]
     fn sensors_see_near_boxes_and_not_those_inside_a_wall() {

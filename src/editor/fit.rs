@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::{DVec2, Vec2Swizzles};
 
 use scene::raster::box_cells;
-use scene::{BoxId, Edit, Extent, Frame, SceneBox};
+use scene::{BoxId, Edit, Frame, SceneBox};
 
 /// Voxels this far beyond the box still count as its own, m.
 const AROUND_M: f64 = 1.2;
@@ -27,7 +27,8 @@ pub fn fit(frame: &Frame, id: BoxId) -> Option<Edit> {
     let cell_m = frame.extent().voxel_m();
     let own = FittedRectangle::around(&points_m, cell_m, b.yaw_rad);
     let steps = (90.0 / STEP_DEG) as usize;
-    let turned = (0..steps).map(|k| FittedRectangle::around(&points_m, cell_m, (k as f64 * STEP_DEG).to_radians()));
+    let turned =
+        (0..steps).map(|k| FittedRectangle::around(&points_m, cell_m, (k as f64 * STEP_DEG).to_radians()));
     let best = turned.min_by(|a, b| a.area().total_cmp(&b.area()))?;
     let found = if best.area() < SMALLER * own.area() {
         best.like(own.yaw_rad)
@@ -139,7 +140,7 @@ mod tests {
 
     use super::*;
     use crate::Apply;
-    use scene::{BevLayout, Class, Scene, VoxelGrid};
+    use scene::{BevLayout, Class, Extent, Scene, VoxelGrid};
 
     /// A car's voxels, and a box that stands beside them, turned.
     fn scene(off_m: DVec2, off_deg: f64) -> (Scene, SceneBox) {

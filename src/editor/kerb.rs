@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use scene::{BevLayer, BevLayout, Extent, Form};
+use scene::{BevLayer, BevLayout, Form};
 
 use super::lanes::nearest_lane;
 
@@ -157,6 +157,7 @@ pub fn way_to_kerb(layout: &BevLayout, forms: &[Form], moved_m: DVec2, reach_m: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::Extent;
 
     /// Roadway below a line through (0, `y0`) of that slope, a walkway of 2 m above it.
     fn road(y0: f64, slope: f64) -> BevLayout {

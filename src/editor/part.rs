@@ -53,11 +53,7 @@ pub fn changed_by_class(before: &VoxelGrid, after: &VoxelGrid) -> Vec<(Class, us
     found
 }
 
-fn each_different(
-    before: &VoxelGrid,
-    after: &VoxelGrid,
-    mut visit: impl FnMut(usize, usize, &[u8], &[u8]),
-) {
+fn each_different(before: &VoxelGrid, after: &VoxelGrid, mut visit: impl FnMut(usize, usize, &[u8], &[u8])) {
     if before.extent() != after.extent() {
         return;
     }
@@ -75,6 +71,7 @@ fn each_different(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::Extent;
 
     fn grid(voxels: &[([usize; 3], Class)]) -> VoxelGrid {
         let mut grid = VoxelGrid::new();

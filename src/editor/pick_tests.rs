@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use proptest::prelude::*;
 
 use super::*;
-use scene::BevLayout;
+use scene::{BevLayout, Window};
 
 fn ray(o: [f64; 3], d: [f64; 3]) -> PickRay {
     PickRay::new(o.into(), d.into()).expect("a direction")

@@ -333,9 +333,7 @@ fn clear(
             }
         }
         if taken.iter().any(|label| *label != Class::FREE) {
-            let before = cleared
-                .entry([x, y])
-                .or_insert_with(|| vec![Class::FREE; nz]);
+            let before = cleared.entry([x, y]).or_insert_with(|| vec![Class::FREE; nz]);
             // The first label, if several things clear the voxel.
             for (before, taken) in before.iter_mut().zip(taken) {
                 *before = if *before == Class::FREE { taken } else { *before };

@@ -175,7 +175,7 @@ impl ColumnLookup {
                 let [i, j] = self.of.column(at);
                 let column = grid.column(i, j);
                 if column.iter().any(|label| *label != FILL) {
-                    *out.column_mut(x, y) = *column;
+                    out.column_mut(x, y).copy_from_slice(column);
                 }
             }
         }

@@ -34,6 +34,7 @@ pub mod recorded;
 mod recording;
 pub mod relations;
 pub mod relief;
+pub mod resample;
 pub mod returns;
 pub mod rig;
 mod rig_names;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::{DQuat, DVec2, DVec3};
 
 use crate::{
-    BevLayout, Extent, Frame, Inferred, Lattice, Polyline, Pose, Scene, SceneBox, SourceFrame, Unobserved, VoxelGrid,
-    VoxelPaint, Waiver,
+    BevLayout, Extent, Frame, Inferred, Lattice, Polyline, Pose, Scene, SceneBox, SourceFrame, Unobserved,
+    VoxelGrid, VoxelPaint, Waiver,
 };
 
 /// A move by whole columns of the networks' lattice.

@@ -176,7 +176,8 @@ pub fn main_class(grid: &VoxelGrid, cells: &[[usize; 3]]) -> Class {
 /// its top (except for objects, which stand on their own), or voxels below that no sensor observed.
 pub fn is_known_to_float(grid: &VoxelGrid, unobserved: Option<&Unobserved>, group: &[[usize; 3]]) -> bool {
     let is_object = |[x, y, z]: [usize; 3]| Class::from_id(grid.get(x, y, z)).is_some_and(Class::is_object);
-    let at_edge = |cell: [usize; 3]| reaches_side(grid.extent(), &[cell]) || cell[2] + 1 == grid.extent().nz();
+    let at_edge =
+        |cell: [usize; 3]| reaches_side(grid.extent(), &[cell]) || cell[2] + 1 == grid.extent().nz();
     let unknown_below = |[x, y, z]: [usize; 3]| {
         let words = unobserved.map(Unobserved::words);
         z > 0 && words.is_some_and(|w| w[grid.extent().index(x, y)] >> (z - 1) & 1 == 1)

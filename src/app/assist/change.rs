@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use scene::{BevLayer, Class, Extent, Frame, Scene, SceneBox};
+use scene::{BevLayer, Class, Frame, Scene, SceneBox};
 
 /// Ids that a list holds at most.
 const MOST_IDS: usize = 100;

@@ -11,7 +11,7 @@ use crate::command::Command;
 use crate::tools::Hand;
 use editor::Edit;
 use language::{t, tf};
-use scene::{Class, Extent, LidarSweep, Scene, SceneBox};
+use scene::{Class, LidarSweep, Scene, SceneBox};
 use widgets::icons::Icon;
 use widgets::theme;
 

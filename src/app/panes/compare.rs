@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Color32, ColorImage, CursorIcon, Rect, Sense, Stroke, Ui, pos2, vec2};
 
-use scene::{Extent, Scene, SceneRev, VoxelGrid};
+use scene::{Scene, SceneRev, VoxelGrid};
 
 use super::camera_strip::CameraStrip;
 pub use super::comparing::{CompareMode, CompareSettings};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::accesskit::Role;
 use egui::{Align2, Rect, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use scene::{BevLayer, Class, Extent, Scene};
+use scene::{BevLayer, Class, Scene};
 
 use super::camera_strip::thousands;
 use super::id::PaneId;
@@ -177,7 +177,7 @@ fn bar(ui: &mut Ui, class: Class, n: usize, most: usize, what: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{BevLayout, BoxId, Frame, SceneBox, VoxelGrid};
+    use scene::{BevLayout, BoxId, Extent, Frame, SceneBox, VoxelGrid};
 
     #[test]
     fn what_is_there_is_counted_and_nothing_else() {

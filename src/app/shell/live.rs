@@ -10,7 +10,7 @@ pub use job::pipeline::Bounds;
 use job::pipeline::parts;
 use job::region::{CELLS, COLUMNS_PER_CELL, edited_columns};
 use job::{ChosenDensities, GenParams, JobId, JobKey, RegionMode, Stage};
-use scene::{Extent, Scene, SceneRev, Window};
+use scene::{Scene, SceneRev, Window};
 
 /// Edge of a latent cell, m.
 const CELL_M: f64 = COLUMNS_PER_CELL as f64 * Window::VOXEL_M;

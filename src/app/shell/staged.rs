@@ -20,7 +20,7 @@ use job::{GenParams, RegionMode};
 use language::{t, tf};
 use scene::background::in_extent;
 use scene::raster::box_cells;
-use scene::{Background, Class, Extent, Scene, SceneRev, Thing};
+use scene::{Background, Class, Scene, SceneRev, Thing};
 use widgets::theme;
 
 /// Most classes in the menu of parts.

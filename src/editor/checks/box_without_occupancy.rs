@@ -5,7 +5,7 @@ use crate::Edit;
 use language::tf;
 use scene::draft::box_columns;
 use scene::raster::box_cells;
-use scene::{Extent, SceneBox, VoxelGrid};
+use scene::{SceneBox, VoxelGrid};
 
 pub const NAME: &str = "box_without_occupancy";
 /// Voxels this far outside a box still belong to it, m.
@@ -56,7 +56,8 @@ pub fn voxels(grid: &VoxelGrid, b: &SceneBox) -> usize {
         let column = grid.column(x, y).iter().enumerate();
         count += column
             .filter(|(z, l)| {
-                **l == b.class.id() && extent.center(x, y, *z).z <= top_m.max(extent.lattice().bottom_m() + extent.voxel_m())
+                **l == b.class.id()
+                    && extent.center(x, y, *z).z <= top_m.max(extent.lattice().bottom_m() + extent.voxel_m())
             })
             .count();
     });

@@ -6,7 +6,7 @@ use glam::DVec2;
 use super::*;
 use crate::{Apply, Edit, Shape};
 use scene::roads::{LaneKind, NodeKind, RoadLane, curve};
-use scene::{BevLayer, BevLayout, Extent, Frame, PolylineKind, Road, RoadId, VoxelGrid};
+use scene::{BevLayer, BevLayout, Extent, Frame, PolylineKind, Road, RoadId, VoxelGrid, Window};
 
 fn empty() -> Scene {
     let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use language::tf;
-use scene::{Extent, Frame};
+use scene::Frame;
 
 use super::corners::{PolygonDraft, Set};
 use super::setting::{self, ToolOption, Value};

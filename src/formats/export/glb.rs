@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use scene::clip::{MARGIN_M, ObjectVoxels};
 use scene::raster::box_cells;
-use scene::{BoxId, Class, Extent, Frame, Scene, SceneBox, VoxelGrid, Window};
+use scene::{BoxId, Class, Frame, Scene, SceneBox, VoxelGrid, Window};
 use serde::Serialize;
 
 use super::{ExportSpan, Exporter, OutFile};
@@ -41,7 +41,11 @@ pub fn to_bytes(scene: &Scene, recipe: &Recipe) -> Result<Vec<u8>, FormatError> 
     let extent = still.extent();
     let mut document = GltfBuilder::default();
     let place = |corner: DVec3| extent.from_voxel_units(corner);
-    let by_class = meshes([extent.nx(), extent.ny()], |x, y| *still.window_column(x, y), place);
+    let by_class = meshes(
+        [extent.nx(), extent.ny()],
+        |x, y| *still.window_column(x, y),
+        place,
+    );
     let mut classes = Vec::new();
     for (label, mesh) in &by_class {
         let Some(class) = Class::from_id(*label) else {

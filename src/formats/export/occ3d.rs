@@ -1,6 +1,6 @@
 //! Occupancy as Occ3D labels, with the masks of what the sensors observed.
 
-use scene::{Class, Extent, Frame};
+use scene::{Class, Extent, Frame, Window};
 
 use super::{ExportSpan, Exporter, ObservationMasks, OutFile, Product};
 use crate::occ3d::{self, Occ3dFrame};
@@ -62,7 +62,7 @@ fn mask(words: &[u16], known: &[u16]) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
-    use scene::{Unobserved, Window};
+    use scene::Unobserved;
 
     use super::*;
     use crate::export::Products;

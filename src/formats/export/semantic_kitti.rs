@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use scene::solid::fill::SMEAR;
-use scene::{Class, Extent, Frame, LidarSweep, Pose, Scene, Window};
+use scene::{Class, Frame, LidarSweep, Pose, Scene, Window};
 
 use super::{ExportSpan, Exporter, ObservationMasks, OutFile, Product, Products};
 use crate::semantic_kitti::{CELLS, LATTICE, ego_from_cells, packed, raw_id};
@@ -105,7 +105,7 @@ mod tests {
     use crate::import::Content;
     use crate::semantic_kitti::{bit, class_of};
     use crate::table_tests::{Small, random_scene, round_trip, scene};
-    use scene::{BoxId, VoxelGrid};
+    use scene::{BoxId, Extent, VoxelGrid};
 
     fn files(scene: &Scene, products: &mut dyn Products) -> [Vec<u8>; 4] {
         let files = write(scene, products).expect("written");

@@ -60,7 +60,7 @@ impl Statics {
     pub(crate) fn finish(self, grid: &mut VoxelGrid) -> Result<(), FormatError> {
         self.surface.finish()?;
         for [x, y] in grid.extent().all_columns() {
-            let (mut column, ground) = (*self.stands.column(x, y), self.ground.column(x, y));
+            let (mut column, ground) = (self.stands.column(x, y).to_vec(), self.ground.column(x, y));
             if column.iter().chain(ground).all(|label| *label == Class::FREE) {
                 continue;
             }

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use glam::DVec3;
-use scene::{Class, Extent, Window};
+use scene::{Class, Window};
 
 /// A mesh of triangles with shared corners, counter-clockwise as seen from outside.
 #[derive(Debug, Default, PartialEq)]

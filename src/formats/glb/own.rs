@@ -8,7 +8,9 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 use scene::message::quoted;
 use scene::moved::ColumnShift;
-use scene::{BevLayout, BoxId, Class, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, VoxelGrid, Window, infer};
+use scene::{
+    BevLayout, BoxId, Class, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, VoxelGrid, Window, infer,
+};
 use serde::de::DeserializeOwned;
 
 use super::document::{GltfDocument, GltfNode, LeftOut};

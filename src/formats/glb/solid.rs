@@ -1,7 +1,7 @@
 //! Closed meshes to voxels: a voxel is filled if its centre is inside, told by counting the faces above and below it.
 
 use glam::{DVec2, DVec3};
-use scene::Extent;
+use scene::{Extent, Window};
 
 use crate::FormatError;
 

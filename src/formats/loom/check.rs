@@ -43,7 +43,10 @@ pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
         return unsound(format!("box {} stands and moves, expected one of both", id.0));
     }
     if let Some(id) = foreign_track(scene) {
-        return unsound(format!("voxels of track {} are of another lattice than the map", id.0));
+        return unsound(format!(
+            "voxels of track {} are of another lattice than the map",
+            id.0
+        ));
     }
     Ok(())
 }

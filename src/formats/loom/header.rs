@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use scene::{
-    Arranged, BoxId, Clip, Conditions, Extent, Frame, Lattice, Motion, Polyline, Pose, Recorded, RoadNetwork, Scene,
-    SceneBox, SensorRig, Thing, Track, Waiver,
+    Arranged, BoxId, Clip, Conditions, Extent, Frame, Lattice, Motion, Polyline, Pose, Recorded, RoadNetwork,
+    Scene, SceneBox, SensorRig, Thing, Track, Waiver,
 };
 
 #[derive(Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! A voxel patch as bytes: map, bricks, then the numbers of all voxels, their labels before, their labels after.
 
-use scene::{Extent, Lattice};
 use scene::grid::{BrickPatch, VoxelPatch};
+use scene::{Extent, Lattice};
 
 /// Little-endian bytes of a patch, without its lattice, which is that of the whole history. Numbers of voxels are differences to the one before in the brick.
 pub(super) fn patch_to_bytes(patch: &VoxelPatch) -> Vec<u8> {

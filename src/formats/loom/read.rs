@@ -7,8 +7,8 @@ use std::sync::Arc;
 use scene::clip::ObjectVoxels;
 use scene::grid::NOT_PAINTED;
 use scene::{
-    Background, BoxId, Clip, Extent, Frame, Inferred, Lattice, ProjectHistory, Relief, Scene, SceneBox, SourceFrame,
-    Track, Unobserved, VoxelGrid, VoxelPaint,
+    Background, BoxId, Clip, Extent, Frame, Inferred, Lattice, ProjectHistory, Relief, Scene, SceneBox,
+    SourceFrame, Track, Unobserved, VoxelGrid, VoxelPaint,
 };
 
 use super::archive::{MAX_JSON, Reader, parse, within, wrong_voxels};

@@ -1,7 +1,7 @@
 //! A map as a `.vox` file.
 
 use scene::classes::Palette;
-use scene::{Class, Extent, VoxelGrid};
+use scene::{Class, VoxelGrid};
 
 use super::{LONGEST, OWN_NAME, middle};
 

@@ -6,7 +6,10 @@ use safetensors::tensor::Dtype;
 
 use super::pictures::{DEPTH_STEP_M, floats, intrinsic, is_free, map_from_camera, place_of, rendered};
 use super::{Shard, VOXELS, voxels, world_of};
-use scene::{BevLayout, Camera, CameraTruth, Conditions, Extent, Frame, PolylineKind, Pose, SensorRig, TimeOfDay, VoxelGrid, Weather, Window};
+use scene::{
+    BevLayout, Camera, CameraTruth, Conditions, Extent, Frame, PolylineKind, Pose, SensorRig, TimeOfDay,
+    VoxelGrid, Weather, Window,
+};
 pub use sensors::appearance::Quality;
 use sensors::appearance::light_direction;
 use sensors::picture_hints::{HintedFrame, PictureHints};

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::params::GenParams;
 use super::region::{COLUMNS_PER_CELL, Region, edited_columns};
 use scene::raster::{box_cells, polygon_cells};
-use scene::{Extent, Frame, SceneBox};
+use scene::{Extent, Frame, SceneBox, Window};
 
 /// A sparse set of latent cells, 1.6 m wide: `[i, j]` along ego x and y, counted from the corner of the networks' window, so
 /// that a cell of the window at the origin lies in `0..50`. A cell may lie anywhere on the map. As JSON a list of `[i, j]`.

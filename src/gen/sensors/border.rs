@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use scene::{Class, Extent, VoxelGrid};
+use scene::{Class, Extent, VoxelGrid, Window};
 use world::World;
 
 /// Depths at which the ground is sampled, in cells from the edge.

@@ -9,7 +9,7 @@ use super::lidar::{EgoBox, Rays, look_through};
 use super::raycast::{ColumnMasks, LANES, Packet, PacketHit};
 use super::shaped;
 use super::surroundings::{Height, SurroundingHits};
-use scene::{Class, Extent, Frame, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
+use scene::{Class, Extent, Frame, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid, Window};
 
 /// With more changed boxes than this, all rays are cast: testing them would cost as much.
 const MAX_BOXES: usize = 16;

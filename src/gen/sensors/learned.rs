@@ -12,7 +12,7 @@ use nets::ModelError;
 use nets::lidar::field::{LidarRay, RaySampling, SignedDistanceField};
 use nets::lidar::{LearnedRay, LidarNet};
 use scene::moved::ColumnShift;
-use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, Pose, SensorRig, VoxelGrid};
+use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, Pose, SensorRig, VoxelGrid, Window};
 use world::draw::{Draw, hash};
 
 /// Treatment of echoes that a real sensor may lose.

@@ -14,7 +14,7 @@ use nets::lidar::field::{LidarRay, RaySampling, SignedDistanceField};
 use nets::lidar::update::{Changed, Region};
 use nets::lidar::{LearnedRay, LidarNet};
 use scene::moved::ColumnShift;
-use scene::{Extent, LidarPattern, LidarSweep, SensorRig, VoxelGrid, Window};
+use scene::{LidarPattern, LidarSweep, SensorRig, VoxelGrid, Window};
 
 /// A voxel's numbers reach half a voxel beyond it, as far as the neighbours' centres.
 const HALO: f64 = 0.5;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::caster::Caster;
 use super::raycast::ColumnMasks;
-use scene::{Extent, LidarPattern, LidarSweep, Pose, SensorRig, VoxelGrid, Window};
+use scene::{LidarPattern, LidarSweep, Pose, SensorRig, VoxelGrid, Window};
 
 /// The ego vehicle as a box along the ego frame's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -16,7 +16,10 @@ use crate::raycast::ColumnMasks;
 use crate::surroundings::{is_beyond, is_own};
 use nets::lidar::LidarNet;
 use scene::sensor_data::PlaneDepths;
-use scene::{Background, BevLayer, BevLayout, Camera, CameraMaps, Class, Conditions, Extent, Frame, LidarPattern, SensorRig, VoxelGrid, Window};
+use scene::{
+    Background, BevLayer, BevLayout, Camera, CameraMaps, Class, Conditions, Extent, Frame, LidarPattern,
+    SensorRig, VoxelGrid, Window,
+};
 use world::World;
 use world::voxelize::{Vertical, complete};
 

@@ -20,7 +20,7 @@ use ground::GroundHeightField;
 use paint::RoadMarkings;
 use scene::raster::box_cells;
 use scene::sensor_data::RenderId;
-use scene::{BevLayout, BoxId, Camera, CameraMaps, Class, Extent, SceneBox, SensorRig, VoxelGrid, Window};
+use scene::{BevLayout, BoxId, Camera, CameraMaps, Class, SceneBox, SensorRig, VoxelGrid, Window};
 use solids::{SolidHit, SolidIndex};
 
 /// Columns this far outside a box still belong to it, m: voxels stick out by up to half of one.

@@ -12,7 +12,7 @@ use super::cloud::{render_id, road_id};
 use super::raycast::grid_span;
 use super::rays::CameraRays;
 use scene::sensor_data::{PlaneDepths, PlaneRun, RenderId};
-use scene::{Camera, Class, Extent, MultiPlaneImage, VoxelGrid};
+use scene::{Camera, Class, Extent, MultiPlaneImage, VoxelGrid, Window};
 
 const FREE: u8 = Class::FREE;
 /// Free in a table of render ids, where 17 is a crossing.

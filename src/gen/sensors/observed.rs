@@ -8,7 +8,7 @@ use super::lidar::{EgoBox, Rays, look_through};
 use super::march::CameraRays;
 use super::own_body::OwnBody;
 use super::raycast::ColumnMasks;
-use scene::{Camera, Extent, LidarPattern, SensorRig, VoxelGrid, Window};
+use scene::{Camera, LidarPattern, SensorRig, VoxelGrid, Window};
 
 /// Rays of a camera are at most this far apart at the far end of the grid, m, unless its pixels are wider.
 const APART_M: f64 = Window::VOXEL_M / 2.0;

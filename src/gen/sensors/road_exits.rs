@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::border::{Border, Covered, DEPTHS, GridSide, SIDES};
-use scene::{Class, Extent, Polyline, PolylineKind, Window};
+use scene::{Class, Polyline, PolylineKind, Window};
 
 /// Least and largest width of a road, cells: narrower ground is no road, wider ground is a road along the edge.
 const LEAST: usize = 7;

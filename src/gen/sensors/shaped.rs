@@ -13,7 +13,9 @@ use super::march::solids::SolidIndex;
 use super::raycast::ColumnMasks;
 use scene::raster::box_cells;
 use scene::solid::Solid;
-use scene::{BoxId, Class, Extent, Frame, LidarPattern, LidarPoint, LidarSweep, SceneBox, SensorRig, VoxelGrid, Window};
+use scene::{
+    BoxId, Class, Extent, Frame, LidarPattern, LidarPoint, LidarSweep, SceneBox, SensorRig, VoxelGrid, Window,
+};
 use world::objects;
 
 /// Distance beside or above a box within which the middle of a voxel may be its own, m.

@@ -24,7 +24,8 @@ impl Thing {
                 solid,
                 |_, _| true,
                 |x, y, z, _| {
-                    let column = columns.entry([x, y])
+                    let column = columns
+                        .entry([x, y])
                         .or_insert_with(|| vec![Class::FREE; lattice.bins()]);
                     column[z] = solid.class.id();
                 },

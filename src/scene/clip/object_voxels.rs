@@ -43,7 +43,8 @@ impl OwnShape {
     pub fn bottom_m(&self, now: &SceneBox) -> f64 {
         let lattice = self.voxels.lattice;
         let bin = i64::from(bottom_bin(lattice, &self.made)) + up(lattice, &self.made, now);
-        bin as f64 * self.voxels.lattice.voxel_m() + self.voxels.lattice.bottom_m() - (now.center_m.z - now.size_m.z / 2.0)
+        bin as f64 * self.voxels.lattice.voxel_m() + self.voxels.lattice.bottom_m()
+            - (now.center_m.z - now.size_m.z / 2.0)
     }
 }
 

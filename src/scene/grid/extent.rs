@@ -144,7 +144,8 @@ impl Extent {
 
     /// Upper corner in the ego frame, m.
     pub fn max_m(&self) -> DVec3 {
-        let to = |axis: usize| (f64::from(self.from[axis]) + f64::from(self.size[axis])) / self.lattice.per_m();
+        let to =
+            |axis: usize| (f64::from(self.from[axis]) + f64::from(self.size[axis])) / self.lattice.per_m();
         DVec3::new(to(0), to(1), self.lattice.top_m())
     }
 
@@ -193,7 +194,8 @@ impl Extent {
     /// The BEV cell under a point of the ego frame.
     #[inline]
     pub fn column_at(&self, x_m: f64, y_m: f64) -> Option<[usize; 2]> {
-        self.voxel_at(DVec3::new(x_m, y_m, self.lattice.bottom_m())).map(|v| [v[0], v[1]])
+        self.voxel_at(DVec3::new(x_m, y_m, self.lattice.bottom_m()))
+            .map(|v| [v[0], v[1]])
     }
 
     /// Ego-frame metres to voxel units (0 at the lower corner, 1 per voxel).

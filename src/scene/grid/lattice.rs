@@ -77,9 +77,7 @@ impl Lattice {
     pub fn lowered_by(self, bins: usize) -> Result<Self, String> {
         if bins > Self::MAX_LOWERED {
             let most = Self::MAX_LOWERED;
-            return Err(format!(
-                "ground let down by {bins} bins, expected at most {most}"
-            ));
+            return Err(format!("ground let down by {bins} bins, expected at most {most}"));
         }
         Ok(Self {
             lowered: bins as u8,

@@ -3,6 +3,7 @@
 
 mod extent;
 mod lattice;
+mod lowering;
 mod patch;
 mod window;
 
@@ -10,6 +11,7 @@ use std::sync::{Arc, OnceLock};
 
 pub use extent::{Extent, Overlap};
 pub use lattice::Lattice;
+pub use lowering::{lower, raise};
 pub use patch::{BrickPatch, VoxelPatch};
 pub use window::Window;
 
@@ -174,16 +176,20 @@ impl<const FILL: u8> BrickGrid<FILL> {
         &mut Arc::make_mut(&mut self.bricks[brick])[at..at + self.extent.nz()]
     }
 
-    /// The labels above a BEV cell of a grid of as many bins as the networks' window. Panics on a grid of another height.
+    /// The labels above a BEV cell of a grid of the networks' lattice. Panics on a grid of another height.
     #[inline]
     pub fn window_column(&self, x: usize, y: usize) -> &[u8; Window::NZ] {
-        self.column(x, y).try_into().expect("a grid of the networks' height")
+        debug_assert_eq!(self.extent.lattice(), Lattice::OCC3D);
+        self.column(x, y)
+            .try_into()
+            .expect("a grid of the networks' height")
     }
 
-    /// Mutable access as [`column_mut`](Self::column_mut), of a grid of as many bins as the networks' window. Panics on a
-    /// grid of another height.
+    /// Mutable access as [`column_mut`](Self::column_mut), of a grid of the networks' lattice. Panics on a grid of another
+    /// height.
     #[inline]
     pub fn window_column_mut(&mut self, x: usize, y: usize) -> &mut [u8; Window::NZ] {
+        debug_assert_eq!(self.extent.lattice(), Lattice::OCC3D);
         self.column_mut(x, y)
             .try_into()
             .expect("a grid of the networks' height")

@@ -102,7 +102,12 @@ mod tests {
                     continue;
                 }
                 let p = Window::center(x, y, 0);
-                grid.set(x, y, Lattice::OCC3D.ground_bin(grade * p.x), Class::DriveableSurface.id());
+                grid.set(
+                    x,
+                    y,
+                    Lattice::OCC3D.ground_bin(grade * p.x),
+                    Class::DriveableSurface.id(),
+                );
             }
         }
         grid

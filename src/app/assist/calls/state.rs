@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::call::Operation;
 use crate::desk::{Desk, draft_columns};
-use scene::{BevLayer, BoxLabel, Class, Conditions, Extent, Frame, PolylineKind, Scene, SceneBox};
+use scene::{BevLayer, BoxLabel, Class, Conditions, Frame, PolylineKind, Scene, SceneBox};
 
 /// Lines of the map that are listed at most, of each kind.
 const MOST_LINES: usize = 60;

@@ -15,7 +15,7 @@ use crate::Edit;
 use crate::pick::{self, VoxelHit};
 use crate::voxel_ops::{self, VoxelIndex};
 use language::tf;
-use scene::{Class, Extent, Frame};
+use scene::{Class, Frame};
 
 use super::corners::{PolygonDraft, Set};
 use super::rays::on_plane;

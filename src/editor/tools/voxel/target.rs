@@ -2,7 +2,7 @@
 
 use crate::pick::{self, PickRay, VoxelHit};
 use crate::tools::{VoxelTip, VoxelVerb};
-use scene::{Class, Extent, Frame};
+use scene::{Class, Frame};
 
 /// Voxels of the first face along the ray that a block covers: free ones in front of it to attach, others behind it to remove
 /// or recolour.
@@ -97,7 +97,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use scene::{BevLayout, VoxelGrid};
+    use scene::{BevLayout, Extent, VoxelGrid};
 
     fn frame() -> Frame {
         let mut grid = VoxelGrid::new();

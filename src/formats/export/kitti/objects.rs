@@ -9,7 +9,7 @@
 use std::fmt::Write;
 
 use glam::{DVec2, DVec3};
-use scene::{Class, Extent, Frame, SceneBox, Window};
+use scene::{Class, Frame, SceneBox, Window};
 
 use super::camera::FrontCamera;
 

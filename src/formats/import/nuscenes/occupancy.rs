@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Extent, Relief, SceneBox, SensorRig, Unobserved, VoxelGrid, Window,
-    draft, infer,
+    BevLayer, BevLayout, BoxId, Class, Extent, SceneBox, SensorRig, Unobserved, VoxelGrid, Window, draft,
+    infer,
 };
 
 use super::objects::{RecordedObjects, holds};
@@ -116,7 +116,8 @@ fn labels(
         })
         .collect();
     let mut voxels = VoxelGrid::over(extent);
-    let (mut words, mut masked, mut any) = (vec![u16::MAX; extent.columns()], false, false);
+    let (mut words, mut masked, mut any) =
+        (vec![extent.lattice().all_bins(); extent.columns()], false, false);
     touched.fill(false);
     for (i, (frame, path)) in files.iter().enumerate() {
         let labels = source.beside(path, occ3d::LARGEST_FILE);

@@ -66,9 +66,7 @@ impl SceneryVoxels {
         let mut columns = ColumnLabels::new();
         for thing in scene.background.in_extent(Extent::WINDOW) {
             for (at, labels) in thing.columns(layout) {
-                let all = columns
-                    .entry(at)
-                    .or_insert_with(|| vec![Class::FREE; Window::NZ]);
+                let all = columns.entry(at).or_insert_with(|| vec![Class::FREE; Window::NZ]);
                 let taken = labels.iter().zip(all).filter(|(label, _)| **label != Class::FREE);
                 taken.for_each(|(label, to)| *to = *label);
             }

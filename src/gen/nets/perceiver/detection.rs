@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use nn::map::FeatureMap;
-use scene::{BoxId, BoxLabel, Class, Extent, SceneBox, Window};
+use scene::{BoxId, BoxLabel, Class, SceneBox, Window};
 
 /// Numbers of a box: offset of its centre from the middle of the cell along x and y (cells), height of the centre (m), logs of length,
 /// width and height (m), cosine and sine of twice the yaw, which tell the axis, and of the yaw, which tell the heading.

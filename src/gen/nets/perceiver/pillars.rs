@@ -1,7 +1,7 @@
 //! Returns of a LiDAR as a map of columns: the input of the perceiver.
 
 use nn::map::FeatureMap;
-use scene::{Extent, Window};
+use scene::Window;
 
 /// Bins of height.
 const BINS: usize = 12;

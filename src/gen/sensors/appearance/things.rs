@@ -14,7 +14,7 @@ use super::noise::hash1;
 use build::ObjectBuilder;
 use part::rounded;
 use scene::clip::OwnShape;
-use scene::{BoxId, Class, Extent, Paint, SceneBox, Window};
+use scene::{BoxId, Class, Paint, SceneBox, Window};
 use shapes::shape;
 use voxel_shape::voxel_shape;
 

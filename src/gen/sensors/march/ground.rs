@@ -70,7 +70,7 @@ pub fn split(grid: &VoxelGrid, height: GroundHeight) -> (VoxelGrid, GroundHeight
     let mut out = VoxelGrid::over(extent);
     for x in 0..extent.nx() {
         for y in 0..extent.ny() {
-            let column = grid.column(x, y);
+            let column = grid.window_column(x, y);
             if *column == [Class::FREE; Window::NZ] {
                 continue;
             }
@@ -83,7 +83,7 @@ pub fn split(grid: &VoxelGrid, height: GroundHeight) -> (VoxelGrid, GroundHeight
             }
             unsmear(&mut upper);
             if upper != [Class::FREE; Window::NZ] {
-                out.column_mut(x, y).copy_from_slice(&upper);
+                *out.window_column_mut(x, y) = upper;
             }
         }
     }

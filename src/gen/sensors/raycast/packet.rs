@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::walk::{GridEntry, inverse_of, walk};
 use super::wide::{Wide, WideKernel, heights, run};
 use super::{BLOCK, BORDER, ColumnMasks};
-use scene::Extent;
+use scene::{Extent, Window};
 
 /// Rays in a packet.
 pub const LANES: usize = 8;

@@ -8,7 +8,7 @@ use super::observed::{Passed, seen_by_cameras};
 use super::{Vertical, finish_column};
 use crate::World;
 use scene::draw::Draw;
-use scene::{Class, LidarPattern, Relief, SensorRig, VoxelGrid, Window};
+use scene::{Class, LidarPattern, SensorRig, VoxelGrid, Window};
 
 /// Highest bin above the ground at which a column's lowest hit still belongs to an object that stands on it, before the
 /// smear.

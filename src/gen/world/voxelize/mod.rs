@@ -10,7 +10,7 @@ pub use drive::Drive;
 pub use labels::{Labelled, labelled, labels, observed_labels};
 use scene::raster::bev_channels;
 use scene::solid::fill::{SMEAR, fill, smear_down};
-use scene::{BevLayer, Class, Extent, Relief, VoxelGrid, Window};
+use scene::{BevLayer, Class, Extent, VoxelGrid, Window};
 
 /// Vertical position of the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

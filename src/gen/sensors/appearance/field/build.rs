@@ -5,7 +5,7 @@ use glam::IVec3;
 use super::super::noise::{hash1, unit};
 use super::Structure;
 use scene::appearance::{FieldShape, NZ, TRUNK};
-use scene::{Class, Extent, Window};
+use scene::{Class, Window};
 
 /// Continues above the grid the structures and crowns that reach its top.
 pub fn raise(shape: &FieldShape, solid: &mut [u8], structure: &[u16], structures: &mut [Structure]) {

@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::PartMaterial;
 use super::build::ObjectBuilder;
 use scene::clip::OwnShape;
-use scene::{Extent, SceneBox, Window};
+use scene::{SceneBox, Window};
 
 /// Most blocks: a number that the lists of a graphics card hold easily.
 const MOST: usize = 400;
