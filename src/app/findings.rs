@@ -16,7 +16,7 @@ use sensors::splat::PREVIEW_SIZE;
 /// as files have it, that lie in the box. The result does not depend on the frame in which the scene's sensors are
 /// given.
 pub fn seen(scene: &Scene) -> VisibilityCounts {
-    let scene = &*scene.with_rig_in_world();
+    let scene = &*scene.for_sensors();
     let frame = scene.frame();
     // Another check reports numbers that are not finite; rays would fail on them.
     let mut sound = frame.boxes.clone();

@@ -234,7 +234,7 @@ impl View3d {
     /// Draws a picture of the scene. Errors if it is larger than [`bounds`] allow.
     pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<RgbaPicture> {
         bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
-        let scene = &*scene.with_rig_in_world();
+        let scene = &*scene.for_sensors();
         let frame = scene.frame();
         let sweep = match options.lidar {
             true => rolling::exact(scene),

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    BevLayout, BoxId, Edit, Extent, Frame, Inferred, Polyline, Pose, Relief, Scene, SceneBox, Shape,
+    BevLayout, BoxId, Edit, Extent, Frame, Inferred, Lattice, Polyline, Pose, Relief, Scene, SceneBox, Shape,
     SourceFrame, Unobserved, VoxelGrid, VoxelPaint,
 };
 
@@ -58,8 +58,7 @@ impl Scene {
         scene
     }
 
-    /// The scene with its sensors at the place of the ego vehicle, in the world frame: the input for cameras and
-    /// LiDARs. The scene itself if the sensors are at that pose already (as with a vehicle at the origin) and the
+    /// The scene with its sensors at the place of the ego vehicle, in the world frame. The scene itself if the sensors are at that pose already (as with a vehicle at the origin) and the
     /// vehicle does not move.
     pub fn with_rig_in_world(&self) -> Cow<'_, Scene> {
         let pose = self.frame().world_from_ego;
@@ -75,6 +74,17 @@ impl Scene {
         }
         scene.rig = Arc::new(rig.carried(self.yaw_rate_rps()));
         Cow::Owned(scene)
+    }
+}
+
+impl Scene {
+    /// The input for cameras, LiDARs and their networks, which know the lattice of Occ3D: the scene in its voxels, with its
+    /// sensors in the world. The scene itself if it is so already.
+    pub fn for_sensors(&self) -> Cow<'_, Scene> {
+        match self.in_lattice(Lattice::OCC3D) {
+            Cow::Borrowed(scene) => scene.with_rig_in_world(),
+            Cow::Owned(scene) => Cow::Owned(scene.with_rig_in_world().into_owned()),
+        }
     }
 }
 

@@ -35,8 +35,12 @@ fn standing(job: &Job) -> Cow<'_, Job> {
 
 /// True if a job has nothing to generate.
 pub fn is_idle(job: &Job) -> bool {
-    let frame = job.scene.for_generation();
-    job.params.region == RegionMode::Auto && plan(frame.frame(), &job.params).is_empty()
+    if job.params.region != RegionMode::Auto {
+        return false;
+    }
+    let inner = super::lattice::in_networks_lattice(job);
+    let frame = inner.as_ref().unwrap_or(job).scene.for_generation();
+    plan(frame.frame(), &job.params).is_empty()
 }
 
 /// Runs a job in the window at the origin alone.
