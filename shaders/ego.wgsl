@@ -24,7 +24,7 @@ fn vs_main(
 @fragment
 fn fs_main(in: Surface) -> @location(0) vec4<f32> {
     let n = normalize(in.normal);
-    let reached = mix(vec2<f32>(0.9, 1.0), light_at(in.p + n * (0.5 * VOXEL_M)), frame.toggles.z);
+    let reached = mix(vec2<f32>(0.9, 1.0), light_at(in.p + n * (0.5 * frame.grid_size.w)), frame.toggles.z);
     // A gloss that follows the view keeps dark glass from being a hole.
     let shine = pow(max(dot(reflect(-frame.sun.xyz, n), toward_eye(in.p)), 0.0), 12.0) * reached.y * 0.12;
     let lit = in.color * in.color * lighting(n, reached) + vec3<f32>(shine);

@@ -33,7 +33,7 @@ fn fs_main(in: Face) -> @location(0) vec4<f32> {
         alpha *= inside.x * inside.y;
     } else if in.uv.z > 0.5 {
         let to_rim = min(min(in.uv.x, 1.0 - in.uv.x), min(in.uv.y, 1.0 - in.uv.y));
-        let width = max(0.05, 1.2 * pixel_m(in.p) / VOXEL_M);
+        let width = max(0.05, 1.2 * pixel_m(in.p) / frame.grid_size.w);
         alpha = mix(min(1.0, alpha * 2.6), alpha, smoothstep(0.0, width, to_rim));
     }
     return vec4<f32>(in.color.rgb * alpha, alpha);

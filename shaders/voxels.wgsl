@@ -18,9 +18,9 @@ fn vs_main(
     // Place of the brick: x, and y above 16 bits.
     @builtin(instance_index) brick: u32,
 ) -> Surface {
-    let in_brick = vec2<u32>(packed & 255u, (packed >> 8u) & 255u);
+    let in_brick = vec2<u32>(packed & 31u, (packed >> 5u) & 31u);
     let column = vec2<u32>(brick & 65535u, brick >> 16u) * BRICK + in_brick;
-    let corner = vec3<f32>(vec2<f32>(column), f32((packed >> 16u) & 31u));
+    let corner = vec3<f32>(vec2<f32>(column), f32((packed >> 10u) & 127u));
     let direction = (packed >> 21u) & 7u;
     let axis = direction >> 1u;
     let side = 1.0 - 2.0 * f32(direction & 1u);
@@ -42,7 +42,7 @@ fn vs_main(
     }
 
     var out: Surface;
-    let p = corner * VOXEL_M + frame.grid_min.xyz;
+    let p = corner * frame.grid_size.w + frame.grid_min.xyz;
     // Merged rectangles meet in T-junctions; a tenth of a pixel of overlap closes their cracks.
     out.clip = frame.clip_from_ego * vec4<f32>(p + outward * (0.12 * pixel_m(p)), 1.0);
     out.p = p;
@@ -60,7 +60,7 @@ fn edge(u: vec2<f32>, width: f32) -> f32 {
 
 @fragment
 fn fs_main(in: Surface) -> @location(0) vec4<f32> {
-    let reached = mix(vec2<f32>(0.9, 1.0), light_at(in.p + in.normal * (0.5 * VOXEL_M)), frame.toggles.z);
+    let reached = mix(vec2<f32>(0.9, 1.0), light_at(in.p + in.normal * (0.5 * frame.grid_size.w)), frame.toggles.z);
     let cell = voxel_units(in.p);
     var base = in.color.rgb;
     if in.color.a * frame.toggles.y > 0.0 {
@@ -71,7 +71,7 @@ fn fs_main(in: Surface) -> @location(0) vec4<f32> {
     // Higher is a little lighter, so that levels of one class part from each other.
     base *= 0.95 + 0.012 * cell.z;
     var lit = base * lighting(in.normal, reached);
-    let footprint = pixel_m(in.p) / VOXEL_M;
+    let footprint = pixel_m(in.p) / frame.grid_size.w;
     if footprint < 0.24 {
         var u = cell.xy;
         if abs(in.normal.x) > 0.5 {

@@ -140,7 +140,7 @@ pub fn point_cloud(bytes: &[u8]) {
         bytes,
         name: "cloud",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     }) {
         Err(error) => one_line(error),
         Ok(Content::Scene(loaded)) => frame_is_sound(loaded.scene.frame()),

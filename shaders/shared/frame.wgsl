@@ -20,7 +20,7 @@ struct Frame {
     toggles: vec4<f32>,
     // xyz: lower corner of the map, m; w: how many times farther away than over a small map fog is.
     grid_min: vec4<f32>,
-    // xyz: voxels of the map.
+    // xyz: voxels of the map; w: edge of a voxel, m.
     grid_size: vec4<f32>,
     // Per class: rgb squared sRGB; a: 1 for ground classes.
     palette: array<vec4<f32>, 18>,
@@ -32,7 +32,6 @@ struct Frame {
 @group(0) @binding(3) var markings: texture_2d<f32>;
 @group(0) @binding(4) var layout_plane: texture_2d<f32>;
 
-const VOXEL_M = 0.4;
 // Lower edge of the view in front of the eye where lines are cut, m.
 const NEAR_M = 0.1;
 
@@ -61,7 +60,7 @@ fn toward_eye(p: vec3<f32>) -> vec3<f32> {
 
 // Ego frame to voxel units of the map.
 fn voxel_units(p: vec3<f32>) -> vec3<f32> {
-    return (p - frame.grid_min.xyz) / VOXEL_M;
+    return (p - frame.grid_min.xyz) / frame.grid_size.w;
 }
 
 // The texel of a column: `size` are all of the texture.

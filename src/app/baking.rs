@@ -50,7 +50,7 @@ impl Product for Baker {
             ctx.tell(BakingEvent::At(share));
             !ctx.should_stop()
         };
-        let in_world = scene.with_rig_in_world();
+        let in_world = scene.for_sensors();
         let Some(mut lifted) = bake_scene(&in_world, &BakeOptions::default(), &go_on) else {
             return BakingEvent::GivenUp;
         };

@@ -249,7 +249,7 @@ fn pictures(
     let ClipView::Cameras { view, source, camera } = &options.view else {
         bail!("no view of cameras");
     };
-    let scene = scene.with_rig_in_world();
+    let scene = scene.for_sensors();
     if let Some(painter) = painter {
         let painted = painter.paint(&paint_input(&scene), &mut |_| ControlFlow::Continue(()))?;
         let shown = painted

@@ -19,7 +19,7 @@ use formats::FormatError;
 use formats::export::{BoxVisibility, ExportPicture, ExportSpan, Exporter, ObservationMasks, Products};
 use formats::recipe::Recipe;
 use nets::lidar::LidarNet;
-use scene::{CameraMaps, CameraTruth, GaussianScene, LidarSweep, Pose, Scene};
+use scene::{CameraMaps, CameraTruth, GaussianScene, Lattice, LidarSweep, Pose, Scene};
 use sensors::appearance::Quality;
 use sensors::bake::{self, BakeOptions};
 use sensors::cameras::{
@@ -111,15 +111,17 @@ pub fn export_all(
     // Files of a moment are in the ego frame; sensors are computed in the world frame.
     for format in formats {
         let of_file = match format.span {
-            ExportSpan::Moment => scene.in_ego(),
-            ExportSpan::Clip => Cow::Borrowed(scene),
+            ExportSpan::Moment if formats::export::keeps_lattice(format, scene) => Cow::Owned(scene.still()),
+            ExportSpan::Clip if formats::export::keeps_lattice(format, scene) => Cow::Borrowed(scene),
+            ExportSpan::Moment => Cow::Owned(scene.in_lattice(Lattice::OCC3D).in_ego().into_owned()),
+            ExportSpan::Clip => scene.in_lattice(Lattice::OCC3D),
         };
         let mut making = Making {
             whole: scene,
             recipe: &recipe,
             gaussians: &gaussians,
             began: Began::new(format),
-            scene: scene.with_rig_in_world(),
+            scene: scene.for_sensors(),
             options,
             progress,
         };
@@ -237,7 +239,7 @@ impl Products for Making<'_> {
         self.progress.go_on().map_err(FormatError::new)?;
         if time_s != self.scene.time_s() {
             let moment = self.whole.at(time_s);
-            self.scene = Cow::Owned(moment.with_rig_in_world().into_owned());
+            self.scene = Cow::Owned(moment.for_sensors().into_owned());
         }
         Ok(())
     }
@@ -252,6 +254,7 @@ impl Products for Making<'_> {
 
     fn observed(&mut self) -> Result<ObservationMasks, FormatError> {
         let moment = self.whole.at(self.scene.time_s());
+        let moment = moment.in_lattice(Lattice::OCC3D);
         let ego = moment.in_ego();
         if let Some(problem) = ego.rig.problem() {
             return Err(FormatError::new(problem));

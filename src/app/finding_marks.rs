@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::canvas::ScreenMap;
 use editor::apply_all;
 use editor::checks::Finding;
-use scene::{BoxId, Extent, Frame, Scene, SceneBox};
+use scene::{BoxId, Frame, Scene, SceneBox};
 use viewport::MarkedVoxels;
 
 /// Colour of the marks in both views; no class and no layer has this colour.
@@ -76,7 +76,7 @@ impl FindingMarks {
         let mut columns: Vec<[usize; 2]> = self.cells.iter().map(|[x, y, _]| [*x, *y]).collect();
         columns.sort_unstable();
         columns.dedup();
-        let half = DVec2::splat(Extent::VOXEL_M / 2.0);
+        let half = DVec2::splat(frame.extent().voxel_m() / 2.0);
         for [x, y] in columns {
             let middle = frame.extent().center(x, y, 0).truncate();
             let cell = map.rect_of(middle - half, middle + half);

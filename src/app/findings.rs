@@ -16,7 +16,7 @@ use sensors::splat::PREVIEW_SIZE;
 /// as files have it, that lie in the box. The result does not depend on the frame in which the scene's sensors are
 /// given.
 pub fn seen(scene: &Scene) -> VisibilityCounts {
-    let scene = &*scene.with_rig_in_world();
+    let scene = &*scene.for_sensors();
     let frame = scene.frame();
     // Another check reports numbers that are not finite; rays would fail on them.
     let mut sound = frame.boxes.clone();
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
     use crate::open;
     use editor::{Apply, Edit};
-    use scene::{BoxLabel, Class, Extent, Key, Motion};
+    use scene::{BoxLabel, Class, Extent, Key, Motion, Window};
 
     #[test]
     fn sensors_see_near_boxes_and_not_those_inside_a_wall() {
@@ -89,8 +89,8 @@ mod tests {
         let mut cells = Vec::new();
         for (i, j) in (x - 5..=x + 5).flat_map(|i| (y - 5..=y + 5).map(move |j| (i, j))) {
             match ring(i, j) {
-                5 => cells.extend((0..Extent::NZ).map(|z| [i, j, z])),
-                _ => cells.push([i, j, Extent::NZ - 1]),
+                5 => cells.extend((0..Window::NZ).map(|z| [i, j, z])),
+                _ => cells.push([i, j, Window::NZ - 1]),
             }
         }
         let class = Class::Manmade;

@@ -276,8 +276,8 @@ fn label(painter: &Painter, middle: Pos2, text: &str) {
 fn runs(extent: Extent, cells: &[[usize; 2]]) -> Vec<[DVec2; 2]> {
     let corner = |x: usize, y: usize| {
         DVec2::new(
-            extent.min_m().x + x as f64 * Extent::VOXEL_M,
-            extent.min_m().y + y as f64 * Extent::VOXEL_M,
+            extent.min_m().x + x as f64 * extent.voxel_m(),
+            extent.min_m().y + y as f64 * extent.voxel_m(),
         )
     };
     let joined = cells.chunk_by(|a, b| a[0] == b[0] && a[1] + 1 == b[1]);

@@ -71,7 +71,7 @@ impl Product for Perceiver {
                 }
             }
             PerceptionRequest::Look(scene, NetworkSensors::Cameras) => {
-                let placed = scene.with_rig_in_world();
+                let placed = scene.for_sensors();
                 match perceived::report(&placed) {
                     Ok(report) => PerceptionEvent::Looked(scene.rev, report),
                     Err(error) => PerceptionEvent::Failed(error.to_string()),

@@ -124,12 +124,13 @@ pub fn layout_top(frame: &Frame, scale: usize) -> RgbaPicture {
 
 /// Occupancy from above: the class of the highest voxel, brighter with height.
 pub fn occupancy_top(grid: &VoxelGrid, scale: usize) -> RgbaPicture {
+    let highest = (grid.extent().nz() - 1).max(1) as f32;
     top_view(grid.extent(), scale, |x, y| {
         let column = grid.column(x, y);
-        let top = (0..Extent::NZ).rev().find(|z| column[*z] != Class::FREE);
+        let top = column.iter().rposition(|label| *label != Class::FREE);
         top.and_then(|z| Some((z, Class::from_id(column[z])?)))
             .map_or([20, 22, 27], |(z, class)| {
-                scaled(class.color(), 0.62 + 0.38 * z as f32 / 15.0)
+                scaled(class.color(), 0.62 + 0.38 * z as f32 / highest)
             })
     })
 }
@@ -233,7 +234,7 @@ impl View3d {
     /// Draws a picture of the scene. Errors if it is larger than [`bounds`] allow.
     pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<RgbaPicture> {
         bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
-        let scene = &*scene.with_rig_in_world();
+        let scene = &*scene.for_sensors();
         let frame = scene.frame();
         let sweep = match options.lidar {
             true => rolling::exact(scene),

@@ -22,7 +22,7 @@ fn color(generating: bool) -> Color32 {
 /// Lowest and highest corner of a region, m.
 fn corners_m(extent: Extent, (low, high): &Bounds) -> [DVec2; 2] {
     let at = |c: &[usize; 2]| extent.center(c[0], c[1], 0).truncate();
-    let half = DVec2::splat(Extent::VOXEL_M / 2.0);
+    let half = DVec2::splat(extent.voxel_m() / 2.0);
     [at(low) - half, at(high) + half]
 }
 

@@ -465,7 +465,7 @@ fn the_history_is_bounded_by_bytes() {
         },
         class: [Class::Car, Class::Bus][i % 2],
     };
-    let limit = 6 << 20;
+    let limit = 8 << 20;
     let run = |all: bool, steps: usize| {
         let mut document = Document::new(start());
         document.set_history_limit(limit);

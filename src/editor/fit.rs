@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::{DVec2, Vec2Swizzles};
 
 use scene::raster::box_cells;
-use scene::{BoxId, Edit, Extent, Frame, SceneBox};
+use scene::{BoxId, Edit, Frame, SceneBox};
 
 /// Voxels this far beyond the box still count as its own, m.
 const AROUND_M: f64 = 1.2;
@@ -24,9 +24,11 @@ pub fn fit(frame: &Frame, id: BoxId) -> Option<Edit> {
     if points_m.len() < FEWEST {
         return None;
     }
-    let own = FittedRectangle::around(&points_m, b.yaw_rad);
+    let cell_m = frame.extent().voxel_m();
+    let own = FittedRectangle::around(&points_m, cell_m, b.yaw_rad);
     let steps = (90.0 / STEP_DEG) as usize;
-    let turned = (0..steps).map(|k| FittedRectangle::around(&points_m, (k as f64 * STEP_DEG).to_radians()));
+    let turned =
+        (0..steps).map(|k| FittedRectangle::around(&points_m, cell_m, (k as f64 * STEP_DEG).to_radians()));
     let best = turned.min_by(|a, b| a.area().total_cmp(&b.area()))?;
     let found = if best.area() < SMALLER * own.area() {
         best.like(own.yaw_rad)
@@ -95,8 +97,9 @@ struct FittedRectangle {
 }
 
 impl FittedRectangle {
-    /// The smallest rectangle of a heading around voxels with these centres, with half of a voxel's edge beyond them.
-    fn around(points_m: &[DVec2], yaw_rad: f64) -> Self {
+    /// The smallest rectangle of a heading around columns with these centres, with half of a column, `cell_m` wide, beyond
+    /// them.
+    fn around(points_m: &[DVec2], cell_m: f64, yaw_rad: f64) -> Self {
         let turn = DVec2::from_angle(-yaw_rad);
         let (low, high) = points_m
             .iter()
@@ -106,7 +109,7 @@ impl FittedRectangle {
             });
         Self {
             middle_m: DVec2::from_angle(yaw_rad).rotate((low + high) / 2.0),
-            size_m: high - low + DVec2::splat(Extent::VOXEL_M),
+            size_m: high - low + DVec2::splat(cell_m),
             yaw_rad,
         }
     }
@@ -137,7 +140,7 @@ mod tests {
 
     use super::*;
     use crate::Apply;
-    use scene::{BevLayout, Class, Scene, VoxelGrid};
+    use scene::{BevLayout, Class, Extent, Scene, VoxelGrid};
 
     /// A car's voxels, and a box that stands beside them, turned.
     fn scene(off_m: DVec2, off_deg: f64) -> (Scene, SceneBox) {

@@ -34,9 +34,9 @@ pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
         {
             return;
         }
-        let painted = *frame.painted.column(x, y);
-        let mut column = *frame.occupancy.column(x, y);
-        for z in 0..Extent::NZ {
+        let painted = frame.painted.column(x, y);
+        let mut column = frame.occupancy.column(x, y).to_vec();
+        for z in 0..column.len() {
             let inside = extent.center(x, y, z).z <= top_m;
             if inside && column[z] == class && painted[z] == NOT_PAINTED {
                 column[z] = background(frame.source.occupancy.get(x, y, z));
@@ -45,8 +45,8 @@ pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
                 }
             }
         }
-        if column != *frame.occupancy.column(x, y) {
-            *frame.occupancy.column_mut(x, y) = column;
+        if column != frame.occupancy.column(x, y) {
+            frame.occupancy.column_mut(x, y).copy_from_slice(&column);
         }
     });
     refill_ground(&mut frame.occupancy, &frame.layout, &emptied);
@@ -64,7 +64,7 @@ fn background(source_label: u8) -> u8 {
 /// Stamps the voxels of a box in the rough profile of its class, over the voxels that were there.
 pub(super) fn stamp_box(frame: &mut Frame, b: &SceneBox) {
     for (x, y, layers) in box_columns(frame.extent(), b) {
-        let painted = *frame.painted.column(x, y);
+        let painted = frame.painted.column(x, y);
         let ground = ground_bin(&frame.layout, x, y).min(layers - 1);
         for (z, locked) in painted.iter().enumerate().take(layers).skip(ground) {
             if *locked == NOT_PAINTED {
@@ -84,14 +84,14 @@ pub(super) fn shapes_ground(layer: BevLayer) -> bool {
 pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
     for &[x, y] in cells {
         let ground = ground_class(frame.layout.cell(x, y)).id();
-        let painted = *frame.painted.column(x, y);
-        let mut column = *frame.occupancy.column(x, y);
+        let painted = frame.painted.column(x, y);
+        let mut column = frame.occupancy.column(x, y).to_vec();
         let bin = ground_bin(&frame.layout, x, y);
         if column[bin] != Class::FREE && !is_ground(column[bin]) {
             continue;
         }
         // The second bin of a kerb is cleared too: a road painted over a sidewalk would keep its rim otherwise.
-        for z in bin + 1..(bin + 1 + GROUND_BINS).min(Extent::NZ) {
+        for z in bin + 1..(bin + 1 + GROUND_BINS).min(column.len()) {
             if is_ground(column[z]) && painted[z] == NOT_PAINTED {
                 column[z] = Class::FREE;
             }
@@ -99,8 +99,8 @@ pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
         if painted[bin] == NOT_PAINTED {
             column[bin] = ground;
         }
-        if column != *frame.occupancy.column(x, y) {
-            *frame.occupancy.column_mut(x, y) = column;
+        if column != frame.occupancy.column(x, y) {
+            frame.occupancy.column_mut(x, y).copy_from_slice(&column);
         }
     }
 }

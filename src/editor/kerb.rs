@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use scene::{BevLayer, BevLayout, Extent, Form};
+use scene::{BevLayer, BevLayout, Form};
 
 use super::lanes::nearest_lane;
 
@@ -43,7 +43,7 @@ struct KerbEdge {
 fn sides(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Vec<KerbEdge> {
     let (extent, min_m) = (layout.extent(), layout.extent().min_m());
     let cell = |v: f64, axis: usize, count: usize| {
-        let at = (v - min_m[axis]) / Extent::VOXEL_M;
+        let at = (v - min_m[axis]) / extent.voxel_m();
         at.floor().clamp(0.0, count as f64 - 1.0) as usize
     };
     let (x0, x1) = (
@@ -64,7 +64,7 @@ fn sides(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Vec<KerbEdge> {
                 let (a, b) = (rank(layout, x, y), rank(layout, nx, ny));
                 if a != b {
                     out.push(KerbEdge {
-                        middle_m: extent.center(x, y, 0).truncate() + step * (Extent::VOXEL_M / 2.0),
+                        middle_m: extent.center(x, y, 0).truncate() + step * (extent.voxel_m() / 2.0),
                         away: if a > b { step } else { -step },
                         ranks: (a.max(b), a.min(b)),
                     });
@@ -157,6 +157,7 @@ pub fn way_to_kerb(layout: &BevLayout, forms: &[Form], moved_m: DVec2, reach_m: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::Extent;
 
     /// Roadway below a line through (0, `y0`) of that slope, a walkway of 2 m above it.
     fn road(y0: f64, slope: f64) -> BevLayout {

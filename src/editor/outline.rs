@@ -62,7 +62,7 @@ fn border(extent: Extent, cells: &[[usize; 2]]) -> Option<Vec<DVec2>> {
         }
     }
     let corner =
-        |[x, y]: [i64; 2]| extent.min_m().truncate() + DVec2::new(x as f64, y as f64) * Extent::VOXEL_M;
+        |[x, y]: [i64; 2]| extent.min_m().truncate() + DVec2::new(x as f64, y as f64) * extent.voxel_m();
     let n = longest.len();
     let middle = |i: usize| (corner(longest[i]) + corner(longest[(i + 1) % n])) / 2.0;
     (n >= 4).then(|| (0..n).map(middle).collect())

@@ -1,6 +1,6 @@
 //! Accepts a part of a result: takes some of the voxels that differ between two states, and leaves the rest as it was.
 
-use scene::{Class, Extent, VoxelGrid};
+use scene::{Class, VoxelGrid};
 
 /// Part of a result that is accepted.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,11 +19,11 @@ impl AcceptedPart {
         each_different(before, after, |x, y, old, new| match self {
             Self::Columns(columns) => {
                 if columns.get(extent.index(x, y)) == Some(&true) {
-                    *out.column_mut(x, y) = *new;
+                    out.column_mut(x, y).copy_from_slice(new);
                 }
             }
             Self::Class(class) => {
-                for z in (0..Extent::NZ).filter(|z| old[*z] != new[*z]) {
+                for z in (0..extent.nz()).filter(|z| old[*z] != new[*z]) {
                     if [old[z], new[z]].contains(&class.id()) {
                         out.set(x, y, z, new[z]);
                     }
@@ -53,13 +53,7 @@ pub fn changed_by_class(before: &VoxelGrid, after: &VoxelGrid) -> Vec<(Class, us
     found
 }
 
-type VoxelColumn = [u8; Extent::NZ];
-
-fn each_different(
-    before: &VoxelGrid,
-    after: &VoxelGrid,
-    mut visit: impl FnMut(usize, usize, &VoxelColumn, &VoxelColumn),
-) {
+fn each_different(before: &VoxelGrid, after: &VoxelGrid, mut visit: impl FnMut(usize, usize, &[u8], &[u8])) {
     if before.extent() != after.extent() {
         return;
     }
@@ -77,6 +71,7 @@ fn each_different(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::Extent;
 
     fn grid(voxels: &[([usize; 3], Class)]) -> VoxelGrid {
         let mut grid = VoxelGrid::new();

@@ -142,7 +142,7 @@ pub fn ray_voxels(
                 cell: here,
                 label,
                 normal,
-                distance_m: at * Extent::VOXEL_M,
+                distance_m: at * grid.extent().voxel_m(),
             });
         }
         let next_plane = |axis: usize| match d[axis] {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use proptest::prelude::*;
 
 use super::*;
-use scene::BevLayout;
+use scene::{BevLayout, Window};
 
 fn ray(o: [f64; 3], d: [f64; 3]) -> PickRay {
     PickRay::new(o.into(), d.into()).expect("a direction")
@@ -122,7 +122,7 @@ proptest! {
                 let min = DVec3::new(*x as f64, *y as f64, *z as f64);
                 let (lo, hi) = (min + shrink, min + 1.0 - shrink);
                 let (enter, leave) = slab(origin, r.direction_in_ego, lo, hi)?;
-                (leave >= 0.0).then_some(enter.max(0.0) * Extent::VOXEL_M)
+                (leave >= 0.0).then_some(enter.max(0.0) * Window::VOXEL_M)
             });
             each.reduce(f64::min)
         };

@@ -137,7 +137,7 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
         let kept = after.in_extent(extent);
         let near: Vec<Thing> = kept
             .into_iter()
-            .filter(|t| gone.iter().any(|g| near(t, g)))
+            .filter(|t| gone.iter().any(|g| near(extent, t, g)))
             .collect();
         let Frame {
             layout,
@@ -188,13 +188,14 @@ fn clear_columns(
     kept: &[Thing],
 ) -> bool {
     // Voxels of the things' own forms, in these columns and of their class.
-    let mut owned: BTreeMap<[usize; 2], [bool; Extent::NZ]> = BTreeMap::new();
+    let nz = grid.extent().nz();
+    let mut owned: BTreeMap<[usize; 2], Vec<bool>> = BTreeMap::new();
     for thing in kept {
         let class = thing.form.class().id();
         for (at, voxels) in thing.columns(layout) {
-            let own = owned.entry(at).or_default();
+            let own = owned.entry(at).or_insert_with(|| vec![false; nz]);
             let now = grid.column(at[0], at[1]);
-            for z in 0..Extent::NZ {
+            for z in 0..nz {
                 own[z] |= voxels[z] != Class::FREE && (now[z] == voxels[z] || now[z] == class);
             }
         }
@@ -203,15 +204,15 @@ fn clear_columns(
     let mut changed = false;
     for &[x, y] in cells {
         let (own, locked) = (owned.get(&[x, y]), painted.column(x, y));
-        let mut column = *grid.column(x, y);
-        for z in 0..Extent::NZ {
+        let mut column = grid.column(x, y).to_vec();
+        for z in 0..nz {
             let scenery = [Class::Manmade.id(), Class::Vegetation.id()].contains(&column[z]);
             if scenery && locked[z] == NOT_PAINTED && !own.is_some_and(|own| own[z]) {
                 column[z] = Class::FREE;
             }
         }
-        if column != *grid.column(x, y) {
-            *grid.column_mut(x, y) = column;
+        if column != grid.column(x, y) {
+            grid.column_mut(x, y).copy_from_slice(&column);
             changed = true;
             if column[ground_bin(layout, x, y)] == Class::FREE {
                 emptied.push([x, y]);
@@ -291,9 +292,9 @@ impl<'a> SceneryChange<'a> {
     }
 }
 
-fn near(a: &Thing, b: &Thing) -> bool {
+fn near(extent: Extent, a: &Thing, b: &Thing) -> bool {
     let ((a_lo, a_hi), (b_lo, b_hi)) = (a.form.bounds_m(), b.form.bounds_m());
-    let reach = DVec2::splat(2.0 * Extent::VOXEL_M);
+    let reach = DVec2::splat(2.0 * extent.voxel_m());
     a_lo.cmple(b_hi + reach).all() && b_lo.cmple(a_hi + reach).all()
 }
 
@@ -304,24 +305,24 @@ fn clear(
     layout: &BevLayout,
     cleared: &mut ColumnLabels,
 ) {
-    let extent = layout.extent();
+    let (extent, nz) = (layout.extent(), layout.extent().nz());
     let mut around = with_margin(extent, own);
     let class = thing.form.class().id();
     let top = own
         .values()
         .filter_map(|c| c.iter().rposition(|v| *v != Class::FREE))
         .max();
-    let mut top = top.map_or(0, |z| (z + MARGIN).min(Extent::NZ - 1));
+    let mut top = top.map_or(0, |z| (z + MARGIN).min(nz - 1));
     for [x, y] in grown_over(extent, thing) {
         let height_m = layout.relief.column_m(x, y) + thing.form.height_m();
         let bin = extent.to_voxel_units(DVec3::Z * height_m).z.max(0.0) as usize;
-        top = top.max((bin + MARGIN).min(Extent::NZ - 1));
+        top = top.max((bin + MARGIN).min(nz - 1));
         around.insert([x, y]);
     }
     for [x, y] in around {
-        let locked = *painted.column(x, y);
-        let mut column = *grid.column(x, y);
-        let mut taken = [Class::FREE; Extent::NZ];
+        let locked = painted.column(x, y);
+        let mut column = grid.column(x, y).to_vec();
+        let mut taken = vec![Class::FREE; nz];
         for z in 0..=top {
             // Its own voxels of any class (a deck, a bin), and its class right around it.
             let is_own = own
@@ -331,15 +332,15 @@ fn clear(
                 taken[z] = std::mem::replace(&mut column[z], Class::FREE);
             }
         }
-        if taken != [Class::FREE; Extent::NZ] {
-            let before = cleared.entry([x, y]).or_insert([Class::FREE; Extent::NZ]);
+        if taken.iter().any(|label| *label != Class::FREE) {
+            let before = cleared.entry([x, y]).or_insert_with(|| vec![Class::FREE; nz]);
             // The first label, if several things clear the voxel.
             for (before, taken) in before.iter_mut().zip(taken) {
                 *before = if *before == Class::FREE { taken } else { *before };
             }
         }
-        if column != *grid.column(x, y) {
-            *grid.column_mut(x, y) = column;
+        if column != grid.column(x, y) {
+            grid.column_mut(x, y).copy_from_slice(&column);
         }
     }
 }
@@ -377,16 +378,16 @@ fn stamp(
     wanted: impl Fn([usize; 3]) -> bool,
 ) {
     for (&[x, y], voxels) in own {
-        let locked = *painted.column(x, y);
-        let mut column = *grid.column(x, y);
-        for z in 0..Extent::NZ {
+        let locked = painted.column(x, y);
+        let mut column = grid.column(x, y).to_vec();
+        for z in 0..column.len() {
             let taken = Class::from_id(column[z]).is_some_and(Class::is_object);
             if voxels[z] != Class::FREE && !taken && locked[z] == NOT_PAINTED && wanted([x, y, z]) {
                 column[z] = voxels[z];
             }
         }
-        if column != *grid.column(x, y) {
-            *grid.column_mut(x, y) = column;
+        if column != grid.column(x, y) {
+            grid.column_mut(x, y).copy_from_slice(&column);
         }
     }
 }

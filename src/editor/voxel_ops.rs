@@ -13,7 +13,7 @@ use super::Edit;
 pub type VoxelIndex = [usize; 3];
 
 fn holds(extent: Extent, [x, y, z]: VoxelIndex) -> bool {
-    extent.holds(x, y) && z < Extent::NZ
+    extent.holds(x, y) && z < extent.nz()
 }
 
 fn cell_at(extent: Extent, p: IVec3) -> Option<VoxelIndex> {
@@ -47,7 +47,7 @@ pub fn between(extent: Extent, a: VoxelIndex, b: VoxelIndex) -> Vec<VoxelIndex> 
 pub fn line(extent: Extent, a: VoxelIndex, b: VoxelIndex, size: usize) -> Vec<VoxelIndex> {
     let (a, b) = (ivec(a).as_dvec3(), ivec(b).as_dvec3());
     let steps = (b - a).abs().max_element().min(1e4);
-    let size = size.clamp(1, Extent::NZ) as i32;
+    let size = size.clamp(1, extent.nz()) as i32;
     let low = (size - 1) / 2;
     let mut cells = Vec::new();
     for i in 0..=steps as usize {
@@ -82,11 +82,11 @@ pub fn connected(grid: &VoxelGrid, start: VoxelIndex) -> Vec<VoxelIndex> {
         return Vec::new();
     }
     // Whole runs of a column at once, one bit per voxel.
-    let mut seen = vec![0u16; extent.columns()];
-    let mut open = vec![([x, y], 1u16 << z)];
+    let mut seen = vec![0u64; extent.columns()];
+    let mut open = vec![([x, y], 1u64 << z)];
     while let Some(([x, y], touched)) = open.pop() {
         let column = grid.column(x, y).iter().enumerate();
-        let own = column.fold(0, |word, (z, v)| word | u16::from(*v == class) << z);
+        let own = column.fold(0, |word, (z, v)| word | u64::from(*v == class) << z);
         let seen = &mut seen[extent.index(x, y)];
         let new = runs(touched, own) & !*seen;
         if new == 0 {
@@ -105,7 +105,7 @@ pub fn connected(grid: &VoxelGrid, start: VoxelIndex) -> Vec<VoxelIndex> {
     let mut cells = Vec::new();
     for ([x, y], word) in extent.all_columns().zip(seen) {
         if word != 0 {
-            let set = (0..Extent::NZ).filter(|z| word >> z & 1 == 1);
+            let set = (0..extent.nz()).filter(|z| word >> z & 1 == 1);
             cells.extend(set.map(|z| [x, y, z]));
         }
     }
@@ -113,7 +113,7 @@ pub fn connected(grid: &VoxelGrid, start: VoxelIndex) -> Vec<VoxelIndex> {
 }
 
 /// The runs of `within` that a word touches.
-fn runs(touched: u16, within: u16) -> u16 {
+fn runs(touched: u64, within: u64) -> u64 {
     let mut bits = touched & within;
     loop {
         let spread = (bits | bits << 1 | bits >> 1) & within;
@@ -146,7 +146,7 @@ pub fn face(grid: &VoxelGrid, start: VoxelIndex, normal: [i32; 3]) -> Vec<VoxelI
     }
     let mut sides = [IVec3::X, IVec3::Y, IVec3::Z].to_vec();
     sides.remove(axis);
-    let mut seen = vec![0u16; extent.columns()];
+    let mut seen = vec![0u64; extent.columns()];
     let mut open = vec![start];
     seen[extent.index(start[0], start[1])] = 1 << start[2];
     let mut cells = Vec::new();

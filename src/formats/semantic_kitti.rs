@@ -9,10 +9,10 @@
 
 use scene::{Class, LidarPattern, Pose};
 
-use crate::voxels::Lattice;
+use crate::voxels::{DataCells, DataMap};
 
 /// Where the cells lie, around the LiDAR.
-pub(crate) const LATTICE: Lattice = Lattice {
+pub(crate) const LATTICE: DataCells = DataCells {
     size: [256, 256, 32],
     cell_m: 0.2,
     min_m: [0.0, -25.6, -2.0],
@@ -121,6 +121,11 @@ pub(crate) fn ego_from_cells(lidar: &LidarPattern) -> Pose {
         translation_m: lidar.translation_m.into(),
         ..Pose::IDENTITY
     }
+}
+
+/// The map of the cells around a LiDAR. Errors in one line.
+pub(crate) fn own_map(lidar: &LidarPattern) -> Result<DataMap, String> {
+    DataMap::new(&LATTICE, &ego_from_cells(lidar), lidar)
 }
 
 /// A bit per cell as bytes.

@@ -8,9 +8,9 @@
 //!
 //! Classes 1 to 16 are those of [`scene::Class`] in all of them.
 
-use scene::{LidarPattern, Pose, Scene};
+use scene::{Frame, LidarPattern, Pose, Scene};
 
-use crate::voxels::{LabelledCell, Lattice, cells_of, physical};
+use crate::voxels::{DataCells, DataMap, LabelledCell, cells_of, check, physical};
 use crate::{FormatError, npz};
 
 /// A data set that keeps lists of voxels.
@@ -18,8 +18,8 @@ use crate::{FormatError, npz};
 pub(crate) struct SparseDataset {
     /// Assumption that is made when a file is read as this kind, for a person.
     pub assumed: &'static str,
-    /// Lattice of its cells, in the LiDAR's frame.
-    pub lattice: Lattice,
+    /// DataCells of its cells, in the LiDAR's frame.
+    pub lattice: DataCells,
     /// True for rows that begin with z, y, x, false for x, y, z.
     pub z_first: bool,
 }
@@ -27,7 +27,7 @@ pub(crate) struct SparseDataset {
 /// See the module.
 pub(crate) const OPEN_OCCUPANCY: SparseDataset = SparseDataset {
     assumed: "rows taken as OpenOccupancy: z, y, x, class in cells of 0.2 m of the LiDAR's frame, the LiDAR as on the nuScenes vehicle",
-    lattice: Lattice {
+    lattice: DataCells {
         size: [512, 512, 40],
         cell_m: 0.2,
         min_m: [-51.2, -51.2, -5.0],
@@ -38,7 +38,7 @@ pub(crate) const OPEN_OCCUPANCY: SparseDataset = SparseDataset {
 /// See the module.
 pub(crate) const SURROUND_OCC: SparseDataset = SparseDataset {
     assumed: "rows taken as SurroundOcc: x, y, z, class in cells of 0.5 m of the LiDAR's frame, the LiDAR as on the nuScenes vehicle",
-    lattice: Lattice {
+    lattice: DataCells {
         size: [200, 200, 16],
         cell_m: 0.5,
         min_m: LOW_M,
@@ -48,7 +48,7 @@ pub(crate) const SURROUND_OCC: SparseDataset = SparseDataset {
 
 const SURROUND_OCC_FINE: SparseDataset = SparseDataset {
     assumed: "rows taken as SurroundOcc: x, y, z, class in cells of 0.2 m of the LiDAR's frame, the LiDAR as on the nuScenes vehicle",
-    lattice: Lattice {
+    lattice: DataCells {
         size: [500, 500, 40],
         cell_m: 0.2,
         min_m: LOW_M,
@@ -58,7 +58,7 @@ const SURROUND_OCC_FINE: SparseDataset = SparseDataset {
 
 const UNI_SCENE: SparseDataset = SparseDataset {
     assumed: "rows taken as UniScene: x, y, z, class in cells of 0.125 m of the LiDAR's frame, the LiDAR as on the nuScenes vehicle",
-    lattice: Lattice {
+    lattice: DataCells {
         size: [800, 800, 64],
         cell_m: 0.125,
         min_m: LOW_M,
@@ -81,6 +81,13 @@ impl SparseDataset {
         }
     }
 
+    /// The data set's own map, if a scene is on it.
+    pub fn own_map(&self, scene: &Scene) -> Option<DataMap> {
+        let lidar = scene.rig.lidars.first()?;
+        let map = DataMap::new(&self.lattice, &ego_from_lidar(lidar), lidar).ok()?;
+        (map.extent() == scene.frame().extent()).then_some(map)
+    }
+
     /// The kind of a file with these largest values in its first three columns: the smallest grid that holds them. Where both
     /// the first and the last column may be z, it is the one with smaller values.
     pub fn of_maxima(maxima: [usize; 3]) -> Option<SparseDataset> {
@@ -95,13 +102,26 @@ impl SparseDataset {
     }
 }
 
+/// The voxels of a map of the data set's own.
+fn own_cells(frame: &Frame, map: &DataMap) -> Result<Vec<LabelledCell>, FormatError> {
+    check(frame)?;
+    let voxels = frame.occupancy.iter_set();
+    let cell = |(x, y, z, class)| LabelledCell {
+        at: map.cell([x, y, z]).map(|v| v as u16),
+        class,
+    };
+    Ok(voxels.map(cell).collect())
+}
+
 /// A scene's voxels as such a file, sorted by the columns, at their true height instead of that of Occ3D.
 pub(crate) fn to_bytes(scene: &Scene, kind: &SparseDataset) -> Result<Vec<u8>, FormatError> {
     let lidar = scene.rig.lidars.first();
     let lidar =
         lidar.ok_or_else(|| FormatError::new("the rig has no LiDAR, in whose frame the voxels are"))?;
-    let physical = physical(scene.frame())?;
-    let cells = cells_of(&physical, &kind.lattice, &ego_from_lidar(lidar));
+    let cells = match kind.own_map(scene) {
+        Some(map) => own_cells(scene.frame(), &map)?,
+        None => cells_of(&physical(scene.frame())?, &kind.lattice, &ego_from_lidar(lidar)),
+    };
     if cells.is_empty() {
         return Err(FormatError::new(
             "no voxel around the vehicle, and readers of such files expect one",

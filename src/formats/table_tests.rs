@@ -259,7 +259,7 @@ fn read(importer: &Importer, bytes: &[u8]) -> Result<Content, FormatError> {
         bytes,
         name: "small",
         path: path.as_deref(),
-        lift_m: None,
+        options: Default::default(),
     })
 }
 

@@ -1,11 +1,13 @@
-//! Voxel grids of other data sets: where their cells lie ([`Lattice`]), the ground at its true height ([`Physical`]), and
+//! Voxel grids of other data sets: where their cells lie ([`DataCells`]), the ground at its true height ([`Physical`]), and
 //! labels taken from one grid to the other ([`cells_of`], [`VoxelVotes`]).
 
-mod lattice;
+mod data_cells;
+mod data_map;
 mod physical;
 mod resample;
 
-pub(crate) use lattice::Lattice;
+pub(crate) use data_cells::DataCells;
+pub(crate) use data_map::DataMap;
 pub(crate) use physical::{Physical, unobserved};
 pub(crate) use resample::{LabelledCell, VoxelVotes, cells_of};
 

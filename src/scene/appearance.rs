@@ -3,14 +3,14 @@
 
 use glam::{Vec2, Vec3};
 
-use super::Extent;
+use super::{Extent, Lattice};
 
 /// Voxels of the field along z, with room above the grid.
 pub const NZ: usize = 46;
 /// Columns and rows of cells in a block.
 pub const BLOCK: usize = 8;
 /// Edge of a block, m.
-pub const BLOCK_M: f32 = (BLOCK as f64 * Extent::VOXEL_M) as f32;
+pub const BLOCK_M: f32 = (BLOCK as f64 * Lattice::OCC3D.voxel_m()) as f32;
 /// Columns along a side of a bin of lines: 2 m.
 pub const BIN_COLUMNS: usize = 5;
 /// The field's surface.
@@ -93,7 +93,7 @@ impl FieldShape {
             blocks: [nx, ny].map(|n| (n - 1).div_ceil(BLOCK)),
             bins: [extent.nx(), extent.ny()].map(|n| n.div_ceil(BIN_COLUMNS)),
             low_m: low.as_vec3(),
-            blocks_from_m: (low.truncate() - Extent::VOXEL_M / 2.0).as_vec2(),
+            blocks_from_m: (low.truncate() - extent.voxel_m() / 2.0).as_vec2(),
             middle_m: ((low + high) / 2.0).truncate().as_vec2(),
             skyline: (corner_m / SKYLINE_AROUND_M).max(1.0) as f32,
         }

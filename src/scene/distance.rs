@@ -78,7 +78,7 @@ pub fn signed_distance_m(extent: Extent, inside: impl Fn(usize) -> bool) -> Vec<
             dy as f32 - (to as usize % ny) as f32,
         );
         // The border runs between a cell of the set and one beside it, half a cell from both centres.
-        ((dx * dx + dy * dy).sqrt() - 0.5) * Extent::VOXEL_M as f32
+        ((dx * dx + dy * dy).sqrt() - 0.5) * extent.voxel_m() as f32
     };
     let (set, rest) = (
         nearest_source(extent, &inside),

@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::raster::box_cells;
-use super::{BevLayer, BevLayout, Class, Extent, Relief, SceneBox, VoxelGrid};
+use super::{BevLayer, BevLayout, Class, Extent, SceneBox, VoxelGrid};
 
 /// Class of the ground under a layout cell (bits of [`BevLayer`]): road and car park are driveable
 /// surface, sidewalk and crossings beside the road are sidewalk, all else is terrain.
@@ -21,7 +21,7 @@ pub fn ground_class(cell: u32) -> Class {
 }
 
 /// Columns of a map and heights that a box occupies by the rough profile of its class, as
-/// (x, y, number of voxels from bin 0 upward; at least 1), in the vertical convention of the Occ3D labels:
+/// (x, y, number of voxels from bin 0 upward; at least 1), in the vertical convention of the labels:
 /// objects reach down to the bin of the ground, their tops stay where they are.
 pub fn box_columns(extent: Extent, b: &SceneBox) -> Vec<(usize, usize, usize)> {
     let bottom_z = b.center_m.z - b.size_m.z / 2.0;
@@ -43,7 +43,7 @@ pub fn box_columns(extent: Extent, b: &SceneBox) -> Vec<(usize, usize, usize)> {
         let top = extent.to_voxel_units(DVec3::new(0.0, 0.0, top_m)).z - 1.0 / 6.0;
         // A box floating above the ground still shows at least one voxel; NaN shows none.
         if top.is_finite() {
-            let layers = (top.floor() + 1.0).clamp(1.0, Extent::NZ as f64);
+            let layers = (top.floor() + 1.0).clamp(1.0, extent.nz() as f64);
             out.push((x, y, layers as usize));
         }
     });
@@ -53,21 +53,19 @@ pub fn box_columns(extent: Extent, b: &SceneBox) -> Vec<(usize, usize, usize)> {
 /// Draws the draft of a box into a grid, from the ground under it up.
 pub fn stamp_box(grid: &mut VoxelGrid, b: &SceneBox) {
     let bottom_m = b.center_m.z - b.size_m.z / 2.0;
-    let ground = Relief::label_bin(bottom_m);
+    let ground = grid.extent().lattice().ground_bin(bottom_m);
     for (x, y, layers) in box_columns(grid.extent(), b) {
         grid.column_mut(x, y)[ground.min(layers - 1)..layers].fill(b.class.id());
     }
 }
 
-/// Bin that the ground of a layout lies in at a column, in the convention of the Occ3D labels: 0 without relief.
+/// Bin that the ground of a layout lies in at a column, in the convention of its lattice: 0 without relief in the labels
+/// of Occ3D.
 pub fn ground_bin(layout: &BevLayout, x: usize, y: usize) -> usize {
-    match layout.relief.is_flat() {
-        true => 0,
-        false => Relief::label_bin(layout.relief.column_m(x, y)),
-    }
+    layout.extent().lattice().ground_bin(layout.relief.column_m(x, y))
 }
 
-/// The draft of a whole frame: ground in the bin of its height in every column (bin 0 without relief), objects in place of
+/// The draft of a whole frame: ground in the bin of its height in every column, objects in place of
 /// the ground.
 pub fn draft<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox>) -> VoxelGrid {
     let extent = layout.extent();

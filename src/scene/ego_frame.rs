@@ -9,12 +9,12 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    BevLayout, BoxId, Edit, Extent, Frame, Inferred, Polyline, Pose, Relief, Scene, SceneBox, Shape,
+    BevLayout, BoxId, Edit, Extent, Frame, Inferred, Lattice, Polyline, Pose, Relief, Scene, SceneBox, Shape,
     SourceFrame, Unobserved, VoxelGrid, VoxelPaint,
 };
 
-/// Reach of its grids around the vehicle, columns: 100 m.
-const REACH: i32 = 250;
+/// Reach of its grids around the vehicle, m.
+const REACH_M: f64 = 100.0;
 
 impl Scene {
     /// The scene at the moment that is shown, in the ego frame, standing still. The scene itself if the ego vehicle is
@@ -30,7 +30,11 @@ impl Scene {
         }
         let extent = match frame.extent() == Extent::WINDOW {
             true => Extent::WINDOW,
-            false => Extent::new([-REACH; 2], [2 * REACH as usize; 2]).unwrap_or(Extent::WINDOW),
+            false => {
+                let reach = (REACH_M * frame.extent().lattice().per_m()).round() as i32;
+                let around = frame.extent().with_columns([-reach; 2], [2 * reach as usize; 2]);
+                around.unwrap_or(Extent::WINDOW)
+            }
         };
         let mut scene = self.still();
         if scene.rig.vehicle != Pose::IDENTITY {
@@ -54,8 +58,7 @@ impl Scene {
         scene
     }
 
-    /// The scene with its sensors at the place of the ego vehicle, in the world frame: the input for cameras and
-    /// LiDARs. The scene itself if the sensors are at that pose already (as with a vehicle at the origin) and the
+    /// The scene with its sensors at the place of the ego vehicle, in the world frame. The scene itself if the sensors are at that pose already (as with a vehicle at the origin) and the
     /// vehicle does not move.
     pub fn with_rig_in_world(&self) -> Cow<'_, Scene> {
         let pose = self.frame().world_from_ego;
@@ -71,6 +74,17 @@ impl Scene {
         }
         scene.rig = Arc::new(rig.carried(self.yaw_rate_rps()));
         Cow::Owned(scene)
+    }
+}
+
+impl Scene {
+    /// The input for cameras, LiDARs and their networks, which know the lattice of Occ3D: the scene in its voxels, with its
+    /// sensors in the world. The scene itself if it is so already.
+    pub fn for_sensors(&self) -> Cow<'_, Scene> {
+        match self.in_lattice(Lattice::OCC3D) {
+            Cow::Borrowed(scene) => scene.with_rig_in_world(),
+            Cow::Owned(scene) => Cow::Owned(scene.with_rig_in_world().into_owned()),
+        }
     }
 }
 
@@ -171,7 +185,7 @@ impl ColumnLookup {
                 let [i, j] = self.of.column(at);
                 let column = grid.column(i, j);
                 if column.iter().any(|label| *label != FILL) {
-                    *out.column_mut(x, y) = *column;
+                    out.column_mut(x, y).copy_from_slice(column);
                 }
             }
         }
@@ -365,7 +379,7 @@ impl VoxelGrid {
     /// These voxels with the map's lower corner at column `from`.
     pub fn moved_to(&self, from: [i32; 2]) -> Result<VoxelGrid, String> {
         let size = [self.extent().nx(), self.extent().ny()];
-        Ok(self.relabelled(Extent::new(from, size)?))
+        Ok(self.relabelled(self.extent().with_columns(from, size)?))
     }
 }
 

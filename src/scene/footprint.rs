@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::arranged::{Arranged, Members};
 use super::background::{Background, Thing, ThingId};
 use super::clip::OwnShape;
-use super::grid::{Brick, BrickGrid};
+use super::grid::{BRICK, BrickGrid};
 use super::roads::{Road, RoadNetwork};
 use super::{
     BevLayout, BoxId, Clip, Frame, Motion, Polyline, Scene, SceneBox, SensorRig, SourceFrame, Track,
@@ -101,7 +101,7 @@ fn clip_bytes(clip: &Clip, other: &Clip) -> usize {
         let voxels = if shared {
             0
         } else {
-            size_of_val(&track.voxels.columns[..])
+            size_of_val(&track.voxels.labels[..])
         };
         size_of::<Track>() + NODE_BYTES + motion_bytes(&track.motion) + voxels
     };
@@ -138,7 +138,7 @@ fn own_shapes(shapes: &OwnShapes, other: Option<&OwnShapes>) -> usize {
         let voxels = if shared {
             0
         } else {
-            size_of_val(&own.voxels.columns[..])
+            size_of_val(&own.voxels.labels[..])
         };
         size_of::<(BoxId, OwnShape)>() + NODE_BYTES + voxels
     };
@@ -177,7 +177,7 @@ fn grid<const FILL: u8>(grid: &BrickGrid<FILL>, other: Option<&BrickGrid<FILL>>)
         Some(of) => grid.changed_bricks(of).len(),
         None => grid.bricks().len(),
     };
-    handles + own * size_of::<Brick>()
+    handles + own * BRICK * BRICK * grid.extent().nz()
 }
 
 #[cfg(test)]

@@ -3,17 +3,18 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::{BoxId, Extent, Recorded};
+use super::{BoxId, Extent, Recorded, Window};
 
-/// Bit beside the 16 bits of a column's observed bins: set if these are known. A column of 0 is unknown.
-pub const KNOWN: u32 = 1 << Extent::NZ;
+/// Bit beside the 16 bits of a column's observed bins in the networks' window: set if these are known. A column of 0 is
+/// unknown.
+pub const KNOWN: u32 = 1 << Window::NZ;
 
 /// Voxels that no sensor of a data set observed: free there means unknown. One word per column `[x][y]` of a map, one
 /// bit per bin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unobserved {
     extent: Extent,
-    words: Arc<[u16]>,
+    words: Arc<[u64]>,
 }
 
 impl Unobserved {
@@ -26,12 +27,12 @@ impl Unobserved {
         };
         (observed.len() == Extent::WINDOW.voxels()).then(|| Self {
             extent: Extent::WINDOW,
-            words: observed.chunks_exact(Extent::NZ).map(word).collect(),
+            words: observed.chunks_exact(Window::NZ).map(word).collect(),
         })
     }
 
     /// The unobserved voxels of a map, from its words; `None` unless there is one per column.
-    pub fn from_words(extent: Extent, words: Vec<u16>) -> Option<Self> {
+    pub fn from_words(extent: Extent, words: Vec<u64>) -> Option<Self> {
         (words.len() == extent.columns()).then(|| Self {
             extent,
             words: words.into(),
@@ -55,18 +56,19 @@ impl Unobserved {
     }
 
     /// One word per column, `[x][y]`.
-    pub fn words(&self) -> &[u16] {
+    pub fn words(&self) -> &[u64] {
         &self.words
     }
 
-    /// The observed voxels: per column `[x][y]` one bit per bin and [`KNOWN`].
+    /// The observed voxels of the networks' window: per column `[x][y]` one bit per bin and [`KNOWN`].
     pub fn observed(&self) -> Vec<u32> {
-        self.words.iter().map(|word| u32::from(!word) | KNOWN).collect()
+        let observed = |word: &u64| u32::from(!*word as u16) | KNOWN;
+        self.words.iter().map(observed).collect()
     }
 
     /// Share of a column's bins that nothing observed, 0 to 1.
     pub fn share(&self, x: usize, y: usize) -> f64 {
-        f64::from(self.words[self.extent.index(x, y)].count_ones()) / Extent::NZ as f64
+        f64::from(self.words[self.extent.index(x, y)].count_ones()) / self.extent.nz() as f64
     }
 
     /// Share of all voxels that nothing observed, 0 to 1.
@@ -102,7 +104,6 @@ impl Inferred {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Window;
 
     #[test]
     fn unobserved_is_what_was_not_observed() {

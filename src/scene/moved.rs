@@ -6,11 +6,11 @@ use std::sync::Arc;
 use glam::{DQuat, DVec2, DVec3};
 
 use crate::{
-    BevLayout, Extent, Frame, Inferred, Polyline, Pose, Scene, SceneBox, SourceFrame, Unobserved, VoxelGrid,
-    VoxelPaint, Waiver,
+    BevLayout, Extent, Frame, Inferred, Lattice, Polyline, Pose, Scene, SceneBox, SourceFrame, Unobserved,
+    VoxelGrid, VoxelPaint, Waiver,
 };
 
-/// A move by whole columns.
+/// A move by whole columns of the networks' lattice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct ColumnShift(pub [i32; 2]);
 
@@ -22,15 +22,15 @@ impl ColumnShift {
 
     /// The move in metres.
     pub fn way_m(self) -> DVec2 {
-        // 0.4 is not exact in binary, 2.5 is.
-        DVec2::new(f64::from(self.0[0]) / 2.5, f64::from(self.0[1]) / 2.5)
+        let per_m = Lattice::OCC3D.per_m();
+        DVec2::new(f64::from(self.0[0]) / per_m, f64::from(self.0[1]) / per_m)
     }
 
     /// An extent, moved. Panics beyond the farthest column.
     pub fn extent(self, extent: Extent) -> Extent {
         let [x, y] = extent.from();
         let from = [x.saturating_add(self.0[0]), y.saturating_add(self.0[1])];
-        match Extent::new(from, [extent.nx(), extent.ny()]) {
+        match extent.with_columns(from, [extent.nx(), extent.ny()]) {
             Ok(moved) => moved,
             Err(problem) => panic!("{problem}"),
         }

@@ -157,7 +157,7 @@ fn segment_cells(extent: Extent, [a, b]: [DVec2; 2], half_width_m: f64, mut visi
 /// Rows of a column that may lie near a segment: all that do, and about two more on each side.
 fn rows_near(extent: Extent, [a, b]: [DVec2; 2], half_width_m: f64, x: usize) -> std::ops::Range<usize> {
     // One cell more on every side, so that rounding does not matter.
-    let reach_m = half_width_m + Extent::VOXEL_M;
+    let reach_m = half_width_m + extent.voxel_m();
     let at_m = extent.center(x, 0, 0).x;
     let d = b - a;
     // The y of the part of the segment that comes near enough to the column in x.

@@ -113,7 +113,7 @@ mod tests {
             made: car(2),
             motion: keys(10.0),
             there_s: [None, Some(0.5)],
-            voxels: ObjectVoxels::drafted(&car(2)),
+            voxels: ObjectVoxels::drafted(crate::Lattice::OCC3D, &car(2)),
             settled: true,
             own_shape: false,
         };

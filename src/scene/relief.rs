@@ -115,6 +115,11 @@ impl Relief {
         *self = Self::from_heights(extent, heights).unwrap_or_default();
     }
 
+    /// Width of a column, m; that of Occ3D where the ground is flat.
+    fn column_m_wide(&self) -> f64 {
+        self.extent().unwrap_or_default().voxel_m()
+    }
+
     /// True if both hold their heights in the same memory, or both are flat.
     pub fn shares(&self, other: &Self) -> bool {
         match (&self.heights, &other.heights) {
@@ -186,7 +191,7 @@ impl Relief {
         while t < limit {
             // A step of half the height above the ground: within a voxel no ground rises more steeply than a wall, and
             // a wall is met.
-            let next = (t + unit * (gap_m / 2.0).max(Extent::VOXEL_M / 2.0)).min(limit);
+            let next = (t + unit * (gap_m / 2.0).max(self.column_m_wide() / 2.0)).min(limit);
             gap_m = above_m(next);
             if gap_m < 0.0 {
                 let (mut near, mut far) = (t, next);
@@ -210,7 +215,7 @@ impl Relief {
         if self.is_flat() {
             return DVec3::Z;
         }
-        let h = Extent::VOXEL_M;
+        let h = self.column_m_wide();
         let dx = self.height_m(p + DVec2::X * h) - self.height_m(p - DVec2::X * h);
         let dy = self.height_m(p + DVec2::Y * h) - self.height_m(p - DVec2::Y * h);
         DVec3::new(-dx, -dy, 2.0 * h).normalize_or(DVec3::Z)
@@ -231,23 +236,12 @@ impl Relief {
             translation_m: p.extend(self.height_m(p)),
         }
     }
-
-    /// Bin of the grid that the ground of this height lies in, in the convention of the Occ3D labels (the road of the ego
-    /// vehicle in bin 0, two bins below its physical height), cut to the grid.
-    pub fn label_bin(height_m: f64) -> usize {
-        Self::physical_bin(height_m).saturating_sub(2)
-    }
-
-    /// Bin of the grid that holds this height, cut to the grid.
-    pub fn physical_bin(height_m: f64) -> usize {
-        let z = Extent::WINDOW.to_voxel_units(DVec3::new(0.0, 0.0, height_m)).z;
-        z.floor().clamp(0.0, (Extent::NZ - 1) as f64) as usize
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Lattice;
 
     #[test]
     fn rays_meet_the_ground_where_it_is() {
@@ -320,10 +314,10 @@ mod tests {
 
     #[test]
     fn the_ego_road_is_in_bin_0_and_a_rise_climbs() {
-        assert_eq!(Relief::label_bin(0.0), 0);
-        assert_eq!(Relief::label_bin(0.45), 1);
-        assert_eq!(Relief::label_bin(2.0), 5);
-        assert_eq!(Relief::label_bin(-30.0), 0);
-        assert_eq!(Relief::label_bin(90.0), 13);
+        assert_eq!(Lattice::OCC3D.ground_bin(0.0), 0);
+        assert_eq!(Lattice::OCC3D.ground_bin(0.45), 1);
+        assert_eq!(Lattice::OCC3D.ground_bin(2.0), 5);
+        assert_eq!(Lattice::OCC3D.ground_bin(-30.0), 0);
+        assert_eq!(Lattice::OCC3D.ground_bin(90.0), 13);
     }
 }

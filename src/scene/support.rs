@@ -2,13 +2,17 @@
 
 use crate::{Class, Extent, Unobserved, VoxelGrid};
 
-/// Bins in which the ground may lie: bin 0 in the labels' convention, bin 2 at its true height.
-const GROUND_BINS: u16 = 0b111;
-/// Number of connected ground voxels above those bins from which on they carry objects: 16 m².
-const WIDE_GROUND: usize = 100;
+/// Area of connected ground voxels above the ground's bins from which on they carry objects, m².
+const WIDE_GROUND_M2: f64 = 16.0;
+
+/// Bins in which the ground of a flat map may lie: up to its true height, which is bin 2 in Occ3D; in its labels it is in
+/// bin 0.
+fn ground_bins(extent: Extent) -> u64 {
+    (2 << extent.lattice().bin(0.0)) - 1
+}
 
 /// One word per column `[x][y]`, one bit per bin that is not free.
-pub fn occupied(grid: &VoxelGrid) -> Vec<u16> {
+pub fn occupied(grid: &VoxelGrid) -> Vec<u64> {
     let mut out = vec![0; grid.extent().columns()];
     for (x, y, z, _) in grid.iter_set() {
         out[grid.extent().index(x, y)] |= 1 << z;
@@ -17,11 +21,11 @@ pub fn occupied(grid: &VoxelGrid) -> Vec<u16> {
 }
 
 /// One word per column and class, by class id: one bit per bin that holds it. Empty for a class that does not occur.
-pub fn by_class(grid: &VoxelGrid) -> Vec<Vec<u16>> {
+pub fn by_class(grid: &VoxelGrid) -> Vec<Vec<u64>> {
     let mut out = vec![Vec::new(); Class::COUNT];
     for (x, y, z, label) in grid.iter_set() {
         if let Some(words) = out.get_mut(usize::from(label)) {
-            words.resize(grid.extent().columns(), 0u16);
+            words.resize(grid.extent().columns(), 0u64);
             words[grid.extent().index(x, y)] |= 1 << z;
         }
     }
@@ -29,7 +33,7 @@ pub fn by_class(grid: &VoxelGrid) -> Vec<Vec<u16>> {
 }
 
 /// One word per column, one bit per bin that holds ground.
-pub fn ground(extent: Extent, by_class: &[Vec<u16>]) -> Vec<u16> {
+pub fn ground(extent: Extent, by_class: &[Vec<u64>]) -> Vec<u64> {
     let mut out = vec![0; extent.columns()];
     let grounds = Class::ALL.iter().filter(|c| c.is_ground());
     for words in grounds.filter_map(|c| by_class.get(usize::from(c.id()))) {
@@ -43,18 +47,19 @@ pub const CROWN: usize = 8;
 
 /// The part of `occupied` that stands: voxels connected to the ground bins, or to wide ground that lies higher, through
 /// voxels that touch by a face, an edge or a corner.
-pub fn supported(extent: Extent, occupied: &[u16], ground: &[u16]) -> Vec<u16> {
+pub fn supported(extent: Extent, occupied: &[u64], ground: &[u64]) -> Vec<u64> {
     let out = reached(extent, occupied, |_| 0);
     // A hill that does not reach the lowest bins is ground too.
     let mut high = Vec::new();
     for (c, (ground, out)) in ground.iter().zip(&out).enumerate() {
         high.extend(bins_set(extent, c, ground & !out));
     }
-    if high.len() < WIDE_GROUND {
+    let wide = (WIDE_GROUND_M2 / extent.voxel_m().powi(2)).round() as usize;
+    if high.len() < wide {
         return out;
     }
     let mut seeds = out.clone();
-    for group in groups(extent, high).iter().filter(|g| g.len() >= WIDE_GROUND) {
+    for group in groups(extent, high).iter().filter(|g| g.len() >= wide) {
         group
             .iter()
             .for_each(|[x, y, z]| seeds[extent.index(*x, *y)] |= 1 << z);
@@ -64,15 +69,16 @@ pub fn supported(extent: Extent, occupied: &[u16], ground: &[u16]) -> Vec<u16> {
 
 /// The part of `occupied` that is connected to the ground bins or to the seeds of a column, through voxels that touch
 /// by a face, an edge or a corner.
-pub fn reached(extent: Extent, occupied: &[u16], seeds: impl Fn(usize) -> u16) -> Vec<u16> {
-    let start = |(c, bits): (usize, &u16)| match *bits {
+pub fn reached(extent: Extent, occupied: &[u64], seeds: impl Fn(usize) -> u64) -> Vec<u64> {
+    let ground_bins = ground_bins(extent);
+    let start = |(c, bits): (usize, &u64)| match *bits {
         0 => 0,
-        bits => fill(bits & (GROUND_BINS | seeds(c)), bits),
+        bits => fill(bits & (ground_bins | seeds(c)), bits),
     };
-    let mut out: Vec<u16> = occupied.iter().enumerate().map(start).collect();
+    let mut out: Vec<u64> = occupied.iter().enumerate().map(start).collect();
     // Columns whose neighbours may still gain voxels: one that reaches no higher than the ground bins adds nothing.
     let mut queue: Vec<usize> = (0..out.len())
-        .filter(|c| out[*c] << 1 & !GROUND_BINS != 0)
+        .filter(|c| out[*c] << 1 & !ground_bins != 0)
         .collect();
     while let Some(c) = queue.pop() {
         let reach = out[c] | out[c] << 1 | out[c] >> 1;
@@ -88,17 +94,17 @@ pub fn reached(extent: Extent, occupied: &[u16], seeds: impl Fn(usize) -> u16) -
 }
 
 /// The voxels of a column whose bits are set in a word.
-pub fn bins_set(extent: Extent, column: usize, mut word: u16) -> impl Iterator<Item = [usize; 3]> {
+pub fn bins_set(extent: Extent, column: usize, mut word: u64) -> impl Iterator<Item = [usize; 3]> {
     let [x, y] = extent.column(column);
     std::iter::from_fn(move || {
         let z = word.trailing_zeros() as usize;
         word &= word.wrapping_sub(1);
-        (z < Extent::NZ).then_some([x, y, z])
+        (z < extent.nz()).then_some([x, y, z])
     })
 }
 
 /// Spreads set bits over the runs of `within` that they lie in.
-fn fill(mut bits: u16, within: u16) -> u16 {
+fn fill(mut bits: u64, within: u64) -> u64 {
     loop {
         let spread = (bits | bits << 1 | bits >> 1) & within;
         if spread == bits {
@@ -121,7 +127,7 @@ pub fn neighbours(extent: Extent, column: usize) -> impl Iterator<Item = usize> 
 /// voxels in order within each.
 pub fn groups(extent: Extent, mut cells: Vec<[usize; 3]>) -> Vec<Vec<[usize; 3]>> {
     cells.sort_unstable();
-    let mut left = vec![0u16; extent.columns()];
+    let mut left = vec![0u64; extent.columns()];
     for &[x, y, z] in &cells {
         left[extent.index(x, y)] |= 1 << z;
     }
@@ -138,12 +144,12 @@ pub fn groups(extent: Extent, mut cells: Vec<[usize; 3]>) -> Vec<Vec<[usize; 3]>
             let [x, y, z] = group[next];
             next += 1;
             let own = extent.index(x, y);
-            let reach = 1u16 << z | (1u16 << z) << 1 | (1u16 << z) >> 1;
+            let reach = 1u64 << z | (1u64 << z) << 1 | (1u64 << z) >> 1;
             for c in neighbours(extent, own).chain([own]) {
                 let taken = left[c] & reach;
                 left[c] &= !taken;
                 let [x, y] = extent.column(c);
-                let bins = (0..Extent::NZ).filter(|k| taken >> k & 1 == 1);
+                let bins = (0..extent.nz()).filter(|k| taken >> k & 1 == 1);
                 group.extend(bins.map(|k| [x, y, k]));
             }
         }
@@ -170,7 +176,8 @@ pub fn main_class(grid: &VoxelGrid, cells: &[[usize; 3]]) -> Class {
 /// its top (except for objects, which stand on their own), or voxels below that no sensor observed.
 pub fn is_known_to_float(grid: &VoxelGrid, unobserved: Option<&Unobserved>, group: &[[usize; 3]]) -> bool {
     let is_object = |[x, y, z]: [usize; 3]| Class::from_id(grid.get(x, y, z)).is_some_and(Class::is_object);
-    let at_edge = |cell: [usize; 3]| reaches_side(grid.extent(), &[cell]) || cell[2] + 1 == Extent::NZ;
+    let at_edge =
+        |cell: [usize; 3]| reaches_side(grid.extent(), &[cell]) || cell[2] + 1 == grid.extent().nz();
     let unknown_below = |[x, y, z]: [usize; 3]| {
         let words = unobserved.map(Unobserved::words);
         z > 0 && words.is_some_and(|w| w[grid.extent().index(x, y)] >> (z - 1) & 1 == 1)

@@ -44,7 +44,7 @@ pub use splats::{SPLAT_UNIFORM_BYTES, SplatError, SplatRenderer};
 pub use track_color::track_color;
 pub use view::Viewport;
 
-use scene::Extent;
+use scene::Lattice;
 
 /// Top of the ground bin, m: where the drawn ground is, 0.6 m below the physical one.
-pub const GROUND_TOP_M: f64 = Extent::BOTTOM_M + Extent::VOXEL_M;
+pub const GROUND_TOP_M: f64 = Lattice::OCC3D.bottom_m() + Lattice::OCC3D.voxel_m();

@@ -1,13 +1,13 @@
 //! Light that reaches each voxel: how much of the sky and of the sun, baked on the CPU.
 //!
 //! Rays of one direction cross the same cells relative to where they start, so a whole column is
-//! traced at once: 16 bins are 16 bits, and "blocked" is an OR of shifted neighbour columns.
+//! traced at once: each bin is a bit of a word, and "blocked" is an OR of shifted neighbour columns.
 
 use rayon::prelude::*;
 
 use super::meshing::Solidity;
 use super::pool;
-use scene::Extent;
+use scene::Lattice;
 
 /// Toward the sun, ego frame, unit length: from behind, left and above.
 pub const SUN: [f32; 3] = [-0.452, 0.362, 0.815];
@@ -15,6 +15,8 @@ pub const SUN: [f32; 3] = [-0.452, 0.362, 0.815];
 /// Farthest that light looks sideways, in columns: a change reaches no farther than this.
 pub const REACH: usize = 14;
 
+/// Farthest that light looks up, in bins.
+const HEIGHT: isize = Lattice::OCC3D.bins() as isize;
 /// Columns up to which no other threads are asked.
 const FEW: usize = 64 * 64;
 const SUN_RAYS: usize = 8;
@@ -31,7 +33,7 @@ pub struct LightBlock {
     pub origin: [usize; 2],
     /// Columns along x and y.
     pub size: [usize; 2],
-    /// `[z][y][x]`, 16 layers.
+    /// `[z][y][x]`, a layer per bin.
     pub cells: Vec<[u8; 2]>,
 }
 
@@ -101,8 +103,8 @@ impl LightRays {
             let at = solid.index(origin[0] + i % w, origin[1] + i / w) - stride - 1;
             ColumnLight {
                 own: solid.padded()[at],
-                sun: free_counts(solid.padded(), &sun, at),
-                sky: free_counts(solid.padded(), &sky, at),
+                sun: RayCounts::of_column(solid.padded(), &sun, at),
+                sky: RayCounts::of_column(solid.padded(), &sky, at),
             }
         };
         // Around an edit in this thread: others would take longer to wake.
@@ -110,13 +112,14 @@ impl LightRays {
             0..=FEW => (0..w * h).map(column).collect(),
             _ => pool::run(|| (0..w * h).into_par_iter().with_min_len(64).map(column).collect()),
         };
-        let mut cells = vec![[0; 2]; size[0] * size[1] * Extent::NZ];
+        let bins = solid.extent().nz();
+        let mut cells = vec![[0; 2]; size[0] * size[1] * bins];
         for y in 0..size[1] {
             for x in 0..size[0] {
                 let at = |dx: usize, dy: usize| &traced[(y + dy) * w + x + dx];
                 let around = [at(1, 1), at(0, 1), at(2, 1), at(1, 0), at(1, 2)];
-                for z in 0..Extent::NZ {
-                    cells[(z * size[1] + y) * size[0] + x] = cell(around, z);
+                for z in 0..bins {
+                    cells[(z * size[1] + y) * size[0] + x] = cell(around, z, bins);
                 }
             }
         }
@@ -125,9 +128,9 @@ impl LightRays {
 }
 
 struct ColumnLight {
-    own: u16,
-    sun: [u8; Extent::NZ],
-    sky: [u8; Extent::NZ],
+    own: u64,
+    sun: RayCounts,
+    sky: RayCounts,
 }
 
 impl ColumnLight {
@@ -136,22 +139,22 @@ impl ColumnLight {
     }
 }
 
-fn cell(around: [&ColumnLight; 5], z: usize) -> [u8; 2] {
+fn cell(around: [&ColumnLight; 5], z: usize, bins: usize) -> [u8; 2] {
     let byte = |v: f64| (v * 255.0).round() as u8;
     let here = around[0];
     if here.is_free(z) {
-        let sun = f64::from(here.sun[z]) / SUN_RAYS as f64;
-        return [byte(f64::from(here.sky[z]) / SKY_RAYS as f64), byte(sun)];
+        let sun = f64::from(here.sun.at(z)) / SUN_RAYS as f64;
+        return [byte(f64::from(here.sky.at(z)) / SKY_RAYS as f64), byte(sun)];
     }
     // Without this, the sunny foot of a wall would show a shadow that is not there.
     let (mut sum, mut n) = (0.0, 0.0);
     for column in around.into_iter().filter(|c| c.is_free(z)) {
-        sum += f64::from(column.sun[z]) / SUN_RAYS as f64;
+        sum += f64::from(column.sun.at(z)) / SUN_RAYS as f64;
         n += 1.0;
     }
     for zz in [z.wrapping_sub(1), z + 1] {
-        if zz < Extent::NZ && here.is_free(zz) {
-            sum += f64::from(here.sun[zz]) / SUN_RAYS as f64;
+        if zz < bins && here.is_free(zz) {
+            sum += f64::from(here.sun.at(zz)) / SUN_RAYS as f64;
             n += 1.0;
         }
     }
@@ -167,27 +170,33 @@ fn offsets(rays: &[Vec<RayStep>], stride: usize) -> Vec<Vec<Offset>> {
     rays.iter().map(|ray| ray.iter().map(offset).collect()).collect()
 }
 
-/// Counts, for each bin, the rays that reach the end unblocked.
-fn free_counts(columns: &[u16], rays: &[Vec<Offset>], at: usize) -> [u8; Extent::NZ] {
-    // Sixteen counters side by side, one bit of each per word: adding a ray is a carry through five words.
-    let mut counters = [0u16; 5];
-    for ray in rays {
-        let mut blocked = 0u16;
-        for step in ray {
-            blocked |= columns[at.wrapping_add_signed(step.offset)] >> step.dz;
+/// Numbers of rays that reach the end unblocked, of every bin of a column: counters side by side, one bit of each per word.
+struct RayCounts([u64; 5]);
+
+impl RayCounts {
+    fn of_column(columns: &[u64], rays: &[Vec<Offset>], at: usize) -> Self {
+        let mut counters = [0u64; 5];
+        for ray in rays {
+            let mut blocked = 0u64;
+            for step in ray {
+                blocked |= columns[at.wrapping_add_signed(step.offset)] >> step.dz;
+            }
+            // Adding a ray is a carry through five words.
+            let mut carry = !blocked;
+            for word in &mut counters {
+                (*word, carry) = (*word ^ carry, *word & carry);
+            }
         }
-        let mut carry = !blocked;
-        for word in &mut counters {
-            (*word, carry) = (*word ^ carry, *word & carry);
-        }
+        Self(counters)
     }
-    std::array::from_fn(|z| {
-        let bits = counters.iter().enumerate();
+
+    fn at(&self, z: usize) -> u8 {
+        let bits = self.0.iter().enumerate();
         bits.fold(0, |sum, (i, word)| sum | ((word >> z & 1) as u8) << i)
-    })
+    }
 }
 
-/// Cells that a ray from a cell's centre enters, until it is above the grid or `reach` cells away.
+/// Cells that a ray from a cell's centre enters, until it is above all that light looks at or `reach` cells away.
 fn steps(dir: glam::DVec3, reach: f64) -> Vec<RayStep> {
     let mut cell = [0isize; 3];
     let axis_t = |d: f64| if d == 0.0 { f64::INFINITY } else { 0.5 / d.abs() };
@@ -200,7 +209,7 @@ fn steps(dir: glam::DVec3, reach: f64) -> Vec<RayStep> {
         }
         cell[axis] += if dir[axis] < 0.0 { -1 } else { 1 };
         next[axis] += 1.0 / dir[axis].abs();
-        if cell[2] >= Extent::NZ as isize || cell[2] < 0 {
+        if cell[2] >= HEIGHT || cell[2] < 0 {
             break;
         }
         debug_assert!(cell[0].unsigned_abs() < REACH && cell[1].unsigned_abs() < REACH);

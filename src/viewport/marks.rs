@@ -10,7 +10,7 @@ use super::lines::LineList;
 use super::meshing::NORMALS;
 use super::options::drop_m;
 use super::track_color::track_color;
-use super::{GROUND_TOP_M, ViewScene, ego};
+use super::{ViewScene, ego};
 use scene::{Camera, Extent, Optics, SceneBox, SensorRig};
 
 /// All marks of a picture.
@@ -69,7 +69,7 @@ impl Marks {
     /// Lines every 10 m over the map and along its sides, and the axes.
     fn metre_grid(&mut self, extent: Extent) {
         const STEP_M: f64 = 10.0;
-        let z = GROUND_TOP_M + 0.005;
+        let z = extent.lattice().ground_top_m() + 0.005;
         let (low, high) = (extent.min_m(), extent.max_m());
         let mut places: Vec<f64> = [low.x, low.y, high.x, high.y].to_vec();
         let (first, last) = (low.x.min(low.y) / STEP_M, high.x.max(high.y) / STEP_M);
@@ -220,7 +220,7 @@ impl Marks {
                 let n = DVec3::from_array(normal.map(f64::from));
                 let u = DVec3::new(n.y, n.z, n.x);
                 let v = n.cross(u);
-                let half = Extent::VOXEL_M / 2.0;
+                let half = extent.voxel_m() / 2.0;
                 let middle = extent.center(cell[0], cell[1], cell[2]) + n * (half + 0.012);
                 let at = |a: f64, b: f64| middle + (u * a + v * b) * half;
                 self.faces.add(
@@ -290,7 +290,7 @@ mod tests {
             marks.metre_grid(extent);
             marks.plain
         };
-        let (z, end) = (GROUND_TOP_M + 0.005, 40.0);
+        let (z, end) = (crate::GROUND_TOP_M + 0.005, 40.0);
         let mut expected = LineList::default();
         for i in [-4i32, -3, -2, -1, 1, 2, 3, 4] {
             let at = f64::from(i) * 10.0;

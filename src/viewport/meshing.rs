@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::pool;
 use scene::grid::{BRICK, Brick, brick_columns};
-use scene::{Class, Extent, VoxelGrid};
+use scene::{Class, Extent, Lattice, VoxelGrid};
 
 /// Which voxels are drawn: one bit per bin of every column, after hidden classes and the height clip.
 /// Empty columns border the grid on all sides, so that looking [`Solidity::MARGIN`] beyond it is no
@@ -14,7 +14,7 @@ use scene::{Class, Extent, VoxelGrid};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solidity {
     extent: Extent,
-    columns: Vec<u16>, // [x + MARGIN][y + MARGIN]
+    columns: Vec<u64>, // [x + MARGIN][y + MARGIN]
 }
 
 /// A rectangle of columns: lower corner, and upper corner exclusive.
@@ -56,14 +56,15 @@ impl Solidity {
     /// Takes over one brick; returns the box around the columns that changed, if any did.
     pub fn update(&mut self, brick: usize, voxels: &Brick, visible: Visible) -> Option<ColumnBox> {
         let ([x0, y0], [nx, ny]) = brick_columns(self.extent, brick);
+        let bins = self.extent.nz();
         let mut changed: Option<ColumnBox> = None;
         for x in x0..x0 + nx {
             let row = self.index(x, 0);
             for y in y0..y0 + ny {
-                let at = ((x - x0) * BRICK + y - y0) * BRICK;
-                let mut bits = 0u16;
-                for (z, &class) in voxels[at..at + BRICK].iter().enumerate() {
-                    bits |= u16::from(visible.class(class)) << z;
+                let at = ((x - x0) * BRICK + y - y0) * bins;
+                let mut bits = 0u64;
+                for (z, &class) in voxels[at..at + bins].iter().enumerate() {
+                    bits |= u64::from(visible.class(class)) << z;
                 }
                 bits &= visible.below_clip;
                 let old = std::mem::replace(&mut self.columns[row + y], bits);
@@ -77,14 +78,14 @@ impl Solidity {
 
     /// The bits of a column, lowest bin first; x and y may reach [`Solidity::MARGIN`] beyond the grid.
     #[inline]
-    pub fn column(&self, x: isize, y: isize) -> u16 {
+    pub fn column(&self, x: isize, y: isize) -> u64 {
         let margin = Self::MARGIN as isize;
         self.columns[(x + margin) as usize * self.stride() + (y + margin) as usize]
     }
 
     /// All columns, margins included; see [`Solidity::index`].
     #[inline]
-    pub fn padded(&self) -> &[u16] {
+    pub fn padded(&self) -> &[u64] {
         &self.columns
     }
 
@@ -111,14 +112,14 @@ pub struct Visible {
     /// Bit c hides class c.
     pub hidden_classes: u32,
     /// Bit z shows bin z.
-    pub below_clip: u16,
+    pub below_clip: u64,
 }
 
 impl Visible {
     /// All voxels that are not free.
     pub const ALL: Visible = Visible {
         hidden_classes: 0,
-        below_clip: u16::MAX,
+        below_clip: u64::MAX,
     };
 
     fn class(self, class: u8) -> bool {
@@ -129,7 +130,7 @@ impl Visible {
 /// Faces of one brick: four vertices per rectangle, counter-clockwise from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BrickMesh {
-    /// `x | y << 8 | z << 16 | direction << 21 | class << 24`: the corner in voxel units of the brick.
+    /// `x | y << 5 | z << 10 | direction << 21 | class << 24`: the corner in voxel units of the brick.
     pub vertices: Vec<u32>,
     /// Rectangles of each direction: +x, -x, +y, -y, +z, -z.
     pub quads: [Range<u32>; 6],
@@ -163,7 +164,7 @@ pub fn mesh_bricks(grid: &VoxelGrid, solid: &Solidity, bricks: &[usize]) -> Vec<
 pub fn mesh_brick(voxels: &Brick, brick: usize, solid: &Solidity) -> BrickMesh {
     let ([x0, y0], [nx, ny]) = brick_columns(solid.extent, brick);
     let mut mesh = BrickMesh::default();
-    let mut exposed = [0u16; BRICK * BRICK];
+    let mut exposed = [0u64; BRICK * BRICK];
     for (direction, normal) in NORMALS.iter().enumerate() {
         let start = mesh.vertices.len() as u32 / 4;
         let mut any = 0;
@@ -185,7 +186,7 @@ pub fn mesh_brick(voxels: &Brick, brick: usize, solid: &Solidity) -> BrickMesh {
                 voxels,
                 exposed: &exposed,
                 axis: direction / 2,
-                size: [nx, ny, BRICK],
+                size: [nx, ny, solid.extent.nz()],
             };
             face.merge(|class, slice, low, high| {
                 emit(&mut mesh.vertices, direction, class, slice, low, high);
@@ -198,7 +199,7 @@ pub fn mesh_brick(voxels: &Brick, brick: usize, solid: &Solidity) -> BrickMesh {
 
 struct FaceSlices<'a> {
     voxels: &'a Brick,
-    exposed: &'a [u16; BRICK * BRICK],
+    exposed: &'a [u64; BRICK * BRICK],
     axis: usize,
     size: [usize; 3],
 }
@@ -208,7 +209,7 @@ impl FaceSlices<'_> {
     fn merge(&self, mut visit: impl FnMut(u8, usize, [usize; 2], [usize; 2])) {
         let (a_axis, b_axis) = plane_axes(self.axis);
         let (na, nb) = (self.size[a_axis], self.size[b_axis]);
-        let mut cells = [NONE; BRICK * BRICK]; // [b][a]
+        let mut cells = [NONE; BRICK * Lattice::MAX_BINS]; // [b][a]; a is never the height
         for slice in 0..self.size[self.axis] {
             let mut any = false;
             for b in 0..nb {
@@ -219,7 +220,7 @@ impl FaceSlices<'_> {
                     let open = self.exposed[column] >> v[2] & 1 == 1;
                     any |= open;
                     cells[b * BRICK + a] = if open {
-                        self.voxels[column * BRICK + v[2]]
+                        self.voxels[column * self.size[2] + v[2]]
                     } else {
                         NONE
                     };
@@ -286,7 +287,7 @@ fn emit(out: &mut Vec<u32>, direction: usize, class: u8, slice: usize, low: [usi
         p[axis] = slice + usize::from(direction.is_multiple_of(2));
         (p[a_axis], p[b_axis]) = (a, b);
         let [x, y, z] = p;
-        out.push((x | y << 8 | z << 16 | direction << 21) as u32 | u32::from(class) << 24);
+        out.push((x | y << 5 | z << 10 | direction << 21) as u32 | u32::from(class) << 24);
     }
 }
 
@@ -307,7 +308,7 @@ mod tests {
         let mut state = 7 + percent;
         for x in (0..extent.nx()).filter(|x| x % 29 < 17) {
             for y in (0..extent.ny()).filter(|y| y % 23 < 19) {
-                for z in 0..Extent::NZ {
+                for z in 0..extent.nz() {
                     if noise(&mut state) % 100 < percent {
                         grid.set(x, y, z, (noise(&mut state) % classes) as u8);
                     }
@@ -318,7 +319,7 @@ mod tests {
     }
 
     fn unpack(v: u32) -> ([i64; 3], usize, u8) {
-        let p = [v & 255, v >> 8 & 255, v >> 16 & 31].map(i64::from);
+        let p = [v & 31, v >> 5 & 31, v >> 10 & 127].map(i64::from);
         (p, (v >> 21 & 7) as usize, (v >> 24) as u8)
     }
 

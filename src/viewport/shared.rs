@@ -101,7 +101,12 @@ impl FrameUniforms {
                 finite(options.layout_opacity, 1.0).clamp(0.0, 1.0),
             ],
             grid_min: low.as_vec3().extend(wide.max(1.0) as f32).to_array(),
-            grid_size: [extent.nx() as f32, extent.ny() as f32, Extent::NZ as f32, 0.0],
+            grid_size: [
+                extent.nx() as f32,
+                extent.ny() as f32,
+                extent.nz() as f32,
+                extent.voxel_m() as f32,
+            ],
             palette: Class::ALL.map(|class| {
                 let [r, g, b, _] = rgba(class.color(), 1.0);
                 [r * r, g * g, b * b, f32::from(u8::from(class.is_ground()))]
@@ -203,7 +208,7 @@ impl DrawableResources {
         write_texture(
             queue,
             &self.of_map.light,
-            ([x + 1, y + 1, 1], [size[0], size[1], Extent::NZ]),
+            ([x + 1, y + 1, 1], [size[0], size[1], self.of_map.extent.nz()]),
             (2, block.size),
             bytemuck::cast_slice(&block.cells),
         );
@@ -250,7 +255,7 @@ impl OfMap {
         let columns = [extent.nx(), extent.ny()];
         // The light has a border of one cell.
         let [w, h] = columns.map(|n| (n + 2).min(limits.max_texture_dimension_3d as usize));
-        let volume = [w, h, Extent::NZ + 2];
+        let volume = [w, h, extent.nz() + 2];
         let [nx, ny] = columns.map(|n| n.min(limits.max_texture_dimension_2d as usize));
         let light = texture("light volume", volume, Dim::D3, Format::Rg8Unorm);
         let markings = texture("markings", [nx, ny, 1], Dim::D2, Format::Rgba8Unorm);

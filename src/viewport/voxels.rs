@@ -13,7 +13,7 @@ use super::shared::{PipelineSpec, VertexBuffer};
 use super::view::nothing;
 use super::{ViewCamera, ViewOptions};
 use scene::grid::{BRICK, Brick, brick_columns, bricks_along};
-use scene::{Extent, VoxelGrid};
+use scene::{Extent, Lattice, VoxelGrid};
 
 /// A vertex is one word; see [`BrickMesh::vertices`].
 const STRIDE: usize = 4;
@@ -50,7 +50,7 @@ struct BrickBuffer {
 }
 
 /// The visible part of a grid under these options.
-pub(super) fn visible(options: &ViewOptions) -> Visible {
+pub(super) fn visible(lattice: Lattice, options: &ViewOptions) -> Visible {
     if !options.voxels {
         return Visible {
             hidden_classes: u32::MAX,
@@ -59,12 +59,14 @@ pub(super) fn visible(options: &ViewOptions) -> Visible {
     }
     let bins = match options.clip_above_m {
         // The bin that holds the height is still shown; NaN clips nothing.
-        Some(z) if z.is_finite() => ((z - Extent::BOTTOM_M) * 2.5).ceil().clamp(0.0, 16.0) as u32,
-        _ => Extent::NZ as u32,
+        Some(z) if z.is_finite() => ((z - lattice.bottom_m()) * lattice.per_m())
+            .ceil()
+            .clamp(0.0, lattice.bins() as f64) as u32,
+        _ => lattice.bins() as u32,
     };
     Visible {
         hidden_classes: options.hidden_classes,
-        below_clip: ((1u32 << bins) - 1) as u16,
+        below_clip: ((1u128 << bins) - 1) as u64,
     }
 }
 
@@ -74,7 +76,8 @@ impl Drawable for VoxelDrawable {
     }
 
     fn prepare(&mut self, gpu: Gpu<'_>, shown: DrawInput<'_>) -> PictureChange {
-        let (grid, visible) = (shown.scene.grid, visible(shown.scene.options));
+        let grid = shown.scene.grid;
+        let visible = visible(grid.extent().lattice(), shown.scene.options);
         if visible == self.held.visible && same_bricks(grid, &self.held.grid) {
             return PictureChange::None;
         }
@@ -168,7 +171,7 @@ impl VoxelDrawable {
     fn resize(&mut self, extent: Extent, lit: [usize; 2]) {
         self.held = UploadedVoxels::nothing_of(extent);
         self.lit = lit;
-        self.light = vec![[255; 2]; lit[0] * lit[1] * Extent::NZ];
+        self.light = vec![[255; 2]; lit[0] * lit[1] * extent.nz()];
         self.bricks.clear();
         self.bricks
             .resize_with(self.held.grid.bricks().len(), BrickBuffer::default);
@@ -237,9 +240,10 @@ impl VoxelDrawable {
         }
         // Light is interpolated half a voxel off a surface.
         let part = EgoBounds::of_voxels(self.held.grid.extent(), low, high);
+        let off_m = 2.0 * self.held.grid.extent().voxel_m();
         let wider = EgoBounds {
-            low_m: part.low_m - 2.0 * Extent::VOXEL_M,
-            high_m: part.high_m + 2.0 * Extent::VOXEL_M,
+            low_m: part.low_m - off_m,
+            high_m: part.high_m + off_m,
         };
         PictureChange::part(wider, EDGE_PX)
     }
@@ -265,8 +269,9 @@ impl VoxelDrawable {
 
     fn bounds_m(&self, brick: usize) -> (DVec3, DVec3) {
         let ([x, y], _) = self.held.grid.brick_columns(brick);
-        let (low, side) = (DVec3::new(x as f64, y as f64, 0.0), BRICK as f64);
         let extent = self.held.grid.extent();
+        let low = DVec3::new(x as f64, y as f64, 0.0);
+        let side = DVec3::new(BRICK as f64, BRICK as f64, extent.nz() as f64);
         (extent.from_voxel_units(low), extent.from_voxel_units(low + side))
     }
 }
@@ -301,12 +306,13 @@ fn facing(
 /// The box around the voxels whose label differs.
 fn differing_part(extent: Extent, brick: usize, new: &Brick, old: &Brick) -> Option<EgoBounds> {
     let ([x0, y0], _) = brick_columns(extent, brick);
+    let bins = extent.nz();
     let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
-    for (column, (new, old)) in new.chunks(BRICK).zip(old.chunks(BRICK)).enumerate() {
+    for (column, (new, old)) in new.chunks(bins).zip(old.chunks(bins)).enumerate() {
         if new == old {
             continue;
         }
-        for z in (0..BRICK).filter(|&z| new[z] != old[z]) {
+        for z in (0..bins).filter(|&z| new[z] != old[z]) {
             let at = [x0 + column / BRICK, y0 + column % BRICK, z];
             low = [0, 1, 2].map(|k| low[k].min(at[k]));
             high = [0, 1, 2].map(|k| high[k].max(at[k] + 1));

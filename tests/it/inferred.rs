@@ -21,7 +21,7 @@ fn imported() -> Scene {
 #[test]
 fn an_imported_frame_is_marked_and_survives_saving() {
     let mut scene = imported();
-    let mut words = vec![0u16; Window::COLUMNS];
+    let mut words = vec![0u64; Window::COLUMNS];
     words[..700].fill(0xa001);
     scene.change_canvas(|f| f.inferred.unobserved = Unobserved::from_words(scene::Extent::WINDOW, words));
     let frame = scene.frame();

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use scene::{BevLayer, Class, Extent, Frame, Scene, SceneBox};
+use scene::{BevLayer, Class, Frame, Scene, SceneBox};
 
 /// Ids that a list holds at most.
 const MOST_IDS: usize = 100;
@@ -168,7 +168,7 @@ pub fn changed_voxels(before: &Frame, after: &Frame) -> Vec<[usize; 3]> {
         for x in from[0]..from[0] + size[0] {
             for y in from[1]..from[1] + size[1] {
                 let (a, b) = (a.column(x, y), b.column(x, y));
-                out.extend((0..Extent::NZ).filter(|z| a[*z] != b[*z]).map(|z| [x, y, z]));
+                out.extend((0..a.len()).filter(|z| a[*z] != b[*z]).map(|z| [x, y, z]));
             }
         }
     }

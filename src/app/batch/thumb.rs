@@ -30,7 +30,7 @@ pub fn write(scene: &Scene, path: &Path) -> anyhow::Result<()> {
 
 /// The map from above and beside it the view of the front camera, if the rig has a camera.
 fn draw(scene: &Scene) -> RgbaPicture {
-    let scene = scene.with_rig_in_world();
+    let scene = scene.for_sensors();
     let map = fitted(picture::layout_top(scene.frame(), 1), SIZE[1]);
     let front = scene.rig.cameras.iter().find(|c| c.name.ends_with("FRONT"));
     let Some(camera) = front.or(scene.rig.cameras.first()) else {

@@ -33,7 +33,7 @@ pub(super) fn picture(scene: &Scene, subject: Subject, size: [u32; 2]) -> anyhow
     let scale = wanted.ceil().max(1.0) as usize;
     let drawn = match subject {
         Subject::Occupancy => picture::occupancy_top(&frame.occupancy, scale),
-        Subject::Lidar => picture::lidar_top(extent, &rolling::exact(&scene.with_rig_in_world()), scale),
+        Subject::Lidar => picture::lidar_top(extent, &rolling::exact(&scene.for_sensors()), scale),
         _ => map(scene, scale),
     };
     let [w, h] = [extent.ny(), extent.nx()].map(|n| ((n as f64 * wanted) as u32).max(1));
@@ -99,7 +99,7 @@ pub(super) fn sceneries(scene: &Scene) -> Vec<Class> {
 }
 
 /// The scenery class on top of a column; `None` if another class is on top.
-fn scenery(column: &[u8; Extent::NZ]) -> Option<Class> {
+fn scenery(column: &[u8]) -> Option<Class> {
     let top = column.iter().rev().find(|v| **v != Class::FREE)?;
     Class::from_id(*top).filter(|c| matches!(c, Class::Manmade | Class::Vegetation))
 }

@@ -150,7 +150,7 @@ pub fn to_png_made_with(
 /// All cameras of the rig, three in a row.
 fn sheet(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<RgbaPicture> {
     let source = cameras::source_of(options.view, options.source);
-    let scene = &*scene.with_rig_in_world();
+    let scene = &*scene.for_sensors();
     let all = &scene.rig.cameras;
     if all.is_empty() {
         bail!("the rig {:?} has no cameras", scene.rig.name);

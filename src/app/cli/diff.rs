@@ -79,8 +79,8 @@ impl Diff {
             (changed.len() - changed_inside).into(),
         );
         let sweep = |s: &Scene| {
-            let rig = &s.with_rig_in_world().rig;
-            lidar::rig_sweep(&s.frame().occupancy, rig).unwrap_or_default()
+            let placed = s.for_sensors();
+            lidar::rig_sweep(&placed.frame().occupancy, &placed.rig).unwrap_or_default()
         };
         let sweeps = (sweep(&a), sweep(&b));
         report.insert("lidar".into(), lidar_report(&a, &b, &sweeps.0, &sweeps.1));

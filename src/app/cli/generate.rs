@@ -61,7 +61,7 @@ pub fn run_and_adopt(
 
 /// Seconds that a LiDAR sweep and six camera maps of the scene take.
 pub fn sense(scene: &Scene) -> (f64, f64) {
-    let scene = &*scene.with_rig_in_world();
+    let scene = &*scene.for_sensors();
     let frame = scene.frame();
     let start = Instant::now();
     lidar::rig_sweep(&frame.occupancy, &scene.rig);

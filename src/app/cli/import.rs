@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::{CommandResult, Common, output};
 use app::open::{self, Imported, Placement};
-use formats::import::{self, Content, ImportedScene, Importer};
+use formats::import::{self, Content, ImportOptions, ImportedScene, Importer};
 use formats::loom;
 use scene::{BevLayer, Scene};
 
@@ -35,6 +35,10 @@ pub struct Import {
     /// map is lifted onto it, which is told.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     lift: Option<f64>,
+    /// For voxels of OpenOccupancy, SurroundOcc, UniScene or SemanticKITTI: keep their size and heights, in place of those of
+    /// the networks.
+    #[arg(long)]
+    as_it_is: bool,
     /// Without vehicles and people.
     #[arg(long)]
     empty: bool,
@@ -92,7 +96,11 @@ impl Import {
         {
             return Err(anyhow!("--heading is {heading}, expected a finite angle in degrees").into());
         }
-        let (importer, content) = import::read_lifted(&self.file, self.lift)?;
+        let options = ImportOptions {
+            lift_m: self.lift,
+            as_it_is: self.as_it_is,
+        };
+        let (importer, content) = import::read_with(&self.file, options)?;
         match content {
             Content::Scene(loaded) => self.whole(importer, &loaded),
             Content::Recipe(recipe) => {

@@ -53,7 +53,7 @@ impl Perceive {
     }
 
     fn look(&self, scene: &Scene) -> CommandResult {
-        let placed = scene.with_rig_in_world();
+        let placed = scene.for_sensors();
         let found = perceived::report(&placed)?;
         let swept = perceived_sweep::report(scene)?;
         let heard = PerceptionInput::from_scene(scene)?;

@@ -11,8 +11,7 @@ use crate::command::Command;
 use crate::tools::Hand;
 use editor::Edit;
 use language::{t, tf};
-use scene::{Class, Extent, LidarSweep, Scene, SceneBox};
-use viewport::GROUND_TOP_M;
+use scene::{Class, LidarSweep, Scene, SceneBox};
 use widgets::icons::Icon;
 use widgets::theme;
 
@@ -22,10 +21,6 @@ const MARGIN_M: f64 = 1.6;
 const MIN_SIZE_M: f64 = 0.2;
 /// Distance from a face within which the pointer grabs it, points.
 const REACH: f32 = 7.0;
-/// Height by which the ground of the labels is lifted in these views, m: it lies this far below the physical ground, on
-/// which boxes stand. In labels, objects reach down to the lower ground, but their tops are at the true height. The
-/// part of an object below the physical ground is drawn faintly.
-const LIFT_M: f64 = -GROUND_TOP_M;
 
 /// A view: its name, and the box axes (0 along the heading, 1 left, 2 up) that run right and up on the screen.
 struct AxisView {
@@ -165,7 +160,9 @@ impl BoxViews {
             })
             .collect();
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let side = (Extent::VOXEL_M * scale) as f32;
+        let extent = scene.frame().extent();
+        let lift_m = -extent.lattice().ground_top_m();
+        let side = (extent.voxel_m() * scale) as f32;
         for (_, at, color) in seen {
             let square = Rect::from_center_size(at, vec2(side, side));
             painter.rect_filled(square, 0.0, color.gamma_multiply(0.55));
@@ -180,7 +177,7 @@ impl BoxViews {
         for point in sweep.map_or(&[][..], |s| &s.points) {
             // The exact sweep meets the ground at the height of the labels; the learned one uses the physical ground.
             let lifted = !physical && point.class.is_ground();
-            let lift = DVec3::Z * if lifted { LIFT_M } else { 0.0 };
+            let lift = DVec3::Z * if lifted { lift_m } else { 0.0 };
             let local = frame.to_local(DVec3::from_array(point.position_in_ego.map(f64::from)) + lift);
             if local.abs().cmple(reach).all() {
                 painter.circle_filled(to_screen(local), 2.0, Color32::from_black_alpha(150));
@@ -318,7 +315,9 @@ fn face_at(outline: Rect, p: Pos2, view: &AxisView) -> Option<(usize, f64)> {
     }
 }
 
-/// Occupied voxels around a box, the ground lifted to the physical one: centre in box coordinates, class.
+/// Occupied voxels around a box: centre in box coordinates, class. The ground of the labels lies below the physical one, on
+/// which boxes stand, and is lifted to it. Objects reach down to the lower ground, but their tops are at the true height; the
+/// part of an object below the physical ground is drawn faintly.
 fn voxels<'a>(
     scene: &'a Scene,
     b: &SceneBox,
@@ -327,9 +326,9 @@ fn voxels<'a>(
     let (b, frame) = (*b, scene.frame());
     let far = reach.length();
     let extent = frame.extent();
-    let min_m = extent.min_m();
+    let (min_m, lift_m) = (extent.min_m(), -extent.lattice().ground_top_m());
     let cells = |center: f64, axis: usize, count: usize| {
-        let at = |v: f64| (v - min_m[axis]) / Extent::VOXEL_M;
+        let at = |v: f64| (v - min_m[axis]) / extent.voxel_m();
         let low = at(center - far).floor().clamp(0.0, count as f64) as usize;
         let high = at(center + far).ceil().clamp(0.0, count as f64) as usize;
         low..high
@@ -339,11 +338,11 @@ fn voxels<'a>(
         cells(b.center_m.y, 1, extent.ny()),
     );
     xs.flat_map(move |x| ys.clone().map(move |y| (x, y)))
-        .flat_map(move |(x, y)| (0..Extent::NZ).map(move |z| (x, y, z)))
+        .flat_map(move |(x, y)| (0..extent.nz()).map(move |z| (x, y, z)))
         .filter_map(move |(x, y, z)| {
             let class = Class::from_id(frame.occupancy.get(x, y, z)).filter(|c| *c != Class::Free)?;
-            let center = |i: usize, axis: usize| min_m[axis] + (i as f64 + 0.5) * Extent::VOXEL_M;
-            let lift = if class.is_ground() { LIFT_M } else { 0.0 };
+            let center = |i: usize, axis: usize| min_m[axis] + (i as f64 + 0.5) * extent.voxel_m();
+            let lift = if class.is_ground() { lift_m } else { 0.0 };
             let local = b.to_local(DVec3::new(center(x, 0), center(y, 1), center(z, 2) + lift));
             local.abs().cmple(reach).all().then_some((local, class))
         })
@@ -385,10 +384,10 @@ mod tests {
         let scene = Scene::single("test", frame, std::sync::Arc::default(), 0);
         let top = |wanted: fn(Class) -> bool| {
             let heights = voxels(&scene, &b, b.size_m).filter(|(_, class)| wanted(*class));
-            heights.map(|(local, _)| local.z).fold(f64::MIN, f64::max) + Extent::VOXEL_M / 2.0
+            heights.map(|(local, _)| local.z).fold(f64::MIN, f64::max) + scene::Window::VOXEL_M / 2.0
         };
         let roof = top(|class| class == Class::Car);
-        assert!((roof - 0.85).abs() <= Extent::VOXEL_M, "{roof}");
+        assert!((roof - 0.85).abs() <= scene::Window::VOXEL_M, "{roof}");
         let ground = top(Class::is_ground);
         assert!((ground + 0.85).abs() < 1e-9, "{ground}");
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Color32, ColorImage, CursorIcon, Rect, Sense, Stroke, Ui, pos2, vec2};
 
-use scene::{Extent, Scene, SceneRev, VoxelGrid};
+use scene::{Scene, SceneRev, VoxelGrid};
 
 use super::camera_strip::CameraStrip;
 pub use super::comparing::{CompareMode, CompareSettings};
@@ -43,7 +43,7 @@ impl VoxelDifference {
             if a == b {
                 continue;
             }
-            for z in (0..Extent::NZ).filter(|z| a[*z] != b[*z]) {
+            for z in (0..b.len()).filter(|z| a[*z] != b[*z]) {
                 let free = scene::Class::FREE;
                 let of_kind = match (a[z] == free, b[z] == free) {
                     (true, _) => &mut out.added,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::accesskit::Role;
 use egui::{Align2, Rect, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use scene::{BevLayer, Class, Extent, Scene};
+use scene::{BevLayer, Class, Scene};
 
 use super::camera_strip::thousands;
 use super::id::PaneId;
@@ -60,7 +60,7 @@ impl SceneCounts {
         Self {
             voxels,
             boxes,
-            drivable_m2: cells as f64 * Extent::VOXEL_M * Extent::VOXEL_M,
+            drivable_m2: cells as f64 * frame.extent().voxel_m().powi(2),
             occupied: set as f64 / frame.extent().voxels() as f64,
             things: scene.background.len(),
         }
@@ -177,7 +177,7 @@ fn bar(ui: &mut Ui, class: Class, n: usize, most: usize, what: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{BevLayout, BoxId, Frame, SceneBox, VoxelGrid};
+    use scene::{BevLayout, BoxId, Extent, Frame, SceneBox, VoxelGrid};
 
     #[test]
     fn what_is_there_is_counted_and_nothing_else() {

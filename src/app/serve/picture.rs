@@ -117,7 +117,7 @@ impl ParsedRequest {
         let share = if shutter.is_some() { 0.5 } else { 0.0 };
         let place = scene.rig.cameras.iter().position(|c| c.name == spec.logical_id);
         let shown = scene.at(self.span.at(share));
-        let shown = shown.with_rig_in_world();
+        let shown = shown.for_sensors();
         let own_vehicle = shown.frame().world_from_ego;
         let given = self.ego.map(|pair| pair.at(share));
         let vehicle = match given {

@@ -10,10 +10,10 @@ pub use job::pipeline::Bounds;
 use job::pipeline::parts;
 use job::region::{CELLS, COLUMNS_PER_CELL, edited_columns};
 use job::{ChosenDensities, GenParams, JobId, JobKey, RegionMode, Stage};
-use scene::{Extent, Scene, SceneRev};
+use scene::{Scene, SceneRev, Window};
 
 /// Edge of a latent cell, m.
-const CELL_M: f64 = COLUMNS_PER_CELL as f64 * Extent::VOXEL_M;
+const CELL_M: f64 = COLUMNS_PER_CELL as f64 * Window::VOXEL_M;
 /// Mean time of runs up to which there is no grace, s.
 const QUICK_S: f64 = 1.5;
 /// The grace after the last edit if runs are slower, s.
@@ -243,11 +243,11 @@ impl Live {
         let count = columns.iter().filter(|c| **c).count();
         let touched = Touched {
             is_empty: parts.is_empty(),
-            extent_m: size_m(&parts),
+            extent_m: size_m(&parts, frame.extent().voxel_m()),
             share: (count as f64 / COLUMNS as f64).min(1.0),
         };
         self.parts = parts.into();
-        self.map_m = [frame.extent().nx(), frame.extent().ny()].map(|n| n as f64 * Extent::VOXEL_M);
+        self.map_m = [frame.extent().nx(), frame.extent().ny()].map(|n| n as f64 * frame.extent().voxel_m());
         self.seen = Some((scene.content(), touched));
         self.last_edit_s = now_s;
         touched
@@ -328,12 +328,12 @@ impl Live {
 }
 
 /// Size of all parts together along x and y, m.
-fn size_m(parts: &[Bounds]) -> [f64; 2] {
+fn size_m(parts: &[Bounds], voxel_m: f64) -> [f64; 2] {
     [0, 1].map(|axis| {
         let low = parts.iter().map(|(low, _)| low[axis]).min();
         let high = parts.iter().map(|(_, high)| high[axis]).max();
         low.zip(high)
-            .map_or(0.0, |(low, high)| (high + 1 - low) as f64 * Extent::VOXEL_M)
+            .map_or(0.0, |(low, high)| (high + 1 - low) as f64 * voxel_m)
     })
 }
 

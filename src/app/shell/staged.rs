@@ -20,7 +20,7 @@ use job::{GenParams, RegionMode};
 use language::{t, tf};
 use scene::background::in_extent;
 use scene::raster::box_cells;
-use scene::{Background, Class, Extent, Scene, SceneRev, Thing};
+use scene::{Background, Class, Scene, SceneRev, Thing};
 use widgets::theme;
 
 /// Most classes in the menu of parts.
@@ -419,12 +419,12 @@ fn columns_chosen(hand: &Hand, scene: &Scene) -> Vec<bool> {
     let mut columns = vec![false; extent.columns()];
     let mut set = |x: usize, y: usize| columns[extent.index(x, y)] = true;
     for b in hand.chosen().iter().filter_map(|id| frame.boxes.get(id)) {
-        box_cells(extent, b, Extent::VOXEL_M, &mut set);
+        box_cells(extent, b, extent.voxel_m(), &mut set);
     }
     let things = hand.things.chosen.iter();
     let things = things.filter_map(|id| scene.background.get(*id));
     for thing in in_extent(extent, things) {
-        authoring::scenery_around::columns(extent, &thing.form, Extent::VOXEL_M, &mut set);
+        authoring::scenery_around::columns(extent, &thing.form, extent.voxel_m(), &mut set);
     }
     columns
 }

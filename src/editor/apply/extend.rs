@@ -32,6 +32,7 @@ pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
     else {
         return Ok(());
     };
+    let old = scene.canvas().extent();
     let mut columns = [0; 4];
     let sides = [
         ("behind_m", behind_m),
@@ -47,9 +48,8 @@ pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
                 expected: "0 to 2000 m",
             });
         }
-        *columns = (m / Extent::VOXEL_M).round() as i32;
+        *columns = (m / old.voxel_m()).round() as i32;
     }
-    let old = scene.canvas().extent();
     let mut layout = scene.canvas().layout.clone();
     let mut roads = scene.roads.clone();
     for (side, columns) in SIDES.into_iter().zip(columns).filter(|(_, columns)| *columns > 0) {
@@ -212,7 +212,7 @@ impl MapSide {
         if !self.upper {
             from[self.axis] -= columns;
         }
-        let new = Extent::new(from, size).map_err(EditError::BadMap)?;
+        let new = old.with_columns(from, size).map_err(EditError::BadMap)?;
         let last = [old.nx(), old.ny()].map(|n| n as i64 - 1);
         // Each new column copies the column at the edge from which its road comes.
         let cell = |[x, y]: [usize; 2]| {
@@ -232,7 +232,7 @@ impl MapSide {
             let mut at = p - self.outward() * outside_m.max(0.0);
             at[1 - self.axis] -= outside_m.max(0.0) * slope;
             let column = |axis: usize| {
-                let column = (at[axis] / Extent::VOXEL_M).floor() as i64 - i64::from(old.from()[axis]);
+                let column = (at[axis] / old.voxel_m()).floor() as i64 - i64::from(old.from()[axis]);
                 column.clamp(0, last[axis]) as usize
             };
             layout.cell(column(0), column(1))

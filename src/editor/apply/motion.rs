@@ -32,6 +32,7 @@ fn set_shape(scene: &mut Scene, id: BoxId, cells: &[[i32; 3]]) -> Result<(), Edi
     let Some(b) = scene.frame().boxes.get(&id).copied() else {
         return Err(EditError::UnknownBox { id });
     };
+    let lattice = scene.canvas().extent().lattice();
     let mut next = scene.clone();
     if cells.is_empty() {
         let Some(track) = next.clip().tracks.get(&id).filter(|t| t.own_shape) else {
@@ -40,7 +41,7 @@ fn set_shape(scene: &mut Scene, id: BoxId, cells: &[[i32; 3]]) -> Result<(), Edi
         let stands = track.stands();
         next.change_clip(|clip| {
             if let Some(track) = clip.tracks.get_mut(&id) {
-                (track.voxels, track.settled) = (ObjectVoxels::drafted(&track.made), false);
+                (track.voxels, track.settled) = (ObjectVoxels::drafted(lattice, &track.made), false);
                 track.own_shape = false;
             }
         });
@@ -54,9 +55,9 @@ fn set_shape(scene: &mut Scene, id: BoxId, cells: &[[i32; 3]]) -> Result<(), Edi
     }
     // A track's box is as high above the ground everywhere.
     let relief = &scene.canvas().layout.relief;
-    let mut made = upright(&b);
+    let mut made = upright(lattice, &b);
     made.center_m.z += relief.height_m(made.center_m.truncate()) - relief.height_m(b.center_m.truncate());
-    let (mut made, voxels) = ObjectVoxels::of_cells(&made, cells).map_err(EditError::BadShape)?;
+    let (mut made, voxels) = ObjectVoxels::of_cells(lattice, &made, cells).map_err(EditError::BadShape)?;
     if !next.clip().tracks.contains_key(&id) {
         set(&mut next, Some(id), Some(&standing(&b)), [None; 2])?;
     }

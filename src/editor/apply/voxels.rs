@@ -43,7 +43,7 @@ pub(crate) fn adopt(frame: &mut Frame, mut occupancy: VoxelGrid) -> Result<(), E
 
 fn check_voxels(extent: Extent, cells: &[[usize; 3]]) -> Result<(), EditError> {
     at_least("cells", cells.len(), 1)?;
-    let outside = |c: &&[usize; 3]| !extent.holds(c[0], c[1]) || c[2] >= Extent::NZ;
+    let outside = |c: &&[usize; 3]| !extent.holds(c[0], c[1]) || c[2] >= extent.nz();
     match cells.iter().find(outside) {
         Some(c) => Err(EditError::CellOutside {
             cell: c.to_vec(),

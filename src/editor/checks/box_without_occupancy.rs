@@ -5,7 +5,7 @@ use crate::Edit;
 use language::tf;
 use scene::draft::box_columns;
 use scene::raster::box_cells;
-use scene::{Extent, SceneBox, VoxelGrid};
+use scene::{SceneBox, VoxelGrid};
 
 pub const NAME: &str = "box_without_occupancy";
 /// Voxels this far outside a box still belong to it, m.
@@ -50,13 +50,14 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 /// Voxels of a box's class in the columns of its footprint, up to its top.
 pub fn voxels(grid: &VoxelGrid, b: &SceneBox) -> usize {
     let extent = grid.extent();
-    let top_m = b.center_m.z + b.size_m.z / 2.0 + Extent::VOXEL_M;
+    let top_m = b.center_m.z + b.size_m.z / 2.0 + extent.voxel_m();
     let mut count = 0;
     box_cells(extent, b, MARGIN_M, |x, y| {
         let column = grid.column(x, y).iter().enumerate();
         count += column
             .filter(|(z, l)| {
-                **l == b.class.id() && extent.center(x, y, *z).z <= top_m.max(Extent::BOTTOM_M + 0.4)
+                **l == b.class.id()
+                    && extent.center(x, y, *z).z <= top_m.max(extent.lattice().bottom_m() + extent.voxel_m())
             })
             .count();
     });

@@ -87,5 +87,5 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 /// Lower face of the lowest voxel above the ground's surface, m.
 pub fn lowest_m(extent: Extent, group: &[[usize; 3]]) -> f64 {
     let lowest = group.iter().map(|c| c[2]).min().unwrap_or(0);
-    (extent.center(0, 0, lowest).z - Extent::VOXEL_M / 2.0).max(0.0)
+    (extent.center(0, 0, lowest).z - extent.voxel_m() / 2.0).max(0.0)
 }

@@ -169,13 +169,13 @@ struct Context<'a> {
 /// Occupancy as one word per column, one bit per bin.
 struct Bits {
     /// By class id; empty for a class that does not occur.
-    by_class: Vec<Vec<u16>>,
+    by_class: Vec<Vec<u64>>,
     /// Voxels that are not free.
-    occupied: Vec<u16>,
+    occupied: Vec<u64>,
     /// Voxels of a ground class.
-    ground: Vec<u16>,
+    ground: Vec<u64>,
     /// Occupied voxels that are supported by the ground, directly or through the voxels they touch.
-    supported: Vec<u16>,
+    supported: Vec<u64>,
 }
 
 type CheckFunction = fn(&Context<'_>, &mut Findings);

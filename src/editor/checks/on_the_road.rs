@@ -21,8 +21,8 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     let (grid, layout) = (&frame.occupancy, &frame.layout);
     let (extent, bits) = (frame.extent(), context.bits());
     // Runs of voxels that begin low on the road, and which of them are low.
-    let mut runs = vec![0u16; extent.columns()];
-    let mut low = vec![0u16; extent.columns()];
+    let mut runs = vec![0u64; extent.columns()];
+    let mut low = vec![0u64; extent.columns()];
     for (c, [x, y]) in extent.all_columns().enumerate() {
         let of = |class: Class| bits.by_class[usize::from(class.id())].get(c).copied();
         let standing = of(Class::Manmade).unwrap_or(0) | of(Class::Vegetation).unwrap_or(0);
@@ -30,9 +30,9 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             continue;
         }
         let foot = foot(extent, &bits.ground, x, y);
-        low[c] = standing & (((1u32 << (LOW_BINS + 1)) - 1) << foot) as u16;
+        low[c] = standing & (((1u64 << (LOW_BINS + 1)) - 1) << foot);
         runs[c] = low[c];
-        for z in 1..Extent::NZ {
+        for z in 1..extent.nz() {
             runs[c] |= standing & 1 << z & (runs[c] & 1 << (z - 1)) << 1;
         }
     }
@@ -40,7 +40,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         return;
     }
     // The voxels that only these runs support, such as a crown, go with them.
-    let without: Vec<u16> = bits
+    let without: Vec<u64> = bits
         .occupied
         .iter()
         .zip(&runs)
@@ -112,12 +112,12 @@ fn is_well_on_road(layout: &BevLayout, x: usize, y: usize) -> bool {
 }
 
 /// Bin of the ground in a column or, where a thing covers it, of the nearest column that shows any; else the lowest bin.
-fn foot(extent: Extent, ground: &[u16], x: usize, y: usize) -> u32 {
+fn foot(extent: Extent, ground: &[u64], x: usize, y: usize) -> u32 {
     for reach in 0..=REACH {
         let xs = x.saturating_sub(reach)..=(x + reach).min(extent.nx() - 1);
         let ys = y.saturating_sub(reach)..=(y + reach).min(extent.ny() - 1);
         let bins = xs.flat_map(|i| ys.clone().map(move |j| ground[extent.index(i, j)]));
-        if let Some(lowest) = bins.filter(|g| *g != 0).map(u16::trailing_zeros).min() {
+        if let Some(lowest) = bins.filter(|g| *g != 0).map(u64::trailing_zeros).min() {
             return lowest;
         }
     }

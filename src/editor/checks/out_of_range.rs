@@ -42,7 +42,8 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 fn problem(extent: Extent, b: &SceneBox, ground_m: f64) -> Option<(Severity, String, bool)> {
     let half_m = b.size_m.z / 2.0;
     let (bottom_m, top_m) = (b.center_m.z - half_m, b.center_m.z + half_m);
-    let (roof_m, fits) = (Extent::TOP_M, ground_m + b.size_m.z <= Extent::TOP_M);
+    let roof_m = extent.lattice().top_m();
+    let fits = ground_m + b.size_m.z <= roof_m;
     let center = b.center_m;
     if extent.column_at(center.x, center.y).is_none() {
         let [x, y] = [center.x, center.y].map(|v| format!("{v:.1}"));

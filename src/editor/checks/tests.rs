@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::*;
 use crate::{Document, EditError};
 use scene::draft::draft;
-use scene::{BevLayer, BevLayout, Polyline, PolylineKind, SensorRig};
+use scene::{BevLayer, BevLayout, Polyline, PolylineKind, SensorRig, Window};
 
 pub(crate) fn object(id: u32, class: Class, x: f64, y: f64, yaw_deg: f64) -> SceneBox {
     let size_m = DVec3::from_array(class.typical_size_m().expect("an object"));
@@ -143,7 +143,7 @@ fn floating_voxels_are_found_and_removed() {
     paint(&mut scene, Class::Manmade, vec![[60, 60, 8]]);
     only(&scene, "floating_voxels", None);
     let mut observed = vec![true; Extent::WINDOW.voxels()];
-    observed[(Extent::WINDOW.index(60, 60)) * Extent::NZ + 7] = false;
+    observed[(Extent::WINDOW.index(60, 60)) * Window::NZ + 7] = false;
     scene.change_canvas(|f| f.inferred.unobserved = scene::Unobserved::from_observed(&observed));
     assert_eq!(run_checks(&scene, None), []);
 }

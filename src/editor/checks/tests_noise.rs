@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::*;
-use scene::{BevLayout, SensorRig, VoxelGrid, infer};
+use scene::{BevLayout, SensorRig, VoxelGrid, Window, infer};
 
 /// Random numbers from a counter (SplitMix64).
 pub(crate) fn random(seed: u64) -> impl FnMut(u64) -> u64 {
@@ -23,7 +23,7 @@ pub(crate) fn noise(seed: u64, percent: u64) -> Scene {
     let mut grid = VoxelGrid::new();
     for x in 0..Extent::WINDOW.nx() {
         for y in 0..Extent::WINDOW.ny() {
-            for z in 0..Extent::NZ {
+            for z in 0..Window::NZ {
                 if next(100) < percent {
                     grid.set(x, y, z, next(u64::from(Class::FREE) + 1) as u8);
                 }
@@ -65,7 +65,7 @@ fn noise_is_checked_in_bounds() {
         );
         let cells: usize = findings.iter().map(|f| f.cells.len()).sum();
         assert!(
-            cells <= 8 * Extent::WINDOW.columns() * Extent::NZ,
+            cells <= 8 * Extent::WINDOW.columns() * Window::NZ,
             "{cells} cells in findings"
         );
         assert!(checked_in < Duration::from_secs(300), "{checked_in:?}");

@@ -30,7 +30,7 @@ fn drive() -> Scene {
             made,
             motion: Motion::Keys(keys),
             there_s: [None; 2],
-            voxels: ObjectVoxels::drafted(&made),
+            voxels: ObjectVoxels::drafted(scene::Lattice::OCC3D, &made),
             settled: true,
             own_shape: false,
         };

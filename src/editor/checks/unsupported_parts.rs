@@ -20,7 +20,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     let mut parts: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
     // Standing voxels replace the ground's own voxel, in whatever bin the ground lies beside them.
     let ground = ground(extent, &bits.by_class);
-    let beside: Vec<u16> = (0..extent.columns())
+    let beside: Vec<u64> = (0..extent.columns())
         .map(|c| neighbours(extent, c).fold(0, |word, n| word | ground[n]))
         .collect();
     let standing = |c: &&Class| **c != Class::Free && !c.is_ground();

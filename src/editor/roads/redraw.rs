@@ -22,7 +22,7 @@ pub(super) fn redraw(frame: &mut Frame, before: &RoadNetwork, after: &RoadNetwor
     let extent = frame.extent();
     let (old, new) = (before.draw(extent), after.draw(extent));
     let forced =
-        anew.map(|id| after.surface_of(extent, &[RoadElement::Road(id)], RIM as f64 * Extent::VOXEL_M));
+        anew.map(|id| after.surface_of(extent, &[RoadElement::Road(id)], RIM as f64 * extent.voxel_m()));
     let bits: u32 = LAYERS.iter().map(|l| l.bit()).sum();
     let drawn = |d: &RoadDrawing, [x, y]: [usize; 2]| d.layout.cell(x, y) & bits;
     let differs = |at: [usize; 2]| drawn(&old, at) != drawn(&new, at);

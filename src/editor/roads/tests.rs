@@ -6,7 +6,7 @@ use glam::DVec2;
 use super::*;
 use crate::{Apply, Edit, Shape};
 use scene::roads::{LaneKind, NodeKind, RoadLane, curve};
-use scene::{BevLayer, BevLayout, Extent, Frame, PolylineKind, Road, RoadId, VoxelGrid};
+use scene::{BevLayer, BevLayout, Extent, Frame, PolylineKind, Road, RoadId, VoxelGrid, Window};
 
 fn empty() -> Scene {
     let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
@@ -64,7 +64,7 @@ fn a_street_has_its_lanes_and_is_drawn_once() {
     ];
     add(&mut scene, &[[-20.0, 0.0], [20.0, 0.0]], &STREET, &right);
     let layout = &scene.canvas().layout;
-    let across = |layer| (0..200).filter(|y| layout.has(layer, 100, *y)).count() as f64 * Extent::VOXEL_M;
+    let across = |layer| (0..200).filter(|y| layout.has(layer, 100, *y)).count() as f64 * Window::VOXEL_M;
     assert!((across(BevLayer::DrivableArea) - 10.5).abs() < 0.5);
     assert!((across(BevLayer::CarparkArea) - 2.3).abs() < 0.5);
     assert!((across(BevLayer::Walkway) - 4.8).abs() < 0.5);

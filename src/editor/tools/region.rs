@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use language::tf;
-use scene::{Extent, Frame};
+use scene::Frame;
 
 use super::corners::{PolygonDraft, Set};
 use super::setting::{self, ToolOption, Value};
@@ -89,14 +89,14 @@ impl Marker {
         Response::none()
     }
 
-    fn release(&mut self) -> Response {
+    fn release(&mut self, cx: &Context<'_>) -> Response {
         let Some((drag, on)) = self.drag.take() else {
             return Response::none();
         };
         let area = match drag {
             RegionDrag::Rectangle { from_m, to_m } => {
                 // A click marks the cell under it.
-                let around = DVec2::splat(Extent::VOXEL_M / 2.0);
+                let around = DVec2::splat(cx.frame().extent().voxel_m() / 2.0);
                 InpaintArea::Rect(from_m.min(to_m) - around, from_m.max(to_m) + around)
             }
             RegionDrag::Outline(points_m) => InpaintArea::Outline(points_m),
@@ -147,7 +147,7 @@ impl Tool for Marker {
                 Response::hold()
             }
             Event::Drag(pointer) => self.drag(cx, pointer),
-            Event::Release(_) => self.release(),
+            Event::Release(_) => self.release(cx),
             Event::Cancel => {
                 self.drag = None;
                 Response::none()

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use scene::clip::{MARGIN_M, ObjectVoxels};
 use scene::raster::box_cells;
-use scene::{BoxId, Class, Extent, Frame, Scene, SceneBox, VoxelGrid};
+use scene::{BoxId, Class, Frame, Scene, SceneBox, VoxelGrid, Window};
 use serde::Serialize;
 
 use super::{ExportSpan, Exporter, OutFile};
@@ -41,7 +41,11 @@ pub fn to_bytes(scene: &Scene, recipe: &Recipe) -> Result<Vec<u8>, FormatError> 
     let extent = still.extent();
     let mut document = GltfBuilder::default();
     let place = |corner: DVec3| extent.from_voxel_units(corner);
-    let by_class = meshes([extent.nx(), extent.ny()], |x, y| *still.column(x, y), place);
+    let by_class = meshes(
+        [extent.nx(), extent.ny()],
+        |x, y| *still.window_column(x, y),
+        place,
+    );
     let mut classes = Vec::new();
     for (label, mesh) in &by_class {
         let Some(class) = Class::from_id(*label) else {
@@ -92,7 +96,7 @@ fn told(scene: &Scene) -> ExtrasHeader {
         seed: scene.seed.to_string(),
         class_map: CLASS_MAP.to_owned(),
         extent: scene.frame().extent().into(),
-        voxel_m: Extent::VOXEL_M,
+        voxel_m: Window::VOXEL_M,
         frame: "ego: x forward, y left, z up, m".to_owned(),
     }
 }
@@ -116,14 +120,14 @@ fn apart(frame: &Frame) -> (VoxelGrid, BTreeMap<BoxId, ObjectVoxels>) {
             label == b.class.id() && owners.get(&(extent.index(x, y), b.class)) == Some(&b.id)
         };
         let voxels = ObjectVoxels::cut(&frame.occupancy, b, is_own);
-        if voxels.columns.is_empty() {
+        if voxels.labels.is_empty() {
             continue;
         }
-        for (i, column) in voxels.columns.iter().enumerate() {
+        for (i, column) in voxels.labels.chunks_exact(Window::NZ).enumerate() {
             let from = extent.from();
             let at = [i / voxels.size[1], i % voxels.size[1]];
             let [x, y] = [0, 1].map(|axis| (voxels.from[axis] - from[axis]) as usize + at[axis]);
-            for z in (0..Extent::NZ).filter(|z| column[*z] != Class::FREE) {
+            for z in (0..Window::NZ).filter(|z| column[*z] != Class::FREE) {
                 still.set(x, y, z, Class::FREE);
             }
         }
@@ -174,9 +178,9 @@ impl GltfBuilder {
                 // In the box's own frame, so that the node's transform moves them.
                 let place = |corner: DVec3| {
                     let at = DVec3::new(from_x + corner.x, from_y + corner.y, corner.z) / 2.5;
-                    b.to_local(at + DVec3::Z * Extent::BOTTOM_M)
+                    b.to_local(at + DVec3::Z * Window::MIN_M[2])
                 };
-                let column = |x, y| voxels.columns[x * voxels.size[1] + y];
+                let column = |x, y| *voxels.column(x, y).first_chunk().expect("a column of the window");
                 meshes(voxels.size, column, place)
                     .remove(&b.class.id())
                     .unwrap_or_default()

@@ -30,6 +30,10 @@ pub mod view;
 pub mod vox;
 pub mod world_scenario;
 
+use scene::Scene;
+
+use crate::sparse_npy;
+
 pub use exporter::{
     BoxVisibility, ExportPicture, ExportSpan, Exporter, ObservationMasks, OutFile, Product, Products,
 };
@@ -68,6 +72,18 @@ const TABLE: &[&Exporter] = &[
 /// Every format for other programs, in the order of lists.
 pub fn all() -> &'static [&'static Exporter] {
     TABLE
+}
+
+/// True if a format writes the voxels of a map of another lattice as they are: the program's own, and a data set's own for a
+/// scene on its map.
+pub fn keeps_lattice(format: &Exporter, scene: &Scene) -> bool {
+    let is_on = |kind: &sparse_npy::SparseDataset| kind.own_map(scene).is_some();
+    match format.id {
+        id if id == loom::EXPORTER.id => true,
+        id if id == openoccupancy::EXPORTER.id => is_on(&sparse_npy::OPEN_OCCUPANCY),
+        id if id == surroundocc::EXPORTER.id => is_on(&sparse_npy::SURROUND_OCC),
+        _ => false,
+    }
 }
 
 /// The formats that *all* writes: every format but Gaussians, which take a minute and more, and MP4 where the program lacks

@@ -1,6 +1,6 @@
 //! Occupancy as Occ3D labels, with the masks of what the sensors observed.
 
-use scene::{Class, Extent, Frame};
+use scene::{Class, Extent, Frame, Window};
 
 use super::{ExportSpan, Exporter, ObservationMasks, OutFile, Product};
 use crate::occ3d::{self, Occ3dFrame};
@@ -46,7 +46,7 @@ fn known(frame: &Frame) -> Vec<u16> {
             .as_ref()
             .map_or(0, |u| u.words()[Extent::WINDOW.index(x, y)]);
         let bits = occupancy.column(x, y).iter().enumerate();
-        bits.fold(!unknown, |word, (z, label)| {
+        bits.fold(!unknown as u16, |word, (z, label)| {
             word | u16::from(*label != Class::FREE) << z
         })
     };
@@ -56,13 +56,13 @@ fn known(frame: &Frame) -> Vec<u16> {
 /// A flag per voxel `[x][y][z]` from a word per column; a voxel that is not known is not set.
 fn mask(words: &[u16], known: &[u16]) -> Vec<bool> {
     let both = words.iter().zip(known).map(|(word, known)| word & known);
-    both.flat_map(|word| (0..Extent::NZ).map(move |z| word >> z & 1 == 1))
+    both.flat_map(|word| (0..Window::NZ).map(move |z| word >> z & 1 == 1))
         .collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use scene::{Unobserved, Window};
+    use scene::Unobserved;
 
     use super::*;
     use crate::export::Products;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use scene::solid::fill::SMEAR;
-use scene::{Class, Extent, Frame, LidarSweep, Pose, Scene};
+use scene::{Class, Frame, LidarSweep, Pose, Scene, Window};
 
 use super::{ExportSpan, Exporter, ObservationMasks, OutFile, Product, Products};
 use crate::semantic_kitti::{CELLS, LATTICE, ego_from_cells, packed, raw_id};
@@ -87,7 +87,7 @@ fn scan(sweep: &LidarSweep, labels: &[u16], pose: &Pose) -> Vec<bool> {
         if !sweep.physical {
             p += (p - pose.translation_m).normalize_or_zero() * INTO_M;
             if point.class.is_ground() {
-                p.z += SMEAR as f64 * Extent::VOXEL_M;
+                p.z += SMEAR as f64 * Window::VOXEL_M;
             }
         }
         let Some(cell) = LATTICE.cell_at(pose.inverse().apply(p)) else {
@@ -105,7 +105,7 @@ mod tests {
     use crate::import::Content;
     use crate::semantic_kitti::{bit, class_of};
     use crate::table_tests::{Small, random_scene, round_trip, scene};
-    use scene::{BoxId, VoxelGrid};
+    use scene::{BoxId, Extent, VoxelGrid};
 
     fn files(scene: &Scene, products: &mut dyn Products) -> [Vec<u8>; 4] {
         let files = write(scene, products).expect("written");

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use scene::raster::box_cells;
 use scene::solid::fill::{SMEAR, smear_down};
-use scene::{Class, Extent, SceneBox, VoxelGrid};
+use scene::{Class, Extent, SceneBox, VoxelGrid, Window};
 
 use super::surface::TriangleRasteriser;
 use crate::FormatError;
@@ -33,7 +33,7 @@ impl Statics {
         };
         let mut touched = false;
         self.surface.visit(corners, |[x, y], [low, high]| {
-            let top = Extent::NZ as f64;
+            let top = Window::NZ as f64;
             if high >= 0.0 && low < top {
                 touched = true;
                 let to = high.min(top - 1.0) as usize;
@@ -60,11 +60,11 @@ impl Statics {
     pub(crate) fn finish(self, grid: &mut VoxelGrid) -> Result<(), FormatError> {
         self.surface.finish()?;
         for [x, y] in grid.extent().all_columns() {
-            let (mut column, ground) = (*self.stands.column(x, y), self.ground.column(x, y));
+            let (mut column, ground) = (self.stands.column(x, y).to_vec(), self.ground.column(x, y));
             if column.iter().chain(ground).all(|label| *label == Class::FREE) {
                 continue;
             }
-            smear_down(&mut column);
+            smear_down(&mut column, SMEAR);
             let mut lowest = None;
             for (z, class) in ground
                 .iter()
@@ -151,9 +151,9 @@ impl Heights {
             let column = grid.column_mut(x, y);
             let ground = |label: &u8| Class::from_id(*label).is_some_and(Class::is_ground);
             let base = column.iter().position(ground);
-            let below = (bottom.floor().clamp(0.0, Extent::NZ as f64 - 1.0) as usize).saturating_sub(SMEAR);
+            let below = (bottom.floor().clamp(0.0, Window::NZ as f64 - 1.0) as usize).saturating_sub(SMEAR);
             let base = base.filter(|base| *base <= below + 1).unwrap_or(below);
-            let layers = ((top - 1.0 / 6.0).floor() + 1.0).clamp(0.0, Extent::NZ as f64) as usize;
+            let layers = ((top - 1.0 / 6.0).floor() + 1.0).clamp(0.0, Window::NZ as f64) as usize;
             column[base..layers.max(base + 1)].fill(b.class.id());
         }
         Ok(())

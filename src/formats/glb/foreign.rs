@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use scene::{BoxId, Class, Extent, Frame, Inferred, Scene, SensorRig, VoxelGrid, infer};
+use scene::{BoxId, Class, Extent, Frame, Inferred, Scene, SensorRig, VoxelGrid, Window, infer};
 
 use super::class_words::{NameMeaning, paint_said, said};
 use super::columns::{Heights, Statics};
@@ -323,7 +323,7 @@ fn extent(all: &Bounds) -> (Extent, DVec3) {
         true => DVec2::ZERO,
         false => DVec2::new(-columns(middle.x), -columns(middle.y)) / 2.5,
     };
-    let is_at_height = all.low.z < Extent::TOP_M && all.high.z > Extent::BOTTOM_M;
+    let is_at_height = all.low.z < Window::MAX_M[2] && all.high.z > Window::MIN_M[2];
     let up = if is_at_height { 0.0 } else { -all.low.z };
     let (low, high) = (all.low.truncate() + level, all.high.truncate() + level);
     let window = Extent::WINDOW;

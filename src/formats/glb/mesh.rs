@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use glam::DVec3;
-use scene::{Class, Extent};
+use scene::{Class, Window};
 
 /// A mesh of triangles with shared corners, counter-clockwise as seen from outside.
 #[derive(Debug, Default, PartialEq)]
@@ -35,12 +35,12 @@ struct FaceRectangle {
 /// takes corners of voxels to metres.
 pub(crate) fn meshes(
     size: [usize; 2],
-    column: impl Fn(usize, usize) -> [u8; Extent::NZ],
+    column: impl Fn(usize, usize) -> [u8; Window::NZ],
     place: impl Fn(DVec3) -> DVec3,
 ) -> BTreeMap<u8, Mesh> {
     let mut builders: BTreeMap<u8, QuadMeshBuilder> = BTreeMap::new();
     let mut take = |label: u8, rectangle: FaceRectangle| builders.entry(label).or_default().add(&rectangle);
-    let shape = [size[0], size[1], Extent::NZ];
+    let shape = [size[0], size[1], Window::NZ];
     for axis in 0..3 {
         let [a, b] = [(axis + 1) % 3, (axis + 2) % 3];
         let n = [shape[a], shape[b]];
@@ -86,7 +86,7 @@ fn slice(
     shape: [usize; 3],
     axis: usize,
     at: usize,
-    column: &impl Fn(usize, usize) -> [u8; Extent::NZ],
+    column: &impl Fn(usize, usize) -> [u8; Window::NZ],
 ) {
     if at >= shape[axis] {
         out.fill(Class::FREE);
@@ -96,7 +96,7 @@ fn slice(
         // y, z
         0 => {
             for y in 0..shape[1] {
-                out[y * Extent::NZ..(y + 1) * Extent::NZ].copy_from_slice(&column(at, y));
+                out[y * Window::NZ..(y + 1) * Window::NZ].copy_from_slice(&column(at, y));
             }
         }
         // z, x
@@ -191,9 +191,9 @@ impl QuadMeshBuilder {
 mod tests {
     use super::*;
 
-    const NONE: [u8; Extent::NZ] = [Class::FREE; Extent::NZ];
+    const NONE: [u8; Window::NZ] = [Class::FREE; Window::NZ];
 
-    fn column(labels: &[(usize, u8)]) -> [u8; Extent::NZ] {
+    fn column(labels: &[(usize, u8)]) -> [u8; Window::NZ] {
         let mut column = NONE;
         labels.iter().for_each(|(z, label)| column[*z] = *label);
         column
@@ -229,8 +229,8 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (state >> 40) as u8
         };
-        let columns: Vec<[u8; Extent::NZ]> = (0..12 * 9)
-            .map(|_| [(); Extent::NZ].map(|()| [Class::FREE, 1, 2][usize::from(dice() % 3)]))
+        let columns: Vec<[u8; Window::NZ]> = (0..12 * 9)
+            .map(|_| [(); Window::NZ].map(|()| [Class::FREE, 1, 2][usize::from(dice() % 3)]))
             .collect();
         let found = meshes([12, 9], |x, y| columns[x * 9 + y], |p| p / 2.0);
         for label in [1, 2] {

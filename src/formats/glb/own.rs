@@ -8,7 +8,9 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 use scene::message::quoted;
 use scene::moved::ColumnShift;
-use scene::{BevLayout, BoxId, Class, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, VoxelGrid, infer};
+use scene::{
+    BevLayout, BoxId, Class, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, VoxelGrid, Window, infer,
+};
 use serde::de::DeserializeOwned;
 
 use super::document::{GltfDocument, GltfNode, LeftOut};
@@ -205,8 +207,8 @@ fn add_surface(
         let class = named.filter_map(|name| class_words::said(name).class).next();
         let label = class.unwrap_or(Class::Manmade).id();
         surface.visit(corners, |[x, y], [low, high]| {
-            let to = high.min(Extent::NZ as f64 - 1.0);
-            if high >= 0.0 && low < Extent::NZ as f64 {
+            let to = high.min(Window::NZ as f64 - 1.0);
+            if high >= 0.0 && low < Window::NZ as f64 {
                 (low.max(0.0) as usize..=to as usize).for_each(|z| grid.set(x, y, z, label));
             }
         });

@@ -1,7 +1,7 @@
 //! Closed meshes to voxels: a voxel is filled if its centre is inside, told by counting the faces above and below it.
 
 use glam::{DVec2, DVec3};
-use scene::Extent;
+use scene::{Extent, Window};
 
 use crate::FormatError;
 
@@ -108,7 +108,7 @@ impl Solid {
             let [x, y] = self.extent.column(column[0].column() as usize);
             if column.len() % 2 == 0 {
                 for pair in column.chunks_exact(2) {
-                    let above = |c: &Crossing| (c.z - 0.5).ceil().clamp(0.0, Extent::NZ as f32) as usize;
+                    let above = |c: &Crossing| (c.z - 0.5).ceil().clamp(0.0, Window::NZ as f32) as usize;
                     (above(&pair[0])..above(&pair[1])).for_each(|z| visit([x, y, z]));
                 }
             } else {
@@ -117,7 +117,7 @@ impl Solid {
                         true => (face.z - ON_BORDER).floor(),
                         false => (face.z + ON_BORDER).floor(),
                     };
-                    if (0.0..Extent::NZ as f32).contains(&z) {
+                    if (0.0..Window::NZ as f32).contains(&z) {
                         visit([x, y, z as usize]);
                     }
                 }
@@ -177,15 +177,15 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (state >> 33) as usize
         };
-        let columns: Vec<[u8; Extent::NZ]> = (0..extent.columns())
-            .map(|_| [(); Extent::NZ].map(|()| [Class::FREE, 4, 4, 9][dice() % 4]))
+        let columns: Vec<[u8; Window::NZ]> = (0..extent.columns())
+            .map(|_| [(); Window::NZ].map(|()| [Class::FREE, 4, 4, 9][dice() % 4]))
             .collect();
         let of = meshes(
             [40, 30],
             |x, y| columns[extent.index(x, y)],
             |p| extent.from_voxel_units(p),
         );
-        let mut found = vec![[Class::FREE; Extent::NZ]; extent.columns()];
+        let mut found = vec![[Class::FREE; Window::NZ]; extent.columns()];
         for (label, mesh) in &of {
             let mut solid = Solid::new(extent);
             triangles(mesh).into_iter().for_each(|t| solid.add(t));
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn a_turned_block_has_the_voxels_whose_centres_are_inside() {
         let extent = Extent::WINDOW;
-        let block = &meshes([10, 4], |_, _| [5; Extent::NZ], |p| p / 2.5)[&5];
+        let block = &meshes([10, 4], |_, _| [5; Window::NZ], |p| p / 2.5)[&5];
         let turn = glam::DQuat::from_euler(glam::EulerRot::ZYX, 0.4, -0.3, 0.2);
         let (shift, size) = (DVec3::new(3.03, -4.41, -0.6), DVec3::new(4.0, 1.6, 6.4));
         let mut solid = Solid::new(extent);
@@ -213,7 +213,7 @@ mod tests {
         };
         let all = extent
             .all_columns()
-            .flat_map(|[x, y]| (0..Extent::NZ).map(move |z| [x, y, z]));
+            .flat_map(|[x, y]| (0..Window::NZ).map(move |z| [x, y, z]));
         let expected: std::collections::BTreeSet<_> = all.filter(|v| inside(*v)).collect();
         assert!(expected.len() > 300, "{}", expected.len());
         assert_eq!(found, expected);

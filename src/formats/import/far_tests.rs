@@ -105,7 +105,7 @@ fn far_numbers_in_every_format_of_text_stay_small() {
                     bytes: changed.as_bytes(),
                     name: "far",
                     path: None,
-                    lift_m: None,
+                    options: Default::default(),
                 };
                 let line = 1 + text[..place.start].matches('\n').count();
                 let what = format!("{}, {far} in line {line}", importer.id);

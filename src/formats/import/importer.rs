@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use scene::{Extent, Frame, Inferred, Scene, SensorRig, Unobserved, VoxelGrid, infer};
+use scene::resample::voxels_in;
+use scene::{Extent, Frame, Inferred, Lattice, Scene, SensorRig, Unobserved, VoxelGrid, infer};
 
 use crate::opendrive::RoadNetwork;
 use crate::recipe::Recipe;
+use crate::voxels::DataMap;
 use crate::{FormatError, Holds, input};
 
 /// A format that is read.
@@ -41,8 +43,17 @@ pub struct ImportFile<'a> {
     pub name: &'a str,
     /// Where the file is, for formats of several files; `None` for bytes alone.
     pub path: Option<&'a Path>,
+    /// Wishes of the user.
+    pub options: ImportOptions,
+}
+
+/// Wishes of a user as to how a file is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImportOptions {
     /// Height by which a point cloud is lifted, m; `None` to take it from the ground.
     pub lift_m: Option<f64>,
+    /// True to keep the voxels of a data set in its own size and heights, in place of those of the networks.
+    pub as_it_is: bool,
 }
 
 impl ImportFile<'_> {
@@ -94,10 +105,15 @@ pub struct ImportedScene {
 /// A scene from labels: the voxels are kept, layout, boxes and background are inferred. On a larger map they are
 /// inferred in the networks' window only.
 pub(crate) fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobserved>) -> Scene {
-    let window = labels.crop(Extent::WINDOW);
+    // Boxes and things are looked for in the voxels that their rules are made for.
+    let known = voxels_in(&labels, labels.extent().in_lattice(Lattice::OCC3D));
+    let window = known.crop(Extent::WINDOW);
     let (layout, boxes) = (infer::layout(&window), infer::boxes(&window));
     let background = infer::background(&window, &layout);
-    let layout = layout.crop(labels.extent());
+    let layout = match labels.extent().lattice() == Lattice::OCC3D {
+        true => layout.crop(labels.extent()),
+        false => infer::layout(&labels),
+    };
     let inferred = Inferred {
         layout: true,
         boxes: boxes.keys().copied().collect(),
@@ -111,6 +127,13 @@ pub(crate) fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobser
     };
     let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), 0);
     scene.background = Arc::new(background);
+    scene
+}
+
+/// A scene of labels on a data set's own map; see [`labelled`].
+pub(crate) fn on_data_map(name: &str, labels: VoxelGrid, map: &DataMap) -> Scene {
+    let mut scene = labelled(name, labels, None);
+    scene.change_canvas(|frame| frame.world_from_ego = map.world_from_ego);
     scene
 }
 

@@ -124,7 +124,7 @@ fn other_numbers_are_no_scan() {
             bytes,
             name: "scan",
             path: None,
-            lift_m: None,
+            options: Default::default(),
         };
         (IMPORTER.read)(&source)
             .map(drop)
@@ -164,7 +164,7 @@ fn other_numbers_are_no_scan() {
         bytes: &scan(&points),
         name: "scan",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     };
     let Ok(Content::Scene(found)) = (IMPORTER.read)(&source) else {
         panic!("a scene");
@@ -182,7 +182,7 @@ fn slots_without_a_return_are_left_out_and_counted() {
         bytes: &scan(&points),
         name: "scan",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     };
     let Ok(Content::Scene(found)) = (IMPORTER.read)(&source) else {
         panic!("a scene");

@@ -35,8 +35,8 @@ use std::path::{Path, PathBuf};
 use scene::message::quoted;
 
 use super::{FormatError, input};
-pub use importer::{Content, ImportFile, ImportedScene, Importer};
-use importer::{GUESSED, first_entry_ends, labelled};
+pub use importer::{Content, ImportFile, ImportOptions, ImportedScene, Importer};
+use importer::{GUESSED, first_entry_ends, labelled, on_data_map};
 
 /// Every format that can be read.
 const TABLE: &[&Importer] = &[
@@ -116,20 +116,20 @@ fn recognised(path: &Path, head: &[u8]) -> Result<&'static Importer, FormatError
 
 /// Reads a file of any format.
 pub fn read(path: &Path) -> Result<(&'static Importer, Content), FormatError> {
-    read_lifted(path, None)
+    read_with(path, ImportOptions::default())
 }
 
 /// Farthest that a cloud is lifted, m.
 pub const FARTHEST_LIFT_M: f64 = 10_000.0;
 
-/// Reads a file as [`read`] does, but lifts a point cloud by `lift_m` metres instead of by the height of its ground.
-/// Errors also if a lift is given for a file that is no point cloud, and for more than [`FARTHEST_LIFT_M`].
-pub fn read_lifted(path: &Path, lift_m: Option<f64>) -> Result<(&'static Importer, Content), FormatError> {
+/// Reads a file as [`read`] does, with wishes. Errors also if a lift is given for a file that is no point cloud, for more than
+/// [`FARTHEST_LIFT_M`], and if voxels are to stay as they are in a file that has none of a data set.
+pub fn read_with(path: &Path, options: ImportOptions) -> Result<(&'static Importer, Content), FormatError> {
     let (importer, path) = match path.is_dir() {
         true => of_folder(path)?,
         false => (format_of(path)?, path.to_owned()),
     };
-    if let Some(m) = lift_m {
+    if let Some(m) = options.lift_m {
         if !(-FARTHEST_LIFT_M..=FARTHEST_LIFT_M).contains(&m) {
             let line = format!("a lift of {m} m, expected at most {FARTHEST_LIFT_M} m up or down");
             return Err(FormatError::new(line));
@@ -139,8 +139,18 @@ pub fn read_lifted(path: &Path, lift_m: Option<f64>) -> Result<(&'static Importe
             return Err(FormatError::new(line).at(&path.display()));
         }
     }
-    Ok((importer, read_file(importer, &path, lift_m)?))
+    if options.as_it_is && !OWN_LATTICE.contains(&importer.id) {
+        let line = format!(
+            "{}, expected voxels of OpenOccupancy, SurroundOcc, UniScene or SemanticKITTI where they are to stay as they are",
+            importer.title
+        );
+        return Err(FormatError::new(line).at(&path.display()));
+    }
+    Ok((importer, read_file(importer, &path, options)?))
 }
+
+/// Formats whose voxels can stay as they are.
+const OWN_LATTICE: [&str; 2] = [sparse_npy::IMPORTER.id, semantic_kitti::IMPORTER.id];
 
 /// Formats of point clouds.
 const CLOUDS: [&str; 5] = [
@@ -186,16 +196,16 @@ fn first_readable(folder: &Path) -> Option<String> {
 
 /// Reads a file of a format.
 pub fn read_as(importer: &Importer, path: &Path) -> Result<Content, FormatError> {
-    read_file(importer, path, None)
+    read_file(importer, path, ImportOptions::default())
 }
 
-fn read_file(importer: &Importer, path: &Path, lift_m: Option<f64>) -> Result<Content, FormatError> {
+fn read_file(importer: &Importer, path: &Path, options: ImportOptions) -> Result<Content, FormatError> {
     let bytes = input::read(path, importer.largest).map_err(FormatError::new)?;
     let source = ImportFile {
         bytes: &bytes,
         name: &scene_name(path),
         path: Some(path),
-        lift_m,
+        options,
     };
     (importer.read)(&source).map_err(|e| e.at(&path.display()))
 }

@@ -71,7 +71,7 @@ mod tests {
             bytes,
             name: "labels",
             path: None,
-            lift_m: None,
+            options: Default::default(),
         };
         match read(&source).expect("read") {
             Content::Scene(loaded) => *loaded,

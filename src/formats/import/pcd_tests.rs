@@ -33,7 +33,7 @@ fn loaded(bytes: &[u8]) -> Result<ImportedScene, PcdError> {
         bytes,
         name: "cloud",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     })? {
         Content::Scene(loaded) => Ok(*loaded),
         other => panic!("a cloud is a scene, not {other:?}"),

@@ -59,7 +59,7 @@ mod tests {
             bytes,
             name: "p",
             path: None,
-            lift_m: None,
+            options: Default::default(),
         })
     }
 

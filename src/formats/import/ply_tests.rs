@@ -61,7 +61,7 @@ fn loaded(bytes: &[u8]) -> Result<ImportedScene, PlyError> {
         bytes,
         name: "cloud",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     })? {
         Content::Scene(loaded) => Ok(*loaded),
         other => panic!("{other:?}: expected a scene"),

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use scene::{Class, Extent, SensorRig, Unobserved, VoxelGrid};
 
-use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, labelled};
-use crate::semantic_kitti::{BIT_BYTES, CELLS, LATTICE, bit, class_of, ego_from_cells};
-use crate::voxels::{Physical, VoxelVotes, unobserved};
+use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, labelled, on_data_map};
+use crate::semantic_kitti::{BIT_BYTES, CELLS, LATTICE, bit, class_of, ego_from_cells, own_map};
+use crate::voxels::{DataMap, Physical, VoxelVotes, unobserved};
 use crate::{FormatError, Holds};
 
 /// See `semantic_kitti`.
@@ -25,31 +25,90 @@ pub const IMPORTER: Importer = Importer {
 };
 
 fn read(source: &ImportFile<'_>) -> Result<Content, String> {
-    let (labels, mut skipped) = labels(source.bytes)?;
+    let (labels, mut skipped, map) = match source.options.as_it_is {
+        true => as_it_is(source.bytes)?,
+        false => labels(source.bytes).map(|(labels, skipped)| (labels, skipped, None))?,
+    };
     let invalid = beside(source, "invalid")?;
     for extension in ["bin", "occluded"] {
         if beside(source, extension)?.is_some() {
             skipped.insert(format!("file .{extension}, of one scan"), 1);
         }
     }
-    let unobserved = invalid.and_then(|bits| mask(labels.extent(), &bits));
+    let scene = match map {
+        Some(map) => {
+            let unobserved = invalid.and_then(|bits| own_mask(&map, &bits));
+            let mut scene = on_data_map(source.name, labels, &map);
+            scene.change_canvas(|frame| frame.inferred.unobserved = unobserved);
+            scene
+        }
+        None => {
+            let unobserved = invalid.and_then(|bits| mask(labels.extent(), &bits));
+            labelled(source.name, labels, unobserved)
+        }
+    };
     Ok(Content::Scene(Box::new(ImportedScene {
-        scene: labelled(source.name, labels, unobserved),
+        scene,
         inferred: &GUESSED,
         skipped,
         notes: Vec::new(),
     })))
 }
 
+/// Errors unless there are two bytes for each cell.
+fn check_size(bytes: &[u8]) -> Result<(), String> {
+    if bytes.len() == 2 * CELLS {
+        return Ok(());
+    }
+    Err(format!(
+        "{} bytes, expected {}: the raw ids of 256 x 256 x 32 voxels of SemanticKITTI, two bytes each",
+        bytes.len(),
+        2 * CELLS
+    ))
+}
+
+/// Labels in the cells of the file, what was assumed and left out, and their map.
+fn as_it_is(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>, Option<DataMap>), String> {
+    check_size(bytes)?;
+    let rig = SensorRig::default();
+    let map = own_map(rig.lidars.first().ok_or("the usual rig has no LiDAR")?)?;
+    let mut grid = VoxelGrid::over(map.extent());
+    let mut unknown = 0;
+    for (index, raw) in bytes.chunks_exact(2).enumerate() {
+        let class = match class_of(u16::from_le_bytes([raw[0], raw[1]])) {
+            Some(None) => continue,
+            Some(Some(class)) => class,
+            None => {
+                unknown += 1;
+                Class::Others
+            }
+        };
+        let [x, y, z] = map.voxel(LATTICE.cell(index));
+        grid.set(x, y, z, class.id());
+    }
+    let mut skipped = BTreeMap::new();
+    if unknown > 0 {
+        skipped.insert("raw ids that are not known, taken as others".to_owned(), unknown);
+    }
+    let placed = "voxels taken around the place of the LiDAR on the nuScenes vehicle";
+    skipped.insert(placed.to_owned(), grid.count_set());
+    Ok((grid, skipped, Some(map)))
+}
+
+/// The voxels of a map of the cells that no scan saw.
+fn own_mask(map: &DataMap, invalid: &[u8]) -> Option<Unobserved> {
+    let extent = map.extent();
+    let mut words = vec![0; extent.columns()];
+    for cell in (0..CELLS).filter(|cell| bit(invalid, *cell)) {
+        let [x, y, z] = map.voxel(LATTICE.cell(cell));
+        words[extent.index(x, y)] |= 1 << z;
+    }
+    Unobserved::from_words(extent, words)
+}
+
 /// The labels that a file holds, and what was assumed and left out.
 pub(crate) fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> {
-    if bytes.len() != 2 * CELLS {
-        return Err(format!(
-            "{} bytes, expected {}: the raw ids of 256 x 256 x 32 voxels of SemanticKITTI, two bytes each",
-            bytes.len(),
-            2 * CELLS
-        ));
-    }
+    check_size(bytes)?;
     let rig = SensorRig::default();
     let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
     let pose = ego_from_cells(lidar);
@@ -157,7 +216,7 @@ mod tests {
             bytes,
             name: "000000",
             path,
-            lift_m: None,
+            options: Default::default(),
         };
         match read(&source)? {
             Content::Scene(loaded) => Ok(*loaded),

@@ -4,12 +4,12 @@
 use std::collections::BTreeMap;
 
 use scene::message::quoted;
-use scene::{Class, SensorRig, VoxelGrid};
+use scene::{Class, Scene, SensorRig, VoxelGrid};
 
-use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, labelled};
+use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, labelled, on_data_map};
 use crate::npy::NpyMatrix;
 use crate::sparse_npy::{OPEN_OCCUPANCY, SparseDataset, ego_from_lidar};
-use crate::voxels::VoxelVotes;
+use crate::voxels::{DataMap, VoxelVotes};
 use crate::{FormatError, Holds};
 
 /// Classes that readers of these files ignore: noise, and the number that they replace it by.
@@ -30,17 +30,23 @@ pub const IMPORTER: Importer = Importer {
 };
 
 fn read(source: &ImportFile<'_>) -> Result<Content, String> {
-    let (labels, skipped) = labels(source.bytes)?;
+    let (scene, skipped) = match source.options.as_it_is {
+        true => as_it_is(source)?,
+        false => {
+            let (labels, skipped) = labels(source.bytes)?;
+            (labelled(source.name, labels, None), skipped)
+        }
+    };
     Ok(Content::Scene(Box::new(ImportedScene {
-        scene: labelled(source.name, labels, None),
+        scene,
         inferred: &GUESSED,
         skipped,
         notes: Vec::new(),
     })))
 }
 
-/// The labels that a file holds, and what was assumed and left out.
-fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> {
+/// The table of a file, and the data set that it is of.
+fn table(bytes: &[u8]) -> Result<(NpyMatrix<'_>, SparseDataset), String> {
     let table = NpyMatrix::read(bytes)?;
     let (rows, columns) = (table.rows, table.columns);
     if rows == 0 || !matches!(columns, 4 | 7) {
@@ -48,8 +54,60 @@ fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> 
             "{rows} rows of {columns}, expected rows of 4 (three indices and a class) or of 7 (and a velocity)"
         ));
     }
-    let not_finite = |row: usize| (0..columns).any(|column| !table.get(row, column).is_finite());
-    let kind = kind_of(&table, not_finite)?;
+    let kind = kind_of(&table, |row| !is_finite(&table, row))?;
+    Ok((table, kind))
+}
+
+fn is_finite(table: &NpyMatrix<'_>, row: usize) -> bool {
+    (0..table.columns).all(|column| table.get(row, column).is_finite())
+}
+
+/// A scene in the cells of the file, and what was assumed and left out. Noise, class 0, is kept as others.
+fn as_it_is(source: &ImportFile<'_>) -> Result<(Scene, BTreeMap<String, usize>), String> {
+    let (table, kind) = table(source.bytes)?;
+    let rig = SensorRig::default();
+    let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
+    let map = DataMap::new(&kind.lattice, &ego_from_lidar(lidar), lidar)?;
+    let mut grid = VoxelGrid::over(map.extent());
+    let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
+    let mut count = |what: &str| *skipped.entry(what.to_owned()).or_default() += 1;
+    for row in 0..table.rows {
+        if !is_finite(&table, row) {
+            count("rows that are not finite");
+            continue;
+        }
+        let label = table.get(row, table.columns - 1);
+        let class = match label {
+            v if v == f64::from(Class::FREE) => {
+                count("rows of class 17, free");
+                continue;
+            }
+            255.0 => {
+                count("rows of class 255, noise");
+                continue;
+            }
+            v if (0.0..f64::from(Class::FREE)).contains(&v) && v.fract() == 0.0 => v as u8,
+            _ => {
+                count("classes above 17, taken as others");
+                Class::Others.id()
+            }
+        };
+        let cell = kind.cell([0, 1, 2].map(|column| table.get(row, column) as usize));
+        let [x, y, z] = map.voxel(cell);
+        grid.set(x, y, z, class);
+    }
+    if table.columns == 7 {
+        skipped.insert("velocities of voxels".to_owned(), table.rows);
+    }
+    skipped.insert(kind.assumed.to_owned(), table.rows);
+    Ok((on_data_map(source.name, grid, &map), skipped))
+}
+
+/// The labels that a file holds, and what was assumed and left out.
+fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> {
+    let (table, kind) = table(bytes)?;
+    let (rows, columns) = (table.rows, table.columns);
+    let not_finite = |row: usize| !is_finite(&table, row);
     let rig = SensorRig::default();
     let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
     let pose = ego_from_lidar(lidar);

@@ -32,7 +32,7 @@ fn loaded(bytes: &[u8]) -> ImportedScene {
         bytes,
         name: "list",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     };
     match read(&source).expect("read") {
         Content::Scene(loaded) => *loaded,
@@ -45,7 +45,7 @@ fn refusal(bytes: &[u8]) -> String {
         bytes,
         name: "list",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     };
     read(&source).expect_err("refused")
 }

@@ -20,7 +20,7 @@ fn refusal(bytes: &[u8]) -> String {
         bytes,
         name: "model",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     };
     read(&source).expect_err("refused")
 }

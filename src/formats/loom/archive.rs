@@ -225,7 +225,7 @@ impl<R: Read + Seek> Reader<R> {
         let extent = like.extent();
         let dense = self.labels(entry, extent, Class::FREE)?;
         let mut grid = like.clone();
-        for ([x, y], column) in extent.all_columns().zip(dense.chunks_exact(Extent::NZ)) {
+        for ([x, y], column) in extent.all_columns().zip(dense.chunks_exact(extent.nz())) {
             if grid.column(x, y) != column {
                 grid.column_mut(x, y).copy_from_slice(column);
             }
@@ -275,7 +275,7 @@ pub(super) fn check_labels(entry: &str, extent: Extent, dense: &[u8], fill: u8) 
     let Some(at) = dense.iter().position(wrong) else {
         return Ok(());
     };
-    let ([x, y], z) = (extent.column(at / Extent::NZ), at % Extent::NZ);
+    let ([x, y], z) = (extent.column(at / extent.nz()), at % extent.nz());
     Err(ProjectError::Cell {
         entry: entry.into(),
         cell: format!("voxel [{x}, {y}, {z}]"),

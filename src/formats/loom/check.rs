@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use scene::message::one_line;
-use scene::{Frame, Relief, Scene};
+use scene::{BoxId, Frame, Relief, Scene, Track};
 
 use super::ProjectError;
 
@@ -42,7 +42,21 @@ pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
     if let Some(id) = twice {
         return unsound(format!("box {} stands and moves, expected one of both", id.0));
     }
+    if let Some(id) = foreign_track(scene) {
+        return unsound(format!(
+            "voxels of track {} are of another lattice than the map",
+            id.0
+        ));
+    }
     Ok(())
+}
+
+/// The first track whose voxels are of another lattice than the map.
+fn foreign_track(scene: &Scene) -> Option<BoxId> {
+    let lattice = scene.canvas().extent().lattice();
+    let foreign = |track: &Track| !track.voxels.labels.is_empty() && track.voxels.lattice != lattice;
+    let mut tracks = scene.clip().tracks.iter();
+    tracks.find(|(_, track)| foreign(track)).map(|(id, _)| *id)
 }
 
 fn frame_problem(frame: &Frame) -> Option<String> {

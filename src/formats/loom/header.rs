@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use scene::{
-    Arranged, BoxId, Clip, Conditions, Extent, Frame, Motion, Polyline, Pose, Recorded, RoadNetwork, Scene,
-    SceneBox, SensorRig, Thing, Track, Waiver,
+    Arranged, BoxId, Clip, Conditions, Extent, Frame, Lattice, Motion, Polyline, Pose, Recorded, RoadNetwork,
+    Scene, SceneBox, SensorRig, Thing, Track, Waiver,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -117,6 +117,47 @@ pub(super) struct ExtentHeader {
     from: [i32; 2],
     /// How many along x and y.
     columns: [usize; 2],
+    /// Voxels; those of Occ3D if it does not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    lattice: Option<LatticeHeader>,
+}
+
+/// Lattice of a frame's voxels.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LatticeHeader {
+    /// Edge of a voxel, m.
+    voxel_m: f64,
+    /// Bins above one another.
+    bins: usize,
+    /// Height of the lowest bin's bottom, m.
+    bottom_m: f64,
+    /// Bins by which labels let the ground down.
+    #[serde(default)]
+    lowered: usize,
+}
+
+impl LatticeHeader {
+    pub(super) fn from_lattice(lattice: Lattice) -> Option<Self> {
+        (lattice != Lattice::OCC3D).then(|| Self {
+            voxel_m: lattice.voxel_m(),
+            bins: lattice.bins(),
+            bottom_m: lattice.bottom_m(),
+            lowered: lattice.lowered(),
+        })
+    }
+
+    fn lattice(self) -> Result<Lattice, String> {
+        Lattice::new(self.voxel_m, self.bins, self.bottom_m)?.lowered_by(self.lowered)
+    }
+}
+
+/// Entry of the unobserved voxels of a map, and bytes of a column's word.
+pub(super) fn unobserved_entry(extent: Extent) -> (&'static str, usize) {
+    match extent.nz() {
+        0..=16 => ("unobserved.u16", 2),
+        _ => ("unobserved.u64", 8),
+    }
 }
 
 impl ExtentHeader {
@@ -125,12 +166,14 @@ impl ExtentHeader {
         (extent != Extent::WINDOW).then(|| Self {
             from: extent.from(),
             columns,
+            lattice: LatticeHeader::from_lattice(extent.lattice()),
         })
     }
 
     /// The extent; errors in one line if there is no such map.
     pub(super) fn extent(&self) -> Result<Extent, String> {
-        Extent::new(self.from, self.columns)
+        let lattice = self.lattice.map_or(Ok(Lattice::OCC3D), LatticeHeader::lattice)?;
+        Extent::over(lattice, self.from, self.columns)
     }
 }
 

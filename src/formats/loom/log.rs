@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 use scene::grid::VoxelPatch;
 use scene::message::quoted;
 use scene::op::{Author, Change, LoggedState, Op, OpId, OpLog};
-use scene::{Background, Edit, Extent, ProjectHistory, Scene, Thing, ThingId};
+use scene::{Background, Edit, Extent, Lattice, ProjectHistory, Scene, Thing, ThingId};
 
 use super::archive::{MAX_JSON, Reader, Writer, parse, within};
 use super::migrate;
@@ -219,10 +219,12 @@ fn read_log<R: Read + Seek>(file: &mut Reader<R>, kept: &ProjectHistory) -> Resu
         versions: versions.collect(),
         states: BTreeMap::new(),
         columns: 0,
-        patches: read_results(file, &header.results)?,
+        patches: BTreeMap::new(),
         file,
     };
     let origin = found.state(&header.origin)?;
+    let lattice = origin.scene.canvas().extent().lattice();
+    found.patches = read_results(found.file, &header.results, lattice)?;
     let op = |op: OpHeader| {
         Ok(Op {
             id: op.id,
@@ -255,6 +257,7 @@ fn read_log<R: Read + Seek>(file: &mut Reader<R>, kept: &ProjectHistory) -> Resu
 fn read_results<R: Read + Seek>(
     file: &mut Reader<R>,
     results: &[(String, usize)],
+    lattice: Lattice,
 ) -> Result<BTreeMap<String, Arc<VoxelPatch>>, ProjectError> {
     let mut patches = BTreeMap::new();
     if results.is_empty() {
@@ -273,7 +276,7 @@ fn read_results<R: Read + Seek>(
         if hash(bytes) != *name {
             return Err(damaged("its bytes are others than their hash says".into()));
         }
-        let patch = patch_from_bytes(bytes).map_err(damaged)?;
+        let patch = patch_from_bytes(lattice, bytes).map_err(damaged)?;
         patches.insert(name.clone(), Arc::new(patch));
         left = rest;
     }

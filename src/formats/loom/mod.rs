@@ -8,13 +8,14 @@
 //! | `canvas/relief.f32` | height of the ground in each column, `[x][y]`, little-endian numbers in m; only if it is not flat |
 //! | `canvas/occupancy.u8` | class labels, `[x][y][z]`, a byte per voxel |
 //! | `canvas/painted.u8` | painted voxels, 255 where none; only if there are any |
-//! | `canvas/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says |
+//! | `canvas/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says; `unobserved.u64` with more than 16 bins |
 //! | `canvas/source_layout.u32`, `source_relief.f32`, `source_occupancy.u8` | of the source, only where it differs from the canvas |
 //! | `tracks/0000000007.u8` | class labels of a moving object, where it was made, `[x][y][z]`, a byte per voxel |
 //! | `kept.json`, `versions/0007.loom` | versions with their names and stars, and what was typed; only if there are any |
 //! | `log.json`, `log/<hash>.loom`, `log/results.voxels` | every change since an origin, with its author and the change before it; states and generated voxels by the hash of their bytes; only if anything was changed |
 //!
-//! The canvas has 200 x 200 columns around the origin of the world frame, unless `scene.json` gives it another `extent`.
+//! The canvas has 200 x 200 columns around the origin of the world frame, unless `scene.json` gives it another `extent`. Its voxels are
+//! those of Occ3D unless the extent names another `lattice`.
 //!
 //! The manifest's version selects what is done first: a file of an older version goes through the steps of [`migrate`],
 //! one per version, until it is as a file of this version. A newer version is refused.

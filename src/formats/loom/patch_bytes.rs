@@ -1,9 +1,9 @@
 //! A voxel patch as bytes: map, bricks, then the numbers of all voxels, their labels before, their labels after.
 
-use scene::Extent;
 use scene::grid::{BrickPatch, VoxelPatch};
+use scene::{Extent, Lattice};
 
-/// Little-endian bytes of a patch. Numbers of voxels are differences to the one before in the brick.
+/// Little-endian bytes of a patch, without its lattice, which is that of the whole history. Numbers of voxels are differences to the one before in the brick.
 pub(super) fn patch_to_bytes(patch: &VoxelPatch) -> Vec<u8> {
     let (extent, bricks) = (patch.extent(), patch.bricks());
     let mut out = Vec::with_capacity(24 + 6 * bricks.len() + 4 * patch.voxels());
@@ -28,11 +28,11 @@ pub(super) fn patch_to_bytes(patch: &VoxelPatch) -> Vec<u8> {
 }
 
 /// The patch in bytes of [`patch_to_bytes`]. Errors in one line.
-pub(super) fn patch_from_bytes(bytes: &[u8]) -> Result<VoxelPatch, String> {
+pub(super) fn patch_from_bytes(lattice: Lattice, bytes: &[u8]) -> Result<VoxelPatch, String> {
     let mut left = Left(bytes);
     let from = [left.u32()? as i32, left.u32()? as i32];
     let size = [left.u32()? as usize, left.u32()? as usize];
-    let extent = Extent::new(from, size)?;
+    let extent = Extent::over(lattice, from, size)?;
     let count = left.u32()? as usize;
     let heads = left.take(count, 6)?;
     let mut bricks: Vec<BrickPatch> = Vec::with_capacity(count);
@@ -98,20 +98,20 @@ mod tests {
         }
         let patch = VoxelPatch::between(&before, &after).expect("one map");
         let bytes = patch_to_bytes(&patch);
-        assert_eq!(patch_from_bytes(&bytes), Ok(patch));
+        assert_eq!(patch_from_bytes(Lattice::OCC3D, &bytes), Ok(patch));
         for end in 0..bytes.len() {
-            let problem = patch_from_bytes(&bytes[..end]).expect_err("cut");
+            let problem = patch_from_bytes(Lattice::OCC3D, &bytes[..end]).expect_err("cut");
             assert!(!problem.contains('\n'), "{problem}");
         }
         let mut longer = bytes.clone();
         longer.push(0);
-        patch_from_bytes(&longer).expect_err("a byte too many");
+        patch_from_bytes(Lattice::OCC3D, &longer).expect_err("a byte too many");
         // Any byte may be another one: an error or another patch, never more than that.
         for at in 0..bytes.len() {
             for value in [0, 1, 127, 255] {
                 let mut other = bytes.clone();
                 other[at] = value;
-                drop(patch_from_bytes(&other));
+                drop(patch_from_bytes(Lattice::OCC3D, &other));
             }
         }
     }

@@ -7,14 +7,14 @@ use std::sync::Arc;
 use scene::clip::ObjectVoxels;
 use scene::grid::NOT_PAINTED;
 use scene::{
-    Background, BoxId, Clip, Extent, Frame, Inferred, ProjectHistory, Relief, Scene, SceneBox, SourceFrame,
-    Track, Unobserved, VoxelGrid, VoxelPaint,
+    Background, BoxId, Clip, Extent, Frame, Inferred, Lattice, ProjectHistory, Relief, Scene, SceneBox,
+    SourceFrame, Track, Unobserved, VoxelGrid, VoxelPaint,
 };
 
 use super::archive::{MAX_JSON, Reader, parse, within, wrong_voxels};
 use super::beside;
 use super::check::check;
-use super::header::{ClipHeader, FrameHeader, SceneHeader, entry_name, track_entry};
+use super::header::{ClipHeader, FrameHeader, SceneHeader, entry_name, track_entry, unobserved_entry};
 use super::manifest::{AnyManifest, Manifest};
 use super::migrate::{Migration, Old};
 use super::{MANIFEST, ProjectError, SCENE};
@@ -50,7 +50,7 @@ fn read_with<R: Read + Seek>(
     let header: SceneHeader = parse(SCENE, &text)?;
     let canvas = read_canvas(&mut file, header.canvas)?;
     let clip = match header.clip {
-        Some(clip) => read_clip(&mut file, clip)?,
+        Some(clip) => read_clip(&mut file, clip, canvas.extent().lattice())?,
         None => Clip::default(),
     };
     let kept = beside(&mut file)?;
@@ -76,7 +76,11 @@ fn read_with<R: Read + Seek>(
     Ok(scene)
 }
 
-fn read_clip<R: Read + Seek>(file: &mut Reader<R>, header: ClipHeader) -> Result<Clip, ProjectError> {
+fn read_clip<R: Read + Seek>(
+    file: &mut Reader<R>,
+    header: ClipHeader,
+    lattice: Lattice,
+) -> Result<Clip, ProjectError> {
     within(
         "the number of tracks",
         header.tracks.len() as u64,
@@ -94,12 +98,15 @@ fn read_clip<R: Read + Seek>(file: &mut Reader<R>, header: ClipHeader) -> Result
                 ObjectVoxels::MAX_COLUMNS
             )));
         };
-        let bytes = file.exactly(&track_entry(id), count * Extent::NZ, 1, "voxels")?;
-        let (columns, _) = bytes.as_chunks::<{ Extent::NZ }>();
-        let voxels = ObjectVoxels {
-            from: track.voxels_from,
-            size: track.voxels_size,
-            columns: columns.to_vec(),
+        let labels = file.exactly(&track_entry(id), count * lattice.bins(), 1, "voxels")?;
+        let voxels = match count {
+            0 => ObjectVoxels::clone(&ObjectVoxels::empty()),
+            _ => ObjectVoxels {
+                lattice,
+                from: track.voxels_from,
+                size: track.voxels_size,
+                labels,
+            },
         };
         let track = Track {
             made: track.made,
@@ -149,9 +156,10 @@ fn read_canvas<R: Read + Seek>(file: &mut Reader<R>, header: FrameHeader) -> Res
     };
     let unobserved = match header.inferred.unobserved {
         true => {
-            let bytes = file.exactly(&name("unobserved.u16"), extent.columns(), 2, "columns")?;
-            let words = bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
-            Unobserved::from_words(extent, words.collect())
+            let (entry, width) = unobserved_entry(extent);
+            let bytes = file.exactly(&name(entry), extent.columns(), width, "columns")?;
+            let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, b| word << 8 | u64::from(*b));
+            Unobserved::from_words(extent, bytes.chunks_exact(width).map(word).collect())
         }
         false => None,
     };

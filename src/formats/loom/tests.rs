@@ -166,10 +166,14 @@ fn sample_clip() -> Clip {
     };
     let voxels = |label: u8| {
         Arc::new(ObjectVoxels {
+            lattice: scene::Lattice::OCC3D,
             from: [-9, 7],
             size: [3, 2],
-            columns: (0..6)
-                .map(|i| std::array::from_fn(|z| if z < 7 && i != 1 { label } else { Class::FREE }))
+            labels: (0..6 * 16)
+                .map(|at| match (at / 16, at % 16) {
+                    (i, 0..7) if i != 1 => label,
+                    _ => Class::FREE,
+                })
                 .collect(),
         })
     };
@@ -400,8 +404,8 @@ const FROM_0: Migration = Migration {
 
 #[test]
 fn an_older_version_goes_through_every_step() {
-    let [v1, v2, v3, v4, v5, v6, v7, v8, v9] = migrate::ALL;
-    let chain = [FROM_0, v1, v2, v3, v4, v5, v6, v7, v8, v9];
+    let [v1, v2, v3, v4, v5, v6, v7, v8, v9, v10] = migrate::ALL;
+    let chain = [FROM_0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10];
     let found = read::read(Cursor::new(of_version_0()), &chain).expect("version 0 opens");
     assert_same(&found, &sample(1));
     // The steps are for their versions only.

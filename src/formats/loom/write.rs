@@ -5,7 +5,7 @@ use scene::{BevLayout, Scene};
 use super::archive::Writer;
 use super::beside;
 use super::check::check;
-use super::header::{SceneHeader, entry_name, track_entry};
+use super::header::{SceneHeader, entry_name, track_entry, unobserved_entry};
 use super::manifest::Manifest;
 use super::{ProjectError, SCENE};
 
@@ -38,8 +38,11 @@ fn written(scene: &Scene) -> Result<Writer, ProjectError> {
     }
     if let Some(unobserved) = &frame.inferred.unobserved {
         let words = unobserved.words().iter();
-        let bytes: Vec<u8> = words.flat_map(|w| w.to_le_bytes()).collect();
-        out.put(&entry_name("unobserved.u16"), &bytes)?;
+        let (entry, width) = unobserved_entry(unobserved.extent());
+        let bytes: Vec<u8> = words
+            .flat_map(|w| w.to_le_bytes().into_iter().take(width))
+            .collect();
+        out.put(&entry_name(entry), &bytes)?;
     }
     if header.source.layout {
         out.put(
@@ -55,7 +58,7 @@ fn written(scene: &Scene) -> Result<Writer, ProjectError> {
         out.labels(&entry_name("source_occupancy.u8"), &frame.source.occupancy)?;
     }
     for (id, track) in &scene.clip().tracks {
-        out.put(&track_entry(*id), track.voxels.columns.as_flattened())?;
+        out.put(&track_entry(*id), &track.voxels.labels)?;
     }
     Ok(out)
 }

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use scene::{Extent, Polyline, PolylineKind};
+use scene::{Extent, Polyline, PolylineKind, Window};
 
 /// Cost of going along an outline or a line of so many points on every row of a map.
 pub(super) fn of_scan(extent: Extent, points: usize) -> usize {
@@ -34,6 +34,6 @@ fn columns_around(extent: Extent, line: &Polyline) -> usize {
         .copied()
         .fold(DVec2::NEG_INFINITY, DVec2::max);
     let most = DVec2::new(extent.nx() as f64, extent.ny() as f64);
-    let sides = ((high - low) / Extent::VOXEL_M).clamp(DVec2::ZERO, most);
+    let sides = ((high - low) / Window::VOXEL_M).clamp(DVec2::ZERO, most);
     (sides.x * sides.y) as usize
 }

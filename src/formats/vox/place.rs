@@ -96,7 +96,7 @@ pub(crate) fn place(file: &VoxFile<'_>) -> Result<VoxMap, String> {
                 beyond += 1;
                 continue;
             };
-            if !extent.holds(x, y) || z >= Extent::NZ {
+            if !extent.holds(x, y) || z >= extent.nz() {
                 beyond += 1;
                 continue;
             }

@@ -1,7 +1,7 @@
 //! A map as a `.vox` file.
 
 use scene::classes::Palette;
-use scene::{Class, Extent, VoxelGrid};
+use scene::{Class, VoxelGrid};
 
 use super::{LONGEST, OWN_NAME, middle};
 
@@ -16,7 +16,7 @@ pub(crate) fn to_bytes(grid: &VoxelGrid) -> Vec<u8> {
     for x in spans(extent.nx()) {
         for y in spans(extent.ny()) {
             let from = [x.start, y.start];
-            let size = [x.len(), y.len(), Extent::NZ];
+            let size = [x.len(), y.len(), extent.nz()];
             chunk(
                 &mut main,
                 b"SIZE",

@@ -5,8 +5,9 @@
 //! convention to the other on the way out and in.
 
 use glam::DVec3;
-use scene::solid::fill::{SMEAR, smear_down};
-use scene::{Class, Extent, Unobserved, VoxelGrid};
+use scene::grid;
+use scene::solid::fill::SMEAR;
+use scene::{Class, Extent, Lattice, Unobserved, VoxelGrid, Window};
 
 /// Classes of voxels of 0.4 m with the ground of a flat map in bin 2, from -1 to 6.2 m of the ego frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +21,7 @@ const NEAR_M: f64 = 20.0;
 
 impl Physical {
     /// Bins of a column.
-    pub const NZ: usize = Extent::NZ + SMEAR;
+    pub const NZ: usize = Window::NZ + SMEAR;
 
     /// A map without anything.
     pub fn over(extent: Extent) -> Self {
@@ -34,7 +35,10 @@ impl Physical {
     /// a thing is less than three bins high, its highest bin is kept; one that stands on the ground or on the bottom of the
     /// grid stays on it.
     pub fn raised(grid: &VoxelGrid) -> Self {
-        let columns = grid.extent().all_columns().map(|[x, y]| raise(grid.column(x, y)));
+        let columns = grid
+            .extent()
+            .all_columns()
+            .map(|[x, y]| raise(grid.window_column(x, y)));
         Self {
             extent: grid.extent(),
             columns: columns.collect(),
@@ -56,7 +60,7 @@ impl Physical {
         let mut grid = VoxelGrid::over(self.extent);
         for ([x, y], column) in self.extent.all_columns().zip(&self.columns) {
             if column.iter().any(|label| *label != Class::FREE) {
-                *grid.column_mut(x, y) = *of(column).first_chunk().expect("taller than a column");
+                *grid.window_column_mut(x, y) = *of(column).first_chunk().expect("taller than a column");
             }
         }
         grid
@@ -142,51 +146,22 @@ fn is_ground(label: u8) -> bool {
     Class::from_id(label).is_some_and(Class::is_ground)
 }
 
-fn raise(column: &[u8; Extent::NZ]) -> [u8; Physical::NZ] {
+fn raise(column: &[u8; Window::NZ]) -> [u8; Physical::NZ] {
     let mut out = [Class::FREE; Physical::NZ];
-    let is_thing = |z: usize| column[z] != Class::FREE && !is_ground(column[z]);
-    for (z, label) in column.iter().enumerate().filter(|(_, label)| is_ground(**label)) {
-        out[z + SMEAR] = *label;
-    }
-    let mut next = 0;
-    while next < Extent::NZ {
-        let from = next;
-        while next < Extent::NZ && is_thing(next) {
-            next += 1;
-        }
-        let stands = from == 0 || is_ground(column[from - 1]);
-        match next - from {
-            0 => next += 1,
-            1..=SMEAR => {
-                let least = if stands { from + SMEAR } else { next - 1 };
-                // Above the ground that was raised.
-                let at = (least..Physical::NZ).find(|z| !is_ground(out[*z]));
-                if let Some(at) = at.filter(|at| out[*at] == Class::FREE) {
-                    out[at] = column[next - 1];
-                }
-            }
-            _ => out[from + SMEAR..next].copy_from_slice(&column[from + SMEAR..next]),
-        }
-    }
+    grid::raise(Lattice::OCC3D, column, &mut out);
     out
 }
 
 fn lower(column: &[u8; Physical::NZ]) -> [u8; Physical::NZ] {
-    let mut out = column.map(|label| if is_ground(label) { Class::FREE } else { label });
-    smear_down(&mut out);
-    for (z, label) in column.iter().enumerate().filter(|(_, label)| is_ground(**label)) {
-        let place = &mut out[z.saturating_sub(SMEAR)];
-        if *place == Class::FREE {
-            *place = *label;
-        }
-    }
+    let mut out = *column;
+    grid::lower(Lattice::OCC3D, &mut out);
     out
 }
 
 /// The unobserved voxels in labels of Occ3D's convention where these bins of each column `[x][y]` are observed. A voxel
 /// is observed if one of the bins that it may stand for is: its own or one of the two above it.
 pub(crate) fn unobserved(extent: Extent, observed: &[u32]) -> Option<Unobserved> {
-    let word = |bits: &u32| !((0..=SMEAR).fold(0, |all, up| all | bits >> up) as u16);
+    let word = |bits: &u32| u64::from(!((0..=SMEAR).fold(0, |all, up| all | bits >> up) as u16));
     Unobserved::from_words(extent, observed.iter().map(word).collect())
 }
 

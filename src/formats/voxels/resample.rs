@@ -3,9 +3,9 @@
 use std::cmp::Reverse;
 
 use glam::DVec3;
-use scene::{Class, Extent, Pose};
+use scene::{Class, Extent, Pose, Window};
 
-use super::{Lattice, Physical};
+use super::{DataCells, Physical};
 
 /// A cell of a lattice and its class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -19,9 +19,13 @@ pub(crate) struct LabelledCell {
 /// The cells of a lattice that are not free, sorted by place. A cell no larger than a voxel has the class of the voxel that
 /// holds its middle. A larger one has the most frequent class of the voxels that are not free and have their middle in it; if
 /// there is none, that of the voxel that holds its own middle.
-pub(crate) fn cells_of(physical: &Physical, lattice: &Lattice, ego_from_lattice: &Pose) -> Vec<LabelledCell> {
+pub(crate) fn cells_of(
+    physical: &Physical,
+    lattice: &DataCells,
+    ego_from_lattice: &Pose,
+) -> Vec<LabelledCell> {
     let extent = physical.extent();
-    let finer = lattice.cell_m <= Extent::VOXEL_M;
+    let finer = lattice.cell_m <= Window::VOXEL_M;
     let overlap = Overlap::new(lattice, ego_from_lattice);
     let mut found = Vec::new();
     let mut votes = Vec::new();
@@ -63,7 +67,7 @@ fn winner(votes: &[LabelledCell]) -> Option<LabelledCell> {
 
 /// Cells whose middle may lie in a voxel.
 struct Overlap<'a> {
-    lattice: &'a Lattice,
+    lattice: &'a DataCells,
     ego_from_lattice: &'a Pose,
     lattice_from_ego: Pose,
     /// Half of a voxel along the lattice's axes, in cells.
@@ -71,14 +75,14 @@ struct Overlap<'a> {
 }
 
 impl<'a> Overlap<'a> {
-    fn new(lattice: &'a Lattice, ego_from_lattice: &'a Pose) -> Self {
+    fn new(lattice: &'a DataCells, ego_from_lattice: &'a Pose) -> Self {
         let lattice_from_ego = ego_from_lattice.inverse();
         let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| (lattice_from_ego.rotation * axis).abs());
         Self {
             lattice,
             ego_from_lattice,
             lattice_from_ego,
-            reach: (axes[0] + axes[1] + axes[2]) * (Extent::VOXEL_M / 2.0 / lattice.cell_m),
+            reach: (axes[0] + axes[1] + axes[2]) * (Window::VOXEL_M / 2.0 / lattice.cell_m),
         }
     }
 
@@ -104,7 +108,7 @@ impl<'a> Overlap<'a> {
 
 /// Cells of a lattice that are to become voxels.
 pub(crate) struct VoxelVotes<'a> {
-    lattice: &'a Lattice,
+    lattice: &'a DataCells,
     ego_from_lattice: &'a Pose,
     extent: Extent,
     /// Cells no larger than a voxel: each vote is a voxel and a class in one number.
@@ -119,7 +123,7 @@ const CLASSES: u32 = 32;
 
 impl<'a> VoxelVotes<'a> {
     /// Holds no cells yet. Errors in one line if the lattice lies nowhere near the ego vehicle.
-    pub fn new(lattice: &'a Lattice, ego_from_lattice: &'a Pose) -> Result<Self, String> {
+    pub fn new(lattice: &'a DataCells, ego_from_lattice: &'a Pose) -> Result<Self, String> {
         let corners = lattice.corners_m().map(|corner| ego_from_lattice.apply(corner));
         let low = corners.iter().fold(corners[0], |low, c| low.min(*c));
         let high = corners.iter().fold(corners[0], |high, c| high.max(*c));
@@ -127,7 +131,7 @@ impl<'a> VoxelVotes<'a> {
         let from = [low.x, low.y].map(columns);
         let size = [high.x, high.y].map(columns);
         let size = [0, 1].map(|axis| (size[axis] - from[axis] + 1) as usize);
-        let is_coarse = lattice.cell_m > Extent::VOXEL_M;
+        let is_coarse = lattice.cell_m > Window::VOXEL_M;
         Ok(Self {
             lattice,
             ego_from_lattice,
@@ -216,12 +220,12 @@ mod tests {
     use super::*;
     use crate::table_tests::random_scene;
 
-    const FINE: Lattice = Lattice {
+    const FINE: DataCells = DataCells {
         size: [512, 512, 40],
         cell_m: 0.2,
         min_m: [-51.2, -51.2, -5.0],
     };
-    const COARSE: Lattice = Lattice {
+    const COARSE: DataCells = DataCells {
         size: [200, 200, 16],
         cell_m: 0.5,
         min_m: [-50.0, -50.0, -5.0],
@@ -235,7 +239,7 @@ mod tests {
         }
     }
 
-    fn back(lattice: &Lattice, pose: &Pose, cells: &[LabelledCell]) -> Physical {
+    fn back(lattice: &DataCells, pose: &Pose, cells: &[LabelledCell]) -> Physical {
         let mut all = VoxelVotes::new(lattice, pose).expect("around the vehicle");
         for cell in cells {
             all.add(cell.at.map(usize::from), cell.class);

@@ -278,7 +278,7 @@ pub fn sight(scene: &Scene, id: BoxId, by: NetworkSensors) -> Result<ObjectVisib
 }
 
 fn in_cameras(scene: &Scene, id: BoxId) -> Result<ObjectVisibility> {
-    let placed = scene.with_rig_in_world();
+    let placed = scene.for_sensors();
     let (frame, rig) = (placed.frame(), &placed.rig);
     let mut best = ObjectVisibility {
         by: NetworkSensors::Cameras,
@@ -573,11 +573,7 @@ mod tests {
         let after = then.frame().boxes[&b.id];
         assert!(after.center_m.distance(b.center_m) < 0.05, "{}", after.center_m);
         // The box moves while the LiDAR turns, so the sweep differs.
-        let sweep = |scene: &Scene| {
-            sensors::rolling::of_voxels(&scene.with_rig_in_world())
-                .points
-                .len()
-        };
+        let sweep = |scene: &Scene| sensors::rolling::of_voxels(&scene.for_sensors()).points.len();
         assert!(sensors::rolling::is_rolling(&then) && sweep(&then) != sweep(&scene));
         let error = search(&then, b.id, Vary::Speed, NetworkSensors::Lidar, go_on).expect_err("it follows");
         assert!(error.to_string().contains("follows a motion"), "{error}");

@@ -11,7 +11,7 @@ use super::{large, scenery_around};
 use formats::import::{self, Content};
 use formats::opendrive::RoadNetwork;
 use formats::{atomic, input, loom};
-use scene::{Extent, Frame, Scene, SensorRig, draft};
+use scene::{Extent, Frame, Scene, SensorRig, Window, draft};
 use world::scenery::{self, RoadsideKind, RoadsideStyle, Style};
 use world::terrain::Terrain;
 use world::voxelize::{Vertical, complete};
@@ -177,7 +177,7 @@ const MARGIN_M: f64 = 24.0;
 fn whole_extent(network: &RoadNetwork, (at_m, heading_rad): (DVec2, f64)) -> Result<Extent, String> {
     let back = DVec2::from_angle(-heading_rad);
     let (low, high) = network.bounds_from(|p| back.rotate(p - at_m));
-    let column = |m: f64| (m / Extent::VOXEL_M).floor().clamp(-1e8, 1e8) as i32;
+    let column = |m: f64| (m / Window::VOXEL_M).floor().clamp(-1e8, 1e8) as i32;
     let from = (low - MARGIN_M).to_array().map(column);
     let to = (high + MARGIN_M).to_array().map(column);
     let size = [0, 1].map(|axis| (i64::from(to[axis]) - i64::from(from[axis]) + 1).max(1) as usize);

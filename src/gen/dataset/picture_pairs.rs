@@ -8,7 +8,7 @@ use super::pictures::{DEPTH_STEP_M, floats, intrinsic, is_free, map_from_camera,
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{
     BevLayout, Camera, CameraTruth, Conditions, Extent, Frame, PolylineKind, Pose, SensorRig, TimeOfDay,
-    VoxelGrid, Weather,
+    VoxelGrid, Weather, Window,
 };
 pub use sensors::appearance::Quality;
 use sensors::appearance::light_direction;
@@ -103,7 +103,7 @@ pub fn recorded_pair(
     let first = taken[0].frame;
     let at_m = first.world_from_ego.translation_m;
     let half = Extent::WINDOW.nx() as i32 / 2;
-    let around = [at_m.x, at_m.y].map(|v| (v / Extent::VOXEL_M).round() as i32 - half);
+    let around = [at_m.x, at_m.y].map(|v| (v / Window::VOXEL_M).round() as i32 - half);
     let window = Extent::new(around, [Extent::WINDOW.nx(), Extent::WINDOW.ny()]).unwrap_or(Extent::WINDOW);
     let middle_m = (window.min_m() + window.max_m()).truncate() / 2.0;
     let dense = first.occupancy.crop(window);

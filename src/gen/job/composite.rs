@@ -21,14 +21,14 @@ pub fn composite(
     for (i, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
         let (x, y) = (i / Window::NY, i % Window::NY);
         // Paint is applied first, so that a brick is not copied for labels that paint replaces anyway.
-        let mut column = *generated.column(x, y);
+        let mut column = *generated.window_column(x, y);
         for (label, paint) in column.iter_mut().zip(painted.column(x, y)) {
             if *paint != NOT_PAINTED {
                 *label = *paint;
             }
         }
-        if column != *source.column(x, y) {
-            *out.column_mut(x, y) = column;
+        if column != *source.window_column(x, y) {
+            *out.window_column_mut(x, y) = column;
         }
     }
     for (x, y, z, label) in painted.iter_set() {

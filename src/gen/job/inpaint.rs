@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::params::GenParams;
 use super::region::{COLUMNS_PER_CELL, Region, edited_columns};
 use scene::raster::{box_cells, polygon_cells};
-use scene::{Extent, Frame, SceneBox};
+use scene::{Extent, Frame, SceneBox, Window};
 
 /// A sparse set of latent cells, 1.6 m wide: `[i, j]` along ego x and y, counted from the corner of the networks' window, so
 /// that a cell of the window at the origin lies in `0..50`. A cell may lie anywhere on the map. As JSON a list of `[i, j]`.
@@ -24,7 +24,7 @@ impl std::fmt::Debug for InpaintMask {
 }
 
 /// Margin around an unchanged box in which nothing is inpainted, m.
-pub const KEPT_M: f64 = Extent::VOXEL_M;
+pub const KEPT_M: f64 = Window::VOXEL_M;
 
 impl InpaintMask {
     /// Largest distance of a cell from the corner of the window; no map is larger, so farther cells are refused.

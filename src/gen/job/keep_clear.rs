@@ -69,7 +69,7 @@ pub fn keep_unobserved(
         if word == 0 || request.edited(c) || inpaint.has_column(Extent::WINDOW, [x, y]) {
             continue;
         }
-        let before = *frame.source.occupancy.column(x, y);
+        let before = *frame.source.occupancy.window_column(x, y);
         for (z, before) in before.iter().enumerate() {
             let now = generated.get(x, y, z);
             let unknown = *before == Class::FREE && word >> z & 1 == 1;

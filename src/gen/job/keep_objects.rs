@@ -111,7 +111,7 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
             corrected += 1;
         } else if !found.contains(&wanted.id())
             && !found.iter().any(is_object)
-            && held_ground(frame.source.occupancy.column(x, y), bin)
+            && held_ground(frame.source.occupancy.window_column(x, y), bin)
         {
             // A hedge or a wall is removed up to its top. A hole is closed unless it was there before, as in frames of
             // real labels. A crown above a gap may hang over the road.
@@ -187,7 +187,7 @@ fn carry(frame: &Frame, region: &Region, old: &SceneBox, new: &SceneBox, generat
         }
         let center = Window::center(x, y, 0);
         let there = old.to_ego(new.to_local(center.truncate().extend(new.center_m.z)));
-        let from = Window::column_at(there.x, there.y).map(|[x, y]| *source.column(x, y));
+        let from = Window::column_at(there.x, there.y).map(|[x, y]| *source.window_column(x, y));
         let column = generated.column_mut(x, y);
         column
             .iter_mut()

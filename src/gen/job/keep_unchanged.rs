@@ -38,7 +38,7 @@ pub fn keep_unchanged(
             continue;
         }
         let (source, before) = (frame.source.occupancy.column(x, y), decoded.column(x, y));
-        let mut column = *generated.column(x, y);
+        let mut column = *generated.window_column(x, y);
         for (z, now) in column.iter_mut().enumerate() {
             let scrap = gone[c] >> source[z] & 1 == 1 && !request.holds(x, y, z, source[z]);
             if *now == before[z] && *now != source[z] && !scrap {
@@ -46,8 +46,8 @@ pub fn keep_unchanged(
                 count += 1;
             }
         }
-        if column != *generated.column(x, y) {
-            *generated.column_mut(x, y) = column;
+        if column != *generated.window_column(x, y) {
+            *generated.window_column_mut(x, y) = column;
         }
     }
     count

@@ -224,7 +224,7 @@ fn levelled(labels: &[u8], relief: &Relief) -> Vec<u8> {
         return out;
     }
     for (c, column) in out.chunks_exact_mut(Window::NZ).enumerate() {
-        let down = Relief::label_bin(relief.column_m(c / Window::NY, c % Window::NY));
+        let down = scene::Lattice::OCC3D.ground_bin(relief.column_m(c / Window::NY, c % Window::NY));
         column[..down].fill(Class::FREE);
         column.rotate_left(down);
     }

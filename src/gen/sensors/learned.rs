@@ -12,7 +12,7 @@ use nets::ModelError;
 use nets::lidar::field::{LidarRay, RaySampling, SignedDistanceField};
 use nets::lidar::{LearnedRay, LidarNet};
 use scene::moved::ColumnShift;
-use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, Pose, SensorRig, VoxelGrid};
+use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, Pose, SensorRig, VoxelGrid, Window};
 use world::draw::{Draw, hash};
 
 /// Treatment of echoes that a real sensor may lose.
@@ -58,7 +58,7 @@ pub fn seen(grid: &VoxelGrid, exclude: Option<EgoBox>) -> VoxelGrid {
     };
     for x in range(0, SEEN.nx()) {
         for y in range(1, SEEN.ny()) {
-            for z in range(2, Extent::NZ) {
+            for z in range(2, Window::NZ) {
                 let class = seen.get(x, y, z);
                 let near = || ego.contains(SEEN.center(x, y, z));
                 if class != Class::FREE && near() && !class_is_ground(class) {
@@ -89,7 +89,7 @@ impl<'a> Centred<'a> {
     /// The rig of a vehicle anywhere on a map.
     pub fn new(rig: &'a SensorRig) -> Self {
         let column = |m: f64| {
-            -(m / Extent::VOXEL_M)
+            -(m / Window::VOXEL_M)
                 .round()
                 .clamp(-Self::FARTHEST, Self::FARTHEST) as i32
         };

@@ -18,7 +18,7 @@ use nets::lidar::LidarNet;
 use scene::sensor_data::PlaneDepths;
 use scene::{
     Background, BevLayer, BevLayout, Camera, CameraMaps, Class, Conditions, Extent, Frame, LidarPattern,
-    SensorRig, VoxelGrid,
+    SensorRig, VoxelGrid, Window,
 };
 use world::World;
 use world::voxelize::{Vertical, complete};
@@ -40,7 +40,7 @@ fn walled() -> VoxelGrid {
         grid.set(x, y, 0, Class::DriveableSurface.id());
     }
     let [x, _] = extent.column_at(WALL_M + 0.2, 0.0).expect("inside");
-    for (y, z) in (0..extent.ny()).flat_map(|y| (1..Extent::NZ).map(move |z| (y, z))) {
+    for (y, z) in (0..extent.ny()).flat_map(|y| (1..Window::NZ).map(move |z| (y, z))) {
         grid.set(x, y, z, Class::Manmade.id());
     }
     grid

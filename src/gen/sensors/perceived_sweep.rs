@@ -120,7 +120,7 @@ impl PerceivedSweep {
     fn from_scene(scene: &Scene) -> Result<Self, PaintError> {
         let network = |e: &dyn std::fmt::Display| PaintError::Network(e.to_string());
         let net = LidarPerceiver::bundled().map_err(|e| network(&e))?;
-        let sweep = rolling::of_voxels(&scene.with_rig_in_world());
+        let sweep = rolling::of_voxels(&scene.for_sensors());
         let map_from_vehicle = scene.frame().world_from_ego;
         let perceived = net.perceive_sweep(&sweep, &map_from_vehicle);
         let perceived = perceived.map_err(|e| network(&e))?;

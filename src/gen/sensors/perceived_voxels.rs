@@ -114,7 +114,7 @@ impl PerceptionInput {
     }
 
     fn seeing(scene: &Scene, pictures: Option<&[Arc<CameraImage>]>) -> Result<Self, PaintError> {
-        let placed = scene.with_rig_in_world();
+        let placed = scene.for_sensors();
         let sweep = rolling::of_voxels(&placed);
         let to_vehicle = scene.frame().world_from_ego.inverse();
         let returns = sweep.points.iter().map(|point| {

@@ -14,7 +14,7 @@ use super::raycast::ColumnMasks;
 use scene::raster::box_cells;
 use scene::solid::Solid;
 use scene::{
-    BoxId, Class, Extent, Frame, LidarPattern, LidarPoint, LidarSweep, SceneBox, SensorRig, VoxelGrid,
+    BoxId, Class, Extent, Frame, LidarPattern, LidarPoint, LidarSweep, SceneBox, SensorRig, VoxelGrid, Window,
 };
 use world::objects;
 
@@ -229,7 +229,7 @@ impl<'a> ShapedBoxes<'a> {
                 ReturnPlacement::At(range_m, class)
             });
         }
-        let max_t = pattern.max_range_m / Extent::VOXEL_M;
+        let max_t = pattern.max_range_m / Window::VOXEL_M;
         let (mut from, mut behind) = (0.0, None);
         for _ in 0..MOST_VOXELS {
             let start = origin + ray.direction * from;
@@ -238,18 +238,18 @@ impl<'a> ShapedBoxes<'a> {
             };
             let (t, label) = (from + t, grid.get(voxel[0], voxel[1], voxel[2]));
             let out = left_at(origin, ray.direction, voxel);
-            let met_m = ray.origin.z + ray.direction.z * (t * Extent::VOXEL_M + INTO_M);
+            let met_m = ray.origin.z + ray.direction.z * (t * Window::VOXEL_M + INTO_M);
             match self.owner(voxel, label, met_m, 0.0) {
                 None => {
-                    behind = Some((t * Extent::VOXEL_M, label));
+                    behind = Some((t * Window::VOXEL_M, label));
                     break;
                 }
                 Some(VoxelOwner::Voxels(b)) => {
                     if let Some([near_m, far_m]) = through(b, ray)
-                        && near_m <= out * Extent::VOXEL_M
-                        && far_m >= t * Extent::VOXEL_M
+                        && near_m <= out * Window::VOXEL_M
+                        && far_m >= t * Window::VOXEL_M
                     {
-                        behind = Some(((t * Extent::VOXEL_M).clamp(near_m, far_m), label));
+                        behind = Some(((t * Window::VOXEL_M).clamp(near_m, far_m), label));
                         break;
                     }
                 }
@@ -292,7 +292,7 @@ impl<'a> ShapedBoxes<'a> {
     fn voxel_at(&self, p: DVec3) -> Option<[usize; 3]> {
         let [x, y] = self.extent.column_at(p.x, p.y)?;
         let z = self.extent.to_voxel_units(p).z;
-        (z >= 0.0 && z < Extent::NZ as f64).then_some([x, y, z as usize])
+        (z >= 0.0 && z < Window::NZ as f64).then_some([x, y, z as usize])
     }
 }
 

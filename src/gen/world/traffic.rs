@@ -109,7 +109,7 @@ impl TrafficPlacer<'_> {
         let inside = b.footprint().iter().all(|c| self.on_map(*c, RIM_M));
         // Boxes on ground that leaves the grid would not be visible in it.
         let (low, high) = (b.center_m.z - size_m.z / 2.0, b.center_m.z + size_m.z / 2.0);
-        if !inside || low < Extent::BOTTOM_M || high > Extent::TOP_M {
+        if !inside || low < Window::MIN_M[2] || high > Window::MAX_M[2] {
             return false;
         }
         let mut free = true;

@@ -95,7 +95,7 @@ fn every_kind_is_sound_stands_on_the_ground_and_reaches_its_height() {
         let lowest = on_ground.iter().map(|v| v[2]).min().expect("some");
         let highest = on_ground.iter().map(|v| v[2]).max().expect("some");
         assert!(lowest <= 2, "{name} floats: bin {lowest}"); // the ground is in bin 2
-        let top = crate::Relief::physical_bin(height - 0.3);
+        let top = crate::Lattice::OCC3D.bin(height - 0.3);
         // The tip of a crown fills no voxel by a third.
         let tip = if name == "tree" { 3 } else { 1 };
         assert!(highest + tip >= top.min(15), "{name}: {highest} below {top}");

@@ -154,7 +154,7 @@ fn lift_own_shape(track: &mut Track, lift_m: f64) {
     let cells = track.voxels.cells(&track.made);
     let mut made = track.made;
     made.center_m.z += lift_m;
-    if let Ok((made, voxels)) = ObjectVoxels::of_cells(&made, &cells) {
+    if let Ok((made, voxels)) = ObjectVoxels::of_cells(track.voxels.lattice, &made, &cells) {
         (track.made, track.voxels) = (made, voxels);
     }
 }
@@ -203,7 +203,7 @@ fn differing<const FILL: u8>(
 struct Owners<'a> {
     canvas: &'a Frame,
     /// Tracks in whose old voxels a column lies: id and bins.
-    stamped: HashMap<[usize; 2], Vec<(BoxId, u16)>>,
+    stamped: HashMap<[usize; 2], Vec<(BoxId, u64)>>,
     /// Tracks within whose old or new footprint and margin a column lies.
     near: HashMap<[usize; 2], Vec<BoxId>>,
     /// The boxes as they are now.

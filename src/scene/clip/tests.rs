@@ -232,7 +232,7 @@ fn networks_are_asked_about_what_stands_and_about_drafts_alone() {
     scene.set_generated(answer);
     assert_eq!(scene.time_s(), 2.5);
     let track = &scene.clip().tracks[&BoxId(7)];
-    assert!(track.settled && track.voxels.columns.iter().any(|c| c[6] == Class::Car.id()));
+    assert!(track.settled && track.voxels.labels.chunks(16).any(|c| c[6] == Class::Car.id()));
     assert_eq!(scene.canvas().occupancy.count_different(&before), 1);
     assert_eq!(scene.canvas().source.occupancy.get(0, 0, 2), Class::Manmade.id());
     assert!(

@@ -4,7 +4,9 @@ use std::fmt;
 
 use glam::DVec3;
 
-/// A rectangle of columns in the ego frame, 16 voxels of 0.4 m high. Grids, layouts and reliefs carry theirs.
+use super::Lattice;
+
+/// A rectangle of columns of a [`Lattice`] in the ego frame. Grids, layouts and reliefs carry theirs.
 /// The networks see [`Extent::WINDOW`]; a map may be larger or smaller than that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Extent {
@@ -12,6 +14,7 @@ pub struct Extent {
     from: [i32; 2],
     /// Columns along x and y.
     size: [u32; 2],
+    lattice: Lattice,
 }
 
 impl Default for Extent {
@@ -22,33 +25,37 @@ impl Default for Extent {
 
 impl fmt::Display for Extent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} x {} x {}", self.nx(), self.ny(), Self::NZ)
+        write!(f, "{} x {} x {}", self.nx(), self.ny(), self.nz())
     }
 }
 
 impl Extent {
-    /// Voxels along z (up), in every map.
-    pub const NZ: usize = 16;
-    /// Edge of a voxel, m.
-    pub const VOXEL_M: f64 = 0.4;
-    /// Height of the lowest voxel's bottom in the ego frame, m.
-    pub const BOTTOM_M: f64 = -1.0;
-    /// Height of the highest voxel's top in the ego frame, m.
-    pub const TOP_M: f64 = 5.4;
-    /// Most columns along one side: 3.2 km.
+    /// Most columns along one side: 3.2 km of 0.4 m.
     pub const MAX_SIDE: usize = 8192;
-    /// Most columns in all: 1.6 km by 1.6 km.
+    /// Most columns in all: 1.6 km by 1.6 km of 0.4 m.
     pub const MAX_COLUMNS: usize = 1 << 24;
 
     /// The frame of Occ3D, which the networks read and write: 200 x 200 columns around the ego vehicle.
     pub const WINDOW: Self = Self {
         from: [-100, -100],
         size: [200, 200],
+        lattice: Lattice::OCC3D,
     };
 
-    /// Columns `from..from + size`, counted from the ego frame's origin. Errors in one line on a side of 0 or above
-    /// [`MAX_SIDE`](Self::MAX_SIDE), on more than [`MAX_COLUMNS`](Self::MAX_COLUMNS), and farther than that from the origin.
+    /// Columns `from..from + size` of the lattice of Occ3D, counted from the ego frame's origin. Errors as
+    /// [`over`](Self::over).
     pub fn new(from: [i32; 2], size: [usize; 2]) -> Result<Self, String> {
+        Self::over(Lattice::OCC3D, from, size)
+    }
+
+    /// Columns `from..from + size` of the same lattice. Errors as [`over`](Self::over).
+    pub fn with_columns(&self, from: [i32; 2], size: [usize; 2]) -> Result<Self, String> {
+        Self::over(self.lattice, from, size)
+    }
+
+    /// Columns `from..from + size` of a lattice, counted from the ego frame's origin. Errors in one line on a side of 0 or above
+    /// [`MAX_SIDE`](Self::MAX_SIDE), on more than [`MAX_COLUMNS`](Self::MAX_COLUMNS), and farther than that from the origin.
+    pub fn over(lattice: Lattice, from: [i32; 2], size: [usize; 2]) -> Result<Self, String> {
         let [nx, ny] = size;
         let sides = 1..=Self::MAX_SIDE;
         if !(sides.contains(&nx) && sides.contains(&ny)) || nx * ny > Self::MAX_COLUMNS {
@@ -67,7 +74,26 @@ impl Extent {
         Ok(Self {
             from,
             size: size.map(|n| n as u32),
+            lattice,
         })
+    }
+
+    /// Lattice of its voxels.
+    #[inline]
+    pub const fn lattice(&self) -> Lattice {
+        self.lattice
+    }
+
+    /// Voxels along z (up).
+    #[inline]
+    pub const fn nz(&self) -> usize {
+        self.lattice.bins()
+    }
+
+    /// Edge of a voxel, m.
+    #[inline]
+    pub const fn voxel_m(&self) -> f64 {
+        self.lattice.voxel_m()
     }
 
     /// Column at the lower corner, counted from the ego frame's origin.
@@ -89,8 +115,8 @@ impl Extent {
 
     /// Voxels along x, y and z.
     #[inline]
-    pub fn shape(&self) -> [usize; 3] {
-        [self.nx(), self.ny(), Self::NZ]
+    pub const fn shape(&self) -> [usize; 3] {
+        [self.nx(), self.ny(), self.nz()]
     }
 
     /// Columns in all.
@@ -101,24 +127,26 @@ impl Extent {
 
     /// Voxels in all.
     pub const fn voxels(&self) -> usize {
-        self.columns() * Self::NZ
+        self.columns() * self.nz()
     }
 
     /// Lower corner in the ego frame, m.
     #[inline]
     pub fn min_m(&self) -> DVec3 {
         // 0.4 is not exact in binary, 2.5 is.
+        let per_m = self.lattice.per_m();
         DVec3::new(
-            f64::from(self.from[0]) / 2.5,
-            f64::from(self.from[1]) / 2.5,
-            Self::BOTTOM_M,
+            f64::from(self.from[0]) / per_m,
+            f64::from(self.from[1]) / per_m,
+            self.lattice.bottom_m(),
         )
     }
 
     /// Upper corner in the ego frame, m.
     pub fn max_m(&self) -> DVec3 {
-        let to = |axis: usize| (f64::from(self.from[axis]) + f64::from(self.size[axis])) / 2.5;
-        DVec3::new(to(0), to(1), Self::TOP_M)
+        let to =
+            |axis: usize| (f64::from(self.from[axis]) + f64::from(self.size[axis])) / self.lattice.per_m();
+        DVec3::new(to(0), to(1), self.lattice.top_m())
     }
 
     /// Place of a column in arrays `[x][y]`.
@@ -166,20 +194,21 @@ impl Extent {
     /// The BEV cell under a point of the ego frame.
     #[inline]
     pub fn column_at(&self, x_m: f64, y_m: f64) -> Option<[usize; 2]> {
-        self.voxel_at(DVec3::new(x_m, y_m, 0.0)).map(|v| [v[0], v[1]])
+        self.voxel_at(DVec3::new(x_m, y_m, self.lattice.bottom_m()))
+            .map(|v| [v[0], v[1]])
     }
 
     /// Ego-frame metres to voxel units (0 at the lower corner, 1 per voxel).
     #[inline]
     pub fn to_voxel_units(&self, p_in_ego: DVec3) -> DVec3 {
         // (p - min) / 0.4 as (p - min) * 2.5: 2.5 is exact.
-        (p_in_ego - self.min_m()) * 2.5
+        (p_in_ego - self.min_m()) * self.lattice.per_m()
     }
 
     /// Voxel units to ego-frame metres.
     #[inline]
     pub fn from_voxel_units(&self, u: DVec3) -> DVec3 {
-        u / 2.5 + self.min_m()
+        u / self.lattice.per_m() + self.min_m()
     }
 
     /// Centre of a voxel in the ego frame, m.
@@ -188,8 +217,12 @@ impl Extent {
         self.from_voxel_units(DVec3::new(x as f64 + 0.5, y as f64 + 0.5, z as f64 + 0.5))
     }
 
-    /// The columns that two extents share: place and size in `self`, and place in `other`. `None` if they share none.
+    /// The columns that two extents share: place and size in `self`, and place in `other`. `None` if they share none, and
+    /// for another lattice.
     pub fn overlap(&self, other: &Self) -> Option<Overlap> {
+        if self.lattice != other.lattice {
+            return None;
+        }
         let (mut here, mut there, mut size) = ([0; 2], [0; 2], [0; 2]);
         for axis in 0..2 {
             let (a, b) = (i64::from(self.from[axis]), i64::from(other.from[axis]));
@@ -256,8 +289,8 @@ mod tests {
         let map = Extent::new([-317, 45], [480, 320]).expect("sound");
         for extent in [Extent::WINDOW, map] {
             for [x, y] in extent.all_columns().step_by(7) {
-                let center = extent.center(x, y, x % Extent::NZ);
-                assert_eq!(extent.voxel_at(center), Some([x, y, x % Extent::NZ]));
+                let center = extent.center(x, y, x % extent.nz());
+                assert_eq!(extent.voxel_at(center), Some([x, y, x % extent.nz()]));
                 assert_eq!(extent.column(extent.index(x, y)), [x, y]);
             }
             let (low, high) = (extent.min_m(), extent.max_m());

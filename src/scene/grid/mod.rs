@@ -2,23 +2,26 @@
 //! only the bricks it touches, and changes are found by comparing pointers. All empty bricks share one memory.
 
 mod extent;
+mod lattice;
+mod lowering;
 mod patch;
 mod window;
 
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, OnceLock};
 
 pub use extent::{Extent, Overlap};
+pub use lattice::Lattice;
+pub use lowering::{lower, raise};
 pub use patch::{BrickPatch, VoxelPatch};
 pub use window::Window;
 
 use super::Class;
 
-/// Edge of a brick in voxels; the grid is one brick high.
+/// Edge of a brick in columns; a brick is as high as the grid.
 pub const BRICK: usize = 16;
-const BRICK_VOXELS: usize = BRICK * BRICK * BRICK;
 
-/// One brick: labels `[x][y][z]`, z fastest, so that a column is 16 bytes in a row.
-pub type Brick = [u8; BRICK_VOXELS];
+/// One brick: labels `[x][y][z]` of 16 x 16 columns, z fastest, so that a column is its bins in a row.
+pub type Brick = [u8];
 
 /// A byte per voxel of a map in copy-on-write bricks; `FILL` is the value of untouched space.
 #[derive(Clone, Debug)]
@@ -52,13 +55,15 @@ pub fn brick_columns(extent: Extent, brick: usize) -> ([usize; 2], [usize; 2]) {
     (from, size)
 }
 
-fn empty_brick(fill: u8) -> Arc<Brick> {
-    static FREE: LazyLock<Arc<Brick>> = LazyLock::new(|| Arc::new([Class::FREE; BRICK_VOXELS]));
-    static NONE: LazyLock<Arc<Brick>> = LazyLock::new(|| Arc::new([NOT_PAINTED; BRICK_VOXELS]));
+fn empty_brick(fill: u8, bins: usize) -> Arc<Brick> {
+    type OfHeights = [OnceLock<Arc<Brick>>; Lattice::MAX_BINS + 1];
+    static FREE: OfHeights = [const { OnceLock::new() }; Lattice::MAX_BINS + 1];
+    static NONE: OfHeights = [const { OnceLock::new() }; Lattice::MAX_BINS + 1];
+    let new = || vec![fill; BRICK * BRICK * bins].into();
     match fill {
-        NOT_PAINTED => NONE.clone(),
-        Class::FREE => FREE.clone(),
-        other => Arc::new([other; BRICK_VOXELS]),
+        NOT_PAINTED => NONE[bins].get_or_init(new).clone(),
+        Class::FREE => FREE[bins].get_or_init(new).clone(),
+        _ => new(),
     }
 }
 
@@ -79,7 +84,7 @@ impl<const FILL: u8> BrickGrid<FILL> {
         let [bx, by] = bricks_along(extent);
         Self {
             extent,
-            bricks: vec![empty_brick(FILL); bx * by],
+            bricks: vec![empty_brick(FILL, extent.nz()); bx * by],
         }
     }
 
@@ -94,7 +99,7 @@ impl<const FILL: u8> BrickGrid<FILL> {
             return Err(labels.len());
         }
         let mut grid = Self::over(extent);
-        for ([x, y], column) in extent.all_columns().zip(labels.chunks_exact(Extent::NZ)) {
+        for ([x, y], column) in extent.all_columns().zip(labels.chunks_exact(extent.nz())) {
             if column.iter().any(|&v| v != FILL) {
                 grid.column_mut(x, y).copy_from_slice(column);
             }
@@ -119,7 +124,7 @@ impl<const FILL: u8> BrickGrid<FILL> {
 
     /// These bricks over another extent of the same size.
     pub(crate) fn relabelled(&self, extent: Extent) -> Self {
-        assert_eq!(bricks_along(extent), bricks_along(self.extent), "another size");
+        assert_eq!(extent.shape(), self.extent.shape(), "another size");
         Self {
             extent,
             bricks: self.bricks.clone(),
@@ -151,29 +156,43 @@ impl<const FILL: u8> BrickGrid<FILL> {
                 let column = other.column(there[0] + x, there[1] + y);
                 let (x, y) = (here[0] + x, here[1] + y);
                 if self.column(x, y) != column {
-                    *self.column_mut(x, y) = *column;
+                    self.column_mut(x, y).copy_from_slice(column);
                 }
             }
         }
     }
 
-    /// The 16 labels above a BEV cell, lowest first. Panics outside the grid.
+    /// The labels above a BEV cell, lowest first. Panics outside the grid.
     #[inline]
-    pub fn column(&self, x: usize, y: usize) -> &[u8; Extent::NZ] {
+    pub fn column(&self, x: usize, y: usize) -> &[u8] {
         let (brick, at) = self.locate(x, y);
-        self.bricks[brick][at..at + Extent::NZ]
-            .try_into()
-            .expect("a column is 16 long")
+        &self.bricks[brick][at..at + self.extent.nz()]
     }
 
-    /// Mutable access to the 16 labels above a BEV cell; copies the brick if a snapshot shares it. Panics outside the
-    /// grid.
+    /// Mutable access to the labels above a BEV cell; copies the brick if a snapshot shares it. Panics outside the grid.
     #[inline]
-    pub fn column_mut(&mut self, x: usize, y: usize) -> &mut [u8; Extent::NZ] {
+    pub fn column_mut(&mut self, x: usize, y: usize) -> &mut [u8] {
         let (brick, at) = self.locate(x, y);
-        (&mut Arc::make_mut(&mut self.bricks[brick])[at..at + Extent::NZ])
+        &mut Arc::make_mut(&mut self.bricks[brick])[at..at + self.extent.nz()]
+    }
+
+    /// The labels above a BEV cell of a grid of the networks' lattice. Panics on a grid of another height.
+    #[inline]
+    pub fn window_column(&self, x: usize, y: usize) -> &[u8; Window::NZ] {
+        debug_assert_eq!(self.extent.lattice(), Lattice::OCC3D);
+        self.column(x, y)
             .try_into()
-            .expect("a column is 16 long")
+            .expect("a grid of the networks' height")
+    }
+
+    /// Mutable access as [`column_mut`](Self::column_mut), of a grid of the networks' lattice. Panics on a grid of another
+    /// height.
+    #[inline]
+    pub fn window_column_mut(&mut self, x: usize, y: usize) -> &mut [u8; Window::NZ] {
+        debug_assert_eq!(self.extent.lattice(), Lattice::OCC3D);
+        self.column_mut(x, y)
+            .try_into()
+            .expect("a grid of the networks' height")
     }
 
     /// One label. Panics outside the grid.
@@ -194,7 +213,7 @@ impl<const FILL: u8> BrickGrid<FILL> {
     fn locate(&self, x: usize, y: usize) -> (usize, usize) {
         assert!(self.extent.holds(x, y), "column ({x}, {y})");
         let brick = (x / BRICK) * self.extent.ny().div_ceil(BRICK) + y / BRICK;
-        (brick, ((x % BRICK) * BRICK + y % BRICK) * BRICK)
+        (brick, ((x % BRICK) * BRICK + y % BRICK) * self.extent.nz())
     }
 
     /// Bricks along x and along y.
@@ -226,7 +245,8 @@ impl<const FILL: u8> BrickGrid<FILL> {
 
     /// Every voxel that is not `FILL`, as (x, y, z, value), in C order within each brick.
     pub fn iter_set(&self) -> impl Iterator<Item = (usize, usize, usize, u8)> + '_ {
-        let fill = empty_brick(FILL);
+        let bins = self.extent.nz();
+        let fill = empty_brick(FILL, bins);
         let [_, along_y] = self.bricks_along();
         self.bricks
             .iter()
@@ -238,7 +258,7 @@ impl<const FILL: u8> BrickGrid<FILL> {
                     .enumerate()
                     .filter(|(_, v)| **v != FILL)
                     .map(move |(i, v)| {
-                        let (x, y, z) = (i / (BRICK * BRICK), i / BRICK % BRICK, i % BRICK);
+                        let (x, y, z) = (i / bins / BRICK, i / bins % BRICK, i % bins);
                         ((b / along_y) * BRICK + x, (b % along_y) * BRICK + y, z, *v)
                     })
             })
@@ -307,6 +327,27 @@ mod tests {
         assert_eq!(VoxelGrid::from_dense(&[0; 3]), Err(3));
         assert_eq!(a.class_counts()[17], Window::VOXELS - 2);
     }
+    #[test]
+    fn grids_of_another_lattice_hold_their_bins() {
+        let lattice = Lattice::new(0.2, 40, -5.0).expect("sound");
+        let extent = Extent::over(lattice, [-256, -256], [512, 512]).expect("sound");
+        let mut grid = VoxelGrid::over(extent);
+        grid.set(511, 0, 39, 4);
+        grid.set(17, 500, 20, 11);
+        assert_eq!(grid.column(17, 500).len(), 40);
+        assert_eq!(
+            grid.iter_set().collect::<Vec<_>>(),
+            vec![(17, 500, 20, 11), (511, 0, 39, 4)]
+        );
+        let dense = grid.to_dense();
+        assert_eq!(dense.len(), 512 * 512 * 40);
+        assert_eq!(VoxelGrid::from_dense_over(extent, &dense), Ok(grid.clone()));
+        // A lattice shares no columns with another one.
+        assert_eq!(grid.crop(Extent::WINDOW).count_set(), 0);
+        let part = extent.with_columns([-240, 240], [20, 10]).expect("sound");
+        assert_eq!(grid.crop(part).get(1, 4, 20), 11);
+    }
+
     #[test]
     fn a_window_of_a_map_is_cropped_and_pasted_back() {
         let extent = Extent::new([-150, -110], [480, 320]).expect("sound");

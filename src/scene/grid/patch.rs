@@ -71,7 +71,8 @@ impl VoxelPatch {
             let (_, size) = super::brick_columns(extent, brick);
             let inside = |voxel: &u16| {
                 let voxel = usize::from(*voxel);
-                let (x, y) = (voxel / (BRICK * BRICK), voxel / BRICK % BRICK);
+                let column = voxel / extent.nz();
+                let (x, y) = (column / BRICK, column % BRICK);
                 x < size[0] && y < size[1]
             };
             let increasing = patch.voxels.is_sorted_by(|a, b| a < b);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Extent;
+use super::{Extent, Lattice};
 
 /// Geometry of what the networks read and write: 200 x 200 x 16 voxels of 0.4 m in the ego frame. Code that works on
 /// maps takes an [`Extent`] instead.
@@ -15,13 +15,13 @@ impl Window {
     /// Voxels along y (left).
     pub const NY: usize = 200;
     /// Voxels along z (up).
-    pub const NZ: usize = Extent::NZ;
+    pub const NZ: usize = Lattice::OCC3D.bins();
     /// Edge of a voxel, m.
-    pub const VOXEL_M: f64 = Extent::VOXEL_M;
+    pub const VOXEL_M: f64 = Lattice::OCC3D.voxel_m();
     /// Lower corner in the ego frame, m.
-    pub const MIN_M: [f64; 3] = [-40.0, -40.0, Extent::BOTTOM_M];
+    pub const MIN_M: [f64; 3] = [-40.0, -40.0, Lattice::OCC3D.bottom_m()];
     /// Upper corner in the ego frame, m.
-    pub const MAX_M: [f64; 3] = [40.0, 40.0, Extent::TOP_M];
+    pub const MAX_M: [f64; 3] = [40.0, 40.0, Lattice::OCC3D.top_m()];
     /// Voxels in all.
     pub const VOXELS: usize = Self::NX * Self::NY * Self::NZ;
     /// Columns in all.

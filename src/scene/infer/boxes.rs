@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::{BoxId, BoxLabel, Class, Extent, Frame, Relief, SceneBox, VoxelGrid, Window};
+use crate::{BoxId, BoxLabel, Class, Extent, Frame, Lattice, Relief, SceneBox, VoxelGrid, Window};
 
 /// Fewest voxels of a component that is worth a box.
 const LEAST_VOXELS: usize = 4;
@@ -65,7 +65,7 @@ fn components(labels: &VoxelGrid, class: Class, relief: &Relief) -> Vec<Componen
     let height = |c: usize| {
         let column = labels.column(c / Window::NY, c % Window::NY);
         let top = column.iter().rposition(|l| *l == class.id())?;
-        Some(top.saturating_sub(Relief::label_bin(relief.column_m(c / Window::NY, c % Window::NY))))
+        Some(top.saturating_sub(Lattice::OCC3D.ground_bin(relief.column_m(c / Window::NY, c % Window::NY))))
     };
     let voxels = |c: usize| {
         let column = labels.column(c / Window::NY, c % Window::NY);

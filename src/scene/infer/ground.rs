@@ -29,7 +29,7 @@ pub fn layout(labels: &VoxelGrid) -> BevLayout {
     layout
 }
 
-fn columns(labels: &VoxelGrid) -> impl Iterator<Item = &[u8; Extent::NZ]> {
+fn columns(labels: &VoxelGrid) -> impl Iterator<Item = &[u8]> {
     let columns = labels.extent().all_columns();
     columns.map(|[x, y]| labels.column(x, y))
 }

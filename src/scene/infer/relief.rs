@@ -12,7 +12,9 @@ const RADIUS: usize = 3;
 
 /// Heights of the ground, m; [`Relief::FLAT`] where all of it lies in the bins of flat ground.
 pub fn relief(labels: &VoxelGrid) -> Relief {
-    let extent = labels.extent();
+    let (extent, lattice) = (labels.extent(), labels.extent().lattice());
+    // Bins of flat ground: 0 for a road in the labels of Occ3D.
+    let level = lattice.ground_bin(0.0);
     let (mut known, mut uneven, mut ground) = (vec![f32::NAN; extent.columns()], 0, 0);
     for ([x, y], height) in extent.all_columns().zip(&mut known) {
         let column = labels.column(x, y);
@@ -22,16 +24,16 @@ pub fn relief(labels: &VoxelGrid) -> Relief {
                 .map(|class| (z, class))
         });
         let Some((bin, class)) = found else { continue };
-        // A road lies in bin 0, a sidewalk in 0 or 1, a verge may be bumpy.
-        let flat_bins = if class == Class::DriveableSurface { 0 } else { 1 };
+        // A road lies in that bin, a sidewalk in it or one higher, a verge may be bumpy.
+        let flat_bins = level + usize::from(class != Class::DriveableSurface);
         ground += 1;
         uneven += usize::from(bin > flat_bins);
-        let above = if class == Class::Sidewalk && bin > 0 {
+        let above = if class == Class::Sidewalk && bin > level {
             KERB_M
         } else {
             0.0
         };
-        *height = (bin as f64 * Extent::VOXEL_M) as f32 - above;
+        *height = ((bin as f64 - level as f64) * lattice.voxel_m()) as f32 - above;
     }
     if (uneven as f64) < UNEVEN_SHARE * f64::from(ground.max(1)) {
         return Relief::FLAT;
@@ -89,7 +91,7 @@ fn blurred(extent: Extent, heights: &[f32]) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Window;
+    use crate::{Lattice, Window};
     use glam::DVec2;
 
     fn sloped(grade: f64, hole: bool) -> VoxelGrid {
@@ -100,7 +102,12 @@ mod tests {
                     continue;
                 }
                 let p = Window::center(x, y, 0);
-                grid.set(x, y, Relief::label_bin(grade * p.x), Class::DriveableSurface.id());
+                grid.set(
+                    x,
+                    y,
+                    Lattice::OCC3D.ground_bin(grade * p.x),
+                    Class::DriveableSurface.id(),
+                );
             }
         }
         grid

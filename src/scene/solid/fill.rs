@@ -3,21 +3,25 @@
 use glam::DVec3;
 
 use super::Solid;
-use crate::{Class, Extent};
+use crate::{Class, Extent, Lattice};
 
 /// Number of bins by which labels are extended downward in the Occ3D convention.
-pub const SMEAR: usize = 2;
+pub const SMEAR: usize = Lattice::OCC3D.lowered();
 
-/// Extends the labels in a column of any height downward by [`SMEAR`] bins, as far as there is free space: the Occ3D
-/// convention.
-pub fn smear_down<const BINS: usize>(column: &mut [u8; BINS]) {
-    let solid = *column;
-    for (z, class) in solid.iter().enumerate().filter(|(_, c)| **c != Class::FREE) {
-        for down in 1..=SMEAR.min(z) {
-            if solid[z - down] != Class::FREE {
+/// Extends the labels in a column of any height downward by a number of bins, as far as there is free space: with
+/// [`SMEAR`], the Occ3D convention.
+pub fn smear_down(column: &mut [u8], bins: usize) {
+    // From below: what is filled lies under the voxel that it comes from and is not looked at again.
+    for z in 0..column.len() {
+        let class = column[z];
+        if class == Class::FREE {
+            continue;
+        }
+        for down in 1..=bins.min(z) {
+            if column[z - down] != Class::FREE {
                 break;
             }
-            column[z - down] = *class;
+            column[z - down] = class;
         }
     }
 }
@@ -48,7 +52,7 @@ pub fn fill(
     let span = |axis: usize| {
         (lo[axis].floor().max(0.0) as usize)..(hi[axis].ceil().clamp(0.0, n[axis] as f64) as usize)
     };
-    let thin = reach.min_element() < Extent::VOXEL_M * 0.75;
+    let thin = reach.min_element() < extent.voxel_m() * 0.75;
     let needed = if thin { 1 } else { NEEDED };
     // Samples are `x + 3 y + 9 z`; their places in voxel units.
     let place = |x: usize, y: usize, z: usize, i: usize| {
@@ -127,7 +131,7 @@ mod tests {
             for (far, near) in [(7.3, 7.3), (6.0, 1.1), (0.5, 0.2)] {
                 let outline = corners(0.3 + k as f64, 8, far, near);
                 let prism = Solid::prism(Class::Manmade, &outline, bottom, top);
-                let thin = prism.reach().min_element() < Extent::VOXEL_M * 0.75;
+                let thin = prism.reach().min_element() < extent.voxel_m() * 0.75;
                 let needed = if thin { 1 } else { NEEDED };
                 let mut filled = std::collections::BTreeMap::new();
                 fill(
@@ -141,7 +145,7 @@ mod tests {
                 assert!(!filled.is_empty());
                 let mut found = 0;
                 for [x, y] in extent.all_columns() {
-                    for z in 0..Extent::NZ {
+                    for z in 0..extent.nz() {
                         let inside = |i: usize| {
                             let f = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
                             let within = DVec3::new(f(i % 3), f(i / 3 % 3), f(i / 9));

@@ -9,7 +9,7 @@ use scene::appearance::{
     KERB_EDGE_M, KERB_M, KERB_SEEN_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, LEAVES, MIRROR_M, NZ,
     PART_WORDS, SECTIONS, SHADOW_M, SKYLINE_M, SURFACE, THING_WORDS, TRUNK,
 };
-use scene::{BevLayer, Camera, Class, Extent, PolylineKind};
+use scene::{BevLayer, Camera, Class, Lattice, PolylineKind};
 
 /// The uniform, see `View` in the shader.
 #[repr(C)]
@@ -107,9 +107,9 @@ pub fn appearance_source() -> &'static str {
         ];
         let numbers = [
             ("BLOCK_M", BLOCK_M),
-            ("BOTTOM_M", Extent::BOTTOM_M as f32),
-            ("VOXEL_M", Extent::VOXEL_M as f32),
-            ("BIN_M", (BIN_COLUMNS as f64 * Extent::VOXEL_M) as f32),
+            ("BOTTOM_M", Lattice::OCC3D.bottom_m() as f32),
+            ("VOXEL_M", Lattice::OCC3D.voxel_m() as f32),
+            ("BIN_M", (BIN_COLUMNS as f64 * Lattice::OCC3D.voxel_m()) as f32),
             ("SKYLINE_0_M", SKYLINE_M[0]),
             ("SKYLINE_1_M", SKYLINE_M[1]),
             ("SKYLINE_2_M", SKYLINE_M[2]),

@@ -140,7 +140,7 @@ fn a_part_is_accepted_by_region_or_class() {
     bench.steps(3);
     let frame = bench.frame();
     let cars = |g: &VoxelGrid| {
-        let columns = (0..Window::COLUMNS).map(|c| *g.column(c / Window::NY, c % Window::NY));
+        let columns = (0..Window::COLUMNS).map(|c| *g.window_column(c / Window::NY, c % Window::NY));
         columns.flatten().filter(|l| *l == Class::Car.id()).count()
     };
     assert!(cars(&before) > 0 && cars(&frame.occupancy) == 0);
@@ -207,7 +207,7 @@ fn scenery_is_regenerated_by_rules_everywhere_or_in_a_region() {
     let frame = bench.frame();
     let behind = (0..99).flat_map(|x| (0..Window::NY).map(move |y| (x, y)));
     for (x, y) in behind {
-        let columns = [&frame.occupancy, &before].map(|g| *g.column(x, y));
+        let columns = [&frame.occupancy, &before].map(|g| *g.window_column(x, y));
         assert_eq!(columns[0], columns[1], "({x}, {y})");
     }
     bench.key(Modifiers::COMMAND, egui::Key::Z);

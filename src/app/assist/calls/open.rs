@@ -9,7 +9,7 @@ use crate::call::Operation;
 use crate::desk::{Desk, Done};
 use authoring::again::again;
 use authoring::open::{self, Placement};
-use formats::import::{self, Content};
+use formats::import::{self, Content, ImportOptions};
 
 /// Arguments of `open`.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -32,6 +32,10 @@ pub struct OpenCall {
     /// beside the map is lifted onto it, and `notes` says by how much.
     #[serde(default)]
     lift_m: Option<f64>,
+    /// For voxels of OpenOccupancy, SurroundOcc, UniScene or SemanticKITTI: true to keep their size and heights, in place of
+    /// those of the networks.
+    #[serde(default)]
+    as_it_is: bool,
 }
 
 /// Receipt of `open`.
@@ -76,12 +80,18 @@ impl Operation for OpenCall {
             self.size_m.is_some(),
         ];
         let mut notes = Vec::new();
+        let options = ImportOptions {
+            lift_m: self.lift_m,
+            as_it_is: self.as_it_is,
+        };
         let (scene, format) = match &self.file {
-            None if self.lift_m.is_some() => bail!("lift_m is for point clouds, expected a file"),
+            None if options != ImportOptions::default() => {
+                bail!("lift_m and as_it_is are for files, expected one")
+            }
             None => (open::bundled()?, "loom"),
             Some(file) => {
                 let path = desk.folder.existing(file)?;
-                let (importer, content) = import::read_lifted(&path, self.lift_m)?;
+                let (importer, content) = import::read_with(&path, options)?;
                 let scene = match content {
                     Content::Scene(_) | Content::Recipe(_) if said.contains(&true) => {
                         bail!("{file}: a scene; at_m, heading_deg and size_m are for road files")

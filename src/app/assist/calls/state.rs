@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::call::Operation;
 use crate::desk::{Desk, draft_columns};
-use scene::{BevLayer, BoxLabel, Class, Conditions, Extent, Frame, PolylineKind, Scene, SceneBox};
+use scene::{BevLayer, BoxLabel, Class, Conditions, Frame, PolylineKind, Scene, SceneBox};
 
 /// Lines of the map that are listed at most, of each kind.
 const MOST_LINES: usize = 60;
@@ -227,7 +227,8 @@ fn counts(scene: &Scene) -> StateCounts {
     let of_classes = frame.occupancy.class_counts();
     let voxels = Class::ALL.into_iter().filter(|c| *c != Class::Free);
     let voxels = voxels.map(|c| (c.name().to_owned(), of_classes[usize::from(c.id())]));
-    let area = |layer: BevLayer| tidy(frame.layout.count(layer) as f64 * Extent::VOXEL_M * Extent::VOXEL_M);
+    let voxel_m = frame.extent().voxel_m();
+    let area = |layer: BevLayer| tidy(frame.layout.count(layer) as f64 * voxel_m * voxel_m);
     let layers = BevLayer::MAP.into_iter().map(|l| (l.name().to_owned(), area(l)));
     StateCounts {
         boxes: frame.boxes.len(),

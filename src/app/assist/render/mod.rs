@@ -151,7 +151,7 @@ impl Rendering {
         listen: &mut Listen<'_>,
     ) -> anyhow::Result<RenderedFiles> {
         let of_file = scene;
-        let scene = &*of_file.with_rig_in_world();
+        let scene = &*of_file.for_sensors();
         let plan = RenderPlan::new(self, scene)?;
         self.forecast(&plan, scene, listen)?;
         let (mut pictures, of) = (0, plan.pictures(scene));

@@ -64,7 +64,7 @@ const LONG_S: f64 = 20.0;
 
 /// The six cameras' maps and the LiDAR sweep of a scene.
 pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, LidarSweep) {
-    let scene = &*scene.with_rig_in_world();
+    let scene = &*scene.for_sensors();
     let frame = scene.frame();
     let sweep = rolling::exact(scene);
     let cloud = GaussianCloud::from_grid(&frame.occupancy, frame.layout.cells());

@@ -14,7 +14,7 @@ fn painted_voxels_are_locked() {
     paint(3, Class::Free).apply(&mut scene).expect("inside");
     paint(12, Class::Car).apply(&mut scene).expect("inside");
     paint(0, Class::Manmade).apply(&mut scene).expect("inside");
-    let column = |scene: &Scene| *scene.frame().occupancy.column(x, y);
+    let column = |scene: &Scene| scene.frame().occupancy.column(x, y).to_vec();
     assert_eq!(column(&scene)[3], FREE);
     // Neither stamping nor clearing nor ground touches them.
     let nudge = |dx: f64| Edit::MoveBox {

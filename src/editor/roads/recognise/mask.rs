@@ -28,7 +28,9 @@ impl Mask {
         let map = layout.extent();
         let [x0, y0] = map.from();
         let from = [x0 - MARGIN as i32, y0 - MARGIN as i32];
-        let extent = Extent::new(from, [map.nx() + 2 * MARGIN, map.ny() + 2 * MARGIN]).ok()?;
+        let extent = map
+            .with_columns(from, [map.nx() + 2 * MARGIN, map.ny() + 2 * MARGIN])
+            .ok()?;
         let inner = |at: usize, n: usize| at.saturating_sub(MARGIN).min(n - 1);
         let is_paved = |[x, y]: [usize; 2]| {
             let (x, y) = (inner(x, map.nx()), inner(y, map.ny()));

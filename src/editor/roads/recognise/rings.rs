@@ -80,7 +80,7 @@ pub(super) fn take(graph: &mut Graph, mask: &Mask) -> Vec<Ring> {
 
 /// Middle and radius of a hole if it is round.
 fn round(mask: &Mask, hole: &[usize]) -> Option<(DVec2, f64)> {
-    let cell_m2 = scene::Extent::VOXEL_M * scene::Extent::VOXEL_M;
+    let cell_m2 = mask.extent.voxel_m().powi(2);
     let radius_m = (hole.len() as f64 * cell_m2 / std::f64::consts::PI).sqrt();
     if !ISLAND_M.contains(&radius_m) {
         return None;

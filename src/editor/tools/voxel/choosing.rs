@@ -13,8 +13,8 @@ use scene::{Class, Extent, Frame};
 use crate::tools::rays::on_plane;
 use crate::tools::{Act, At, Context, Hand, Modifiers, Pointer, Role, ScreenProjection, ToolMark, VoxelMode};
 
-/// A voxel is hidden if something is that much nearer than its middle, m.
-const NEARER_M: f64 = 2.0 * Extent::VOXEL_M;
+/// A voxel is hidden if something is so many voxels nearer than its middle.
+const NEARER: f64 = 2.0;
 /// Points of an outline are so far apart at least, points of the screen.
 const APART: f64 = 3.0;
 
@@ -49,7 +49,7 @@ impl SelectionVolume {
             _ => Self::Block {
                 first: cell,
                 last: cell,
-                layers: Extent::NZ,
+                layers: cx.frame().extent().nz(),
             },
         })
     }
@@ -86,11 +86,11 @@ impl SelectionVolume {
     }
 
     /// The wheel: more or fewer layers.
-    pub(super) fn scroll(&mut self, notches: i32) -> bool {
+    pub(super) fn scroll(&mut self, extent: Extent, notches: i32) -> bool {
         let Self::Block { layers, .. } = self else {
             return false;
         };
-        *layers = (*layers as i32 + notches).clamp(1, Extent::NZ as i32) as usize;
+        *layers = (*layers as i32 + notches).clamp(1, extent.nz() as i32) as usize;
         true
     }
 
@@ -115,7 +115,7 @@ impl SelectionVolume {
             Self::Sphere { middle, radius_m } => {
                 let [x, y, z] = *middle;
                 let middle_m = extent.center(x, y, z);
-                let reach = (radius_m / Extent::VOXEL_M).ceil() as usize;
+                let reach = (radius_m / extent.voxel_m()).ceil() as usize;
                 let range =
                     |a: usize, n: usize| [middle[a].saturating_sub(reach), (middle[a] + reach).min(n - 1)];
                 let is_in = |[x, y, z]: VoxelIndex| extent.center(x, y, z).distance(middle_m) <= *radius_m;
@@ -173,7 +173,7 @@ fn is_seen(frame: &Frame, view: &dyn ScreenProjection, middle_m: DVec3, at: DVec
     let Some(ray) = view.ray(at) else { return false };
     let hit = pick::ray_voxels(&ray, &frame.occupancy, |_, _| true);
     let away_m = (middle_m - ray.origin_in_ego).dot(ray.direction_in_ego);
-    hit.is_none_or(|hit| hit.distance_m >= away_m - NEARER_M)
+    hit.is_none_or(|hit| hit.distance_m >= away_m - NEARER * frame.extent().voxel_m())
 }
 
 /// How voxels join those that are chosen.

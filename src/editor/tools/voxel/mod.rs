@@ -15,7 +15,7 @@ use crate::Edit;
 use crate::pick::{self, VoxelHit};
 use crate::voxel_ops::{self, VoxelIndex};
 use language::tf;
-use scene::{Class, Extent, Frame};
+use scene::{Class, Frame};
 
 use super::corners::{PolygonDraft, Set};
 use super::rays::on_plane;
@@ -278,7 +278,7 @@ impl VoxelTool {
 
     fn scroll(&mut self, cx: &Context<'_>, notches: i32) -> Response {
         if let Some(VoxelDrag::Choose(area)) = &mut self.drag {
-            return match area.scroll(notches) {
+            return match area.scroll(cx.frame().extent(), notches) {
                 true => Response::taken(),
                 false => Response::none(),
             };
@@ -286,7 +286,7 @@ impl VoxelTool {
         let Some(VoxelDrag::Block { height, .. }) = &mut self.drag else {
             return Response::none();
         };
-        *height = (*height + notches).clamp(1, Extent::NZ as i32);
+        *height = (*height + notches).clamp(1, cx.frame().extent().nz() as i32);
         let mut response = self.show_block(cx.frame(), cx.hand);
         response.taken = true;
         response

@@ -7,7 +7,7 @@ use crate::pick::{PickRay, VoxelHit};
 use crate::tools::Hand;
 use crate::tools::rays::along_axis;
 use crate::voxel_ops::{self, VoxelIndex};
-use scene::{Class, Extent, Frame};
+use scene::{Class, Frame};
 
 /// The edit of a face pulled as far as the pointer is.
 pub(super) fn pulled(
@@ -17,11 +17,11 @@ pub(super) fn pulled(
     first: &VoxelHit,
     face: &[VoxelIndex],
 ) -> Option<Edit> {
-    let [x, y, z] = first.cell;
+    let ([x, y, z], voxel_m) = (first.cell, frame.extent().voxel_m());
     let normal = DVec3::from_array(first.normal.map(f64::from));
-    let surface_m = frame.extent().center(x, y, z) + normal * (Extent::VOXEL_M / 2.0);
+    let surface_m = frame.extent().center(x, y, z) + normal * (voxel_m / 2.0);
     let way_m = along_axis(ray, surface_m, normal)?;
-    let layers = (way_m / Extent::VOXEL_M).round() as i32;
+    let layers = (way_m / voxel_m).round() as i32;
     let cells = voxel_ops::extrude(&frame.occupancy, face, first.normal, layers);
     let cells = voxel_ops::only(
         &frame.occupancy,

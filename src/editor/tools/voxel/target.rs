@@ -2,7 +2,7 @@
 
 use crate::pick::{self, PickRay, VoxelHit};
 use crate::tools::{VoxelTip, VoxelVerb};
-use scene::{Class, Extent, Frame};
+use scene::{Class, Frame};
 
 /// Voxels of the first face along the ray that a block covers: free ones in front of it to attach, others behind it to remove
 /// or recolour.
@@ -22,7 +22,8 @@ pub(super) fn tipped(
         if verb != VoxelVerb::Attach {
             return Vec::new();
         }
-        let floor_m = Extent::BOTTOM_M + Extent::VOXEL_M / 2.0;
+        let lattice = frame.extent().lattice();
+        let floor_m = lattice.bottom_m() + lattice.voxel_m() / 2.0;
         let ground = pick::ray_ground(ray, floor_m).and_then(|p| frame.extent().voxel_at(p));
         let floor = ground.map(|[x, y, _]| VoxelHit {
             cell: [x, y, 0],
@@ -96,7 +97,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use scene::{BevLayout, VoxelGrid};
+    use scene::{BevLayout, Extent, VoxelGrid};
 
     fn frame() -> Frame {
         let mut grid = VoxelGrid::new();

@@ -9,7 +9,7 @@
 use std::fmt::Write;
 
 use glam::{DVec2, DVec3};
-use scene::{Class, Extent, Frame, SceneBox};
+use scene::{Class, Frame, SceneBox, Window};
 
 use super::camera::FrontCamera;
 
@@ -141,6 +141,6 @@ fn is_blocked(eye: DVec3, at: DVec3, b: &SceneBox, frame: &Frame) -> bool {
             return false;
         };
         let class = Class::from_id(frame.occupancy.get(x, y, z)).unwrap_or(Class::Free);
-        class != Class::Free && !class.is_ground() && !b.contains(p, OWN_M.max(Extent::VOXEL_M))
+        class != Class::Free && !class.is_ground() && !b.contains(p, OWN_M.max(Window::VOXEL_M))
     })
 }

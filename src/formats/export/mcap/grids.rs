@@ -1,7 +1,7 @@
 //! The map and the voxels as grids of Foxglove's schemas.
 
 use glam::{DQuat, DVec3};
-use scene::{BevLayer, BevLayout, Class, Extent, Pose, Scene};
+use scene::{BevLayer, BevLayout, Class, Extent, Pose, Scene, Window};
 
 use super::messages::{Grid, Numeric, PackedElementField, Time, Vector2, VoxelGrid, fields};
 use super::{BASE, MAP};
@@ -66,8 +66,8 @@ fn grid<const N: usize>(
         pose: Some(at.into()),
         column_count: nx as u32,
         cell_size: Some(Vector2 {
-            x: Extent::VOXEL_M,
-            y: Extent::VOXEL_M,
+            x: Window::VOXEL_M,
+            y: Window::VOXEL_M,
         }),
         row_stride: (nx * N) as u32,
         cell_stride: N as u32,
@@ -103,7 +103,7 @@ pub(super) fn occupancy(now: &Scene, timestamp: Option<Time>) -> VoxelGrid {
         pose: Some(at.into()),
         row_count: ny as u32,
         column_count: nx as u32,
-        cell_size: Some(DVec3::splat(Extent::VOXEL_M).into()),
+        cell_size: Some(DVec3::splat(Window::VOXEL_M).into()),
         slice_stride: (nx * ny * stride) as u32,
         row_stride: (nx * stride) as u32,
         cell_stride: stride as u32,

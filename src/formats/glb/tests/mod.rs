@@ -22,7 +22,7 @@ fn read_at(bytes: &[u8], name: &str, path: Option<PathBuf>) -> Result<ImportedSc
         bytes,
         name,
         path: path.as_deref(),
-        lift_m: None,
+        options: Default::default(),
     };
     match (IMPORTER.read)(&source)? {
         Content::Scene(loaded) => Ok(*loaded),

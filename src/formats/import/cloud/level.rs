@@ -12,7 +12,6 @@
 use glam::{DVec2, DVec3};
 use numeric::linear::solve;
 use numeric::splitmix::SplitMix64;
-use scene::Extent;
 
 /// Farthest distance from the origin at which ground is looked for, along the ground, m.
 const REACH_M: f64 = 25.0;
@@ -43,7 +42,7 @@ const LEAST_DIRECTIONS: u32 = 3;
 /// Lowest height of ground in the ego frame, m: labelled clouds have the road at -0.8 m.
 const LOWEST_M: f64 = -0.9;
 /// Highest height of ground in the ego frame, m: the top of the map.
-const HIGHEST_M: f64 = Extent::TOP_M;
+const HIGHEST_M: f64 = scene::Window::MAX_M[2];
 /// Greatest height at which a vehicle carries a sensor, m.
 const HIGHEST_MOUNT_M: f64 = 5.0;
 /// Smallest tilt that is reported, degrees: the ground is 0.7 m off at 20 m.

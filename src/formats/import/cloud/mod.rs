@@ -146,8 +146,8 @@ impl Cloud {
     /// An empty cloud of a file: lifted as the user says, else by the height of its ground.
     pub(super) fn from_source(source: &ImportFile<'_>) -> Self {
         Self {
-            lift_m: source.lift_m,
-            is_asked: source.lift_m.is_some(),
+            lift_m: source.options.lift_m,
+            is_asked: source.options.lift_m.is_some(),
             ..Self::default()
         }
     }

@@ -144,7 +144,16 @@ fn real_sweeps() -> Option<PathBuf> {
 }
 
 fn road_of(path: &Path, lift_m: Option<f64>) -> (usize, Vec<String>) {
-    match import::read_lifted(path, lift_m).expect("a sweep").1 {
+    match import::read_with(
+        path,
+        import::ImportOptions {
+            lift_m,
+            ..Default::default()
+        },
+    )
+    .expect("a sweep")
+    .1
+    {
         Content::Scene(loaded) => (
             loaded.scene.frame().layout.count(BevLayer::DrivableArea),
             loaded.notes,

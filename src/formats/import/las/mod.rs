@@ -82,7 +82,7 @@ pub fn read_around(source: &ImportFile<'_>, origin_m: Option<DVec3>) -> Result<C
     let header = LasHeader::read(source.bytes)?;
     let origin_m = match origin_m {
         Some(origin_m) => origin_m,
-        None => origin(&header, source.bytes, source.lift_m.is_some())?,
+        None => origin(&header, source.bytes, source.options.lift_m.is_some())?,
     };
     let (mut cloud, mut noise, mut withheld) = (Cloud::from_source(source), 0, 0);
     let mut of_users = false;

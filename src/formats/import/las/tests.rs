@@ -130,7 +130,7 @@ fn loaded(bytes: &[u8]) -> Result<ImportedScene, LasError> {
         bytes,
         name: "cloud",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     };
     match read_around(&source, None)? {
         Content::Scene(loaded) => Ok(*loaded),
@@ -185,7 +185,7 @@ fn a_surveyed_street_is_moved_to_the_origin() {
         bytes: &street.plain(),
         name: "cloud",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     };
     let there = DVec3::new(690_010.0, 5_333_000.0, 512.0);
     let Ok(Content::Scene(found)) = read_around(&source, Some(there)) else {

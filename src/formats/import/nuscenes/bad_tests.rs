@@ -137,7 +137,7 @@ fn a_folder_without_tables_is_one_line() {
         bytes: b"[{\"token\": \"a\"}]",
         name: "a",
         path: None,
-        lift_m: None,
+        options: Default::default(),
     };
     let line = read_scene(&alone).expect_err("alone").to_string();
     assert!(line.contains("read from memory"), "{line}");

@@ -70,7 +70,7 @@ pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> RecordedOb
             made,
             motion: motion(object.boxes.iter().map(|(f, a)| key(times_s[*f], a)).collect()),
             there_s: there_s(object, &times_s),
-            voxels: ObjectVoxels::drafted(&made),
+            voxels: ObjectVoxels::drafted(scene::Lattice::OCC3D, &made),
             settled: true,
             own_shape: false,
         };

@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Extent, Relief, SceneBox, SensorRig, Unobserved, VoxelGrid, Window,
-    draft, infer,
+    BevLayer, BevLayout, BoxId, Class, Extent, SceneBox, SensorRig, Unobserved, VoxelGrid, Window, draft,
+    infer,
 };
 
 use super::objects::{RecordedObjects, holds};
@@ -116,7 +116,8 @@ fn labels(
         })
         .collect();
     let mut voxels = VoxelGrid::over(extent);
-    let (mut words, mut masked, mut any) = (vec![u16::MAX; extent.columns()], false, false);
+    let (mut words, mut masked, mut any) =
+        (vec![extent.lattice().all_bins(); extent.columns()], false, false);
     touched.fill(false);
     for (i, (frame, path)) in files.iter().enumerate() {
         let labels = source.beside(path, occ3d::LARGEST_FILE);
@@ -138,10 +139,10 @@ fn labels(
             let Some([u, v]) = Window::column_at(p.x, p.y) else {
                 continue;
             };
-            let mut column = *labels.labels.column(u, v);
+            let mut column = *labels.labels.window_column(u, v);
             touched[at] = take_out(&mut column, &things.moving[*frame], center);
             if column.iter().any(|l| *l != Class::FREE) {
-                *voxels.column_mut(x, y) = column;
+                *voxels.window_column_mut(x, y) = column;
             }
             words[at] = hidden.as_ref().map_or(0, |h| h.words()[u * Window::NY + v]);
         }
@@ -160,7 +161,7 @@ fn occ3d_unobserved(frame: &occ3d::Occ3dFrame) -> Option<Unobserved> {
 }
 
 /// Frees the voxels of moving objects in a column; true if there were any.
-fn take_out(column: &mut [u8; Extent::NZ], moving: &[SceneBox], center: DVec3) -> bool {
+fn take_out(column: &mut [u8; Window::NZ], moving: &[SceneBox], center: DVec3) -> bool {
     let mut any = false;
     for b in moving {
         if !b.contains(center.with_z(b.center_m.z), VOXEL_MARGIN_M) {
@@ -276,13 +277,13 @@ impl Votes {
             let voxel = match class.is_ground() {
                 true => {
                     let column = self.extent.column_at(p.x, p.y);
-                    column.map(|[x, y]| [x, y, Relief::label_bin(p.z)])
+                    column.map(|[x, y]| [x, y, scene::Lattice::OCC3D.ground_bin(p.z)])
                 }
                 false => self.extent.voxel_at(p),
             };
             match voxel {
                 Some([x, y, z]) => {
-                    let at = (self.extent.index(x, y) * Extent::NZ + z) as u64;
+                    let at = (self.extent.index(x, y) * Window::NZ + z) as u64;
                     self.voxels.push(at * CLASSES + u64::from(class.id()));
                 }
                 None => self.elsewhere += 1,
@@ -302,8 +303,8 @@ impl Votes {
                 (v.len(), class != 0, std::cmp::Reverse(class))
             })?;
             let at = (winner[0] / CLASSES) as usize;
-            let [x, y] = self.extent.column(at / Extent::NZ);
-            grid.set(x, y, at % Extent::NZ, (winner[0] % CLASSES) as u8);
+            let [x, y] = self.extent.column(at / Window::NZ);
+            grid.set(x, y, at % Window::NZ, (winner[0] % CLASSES) as u8);
         }
         (!self.voxels.is_empty()).then_some(grid)
     }

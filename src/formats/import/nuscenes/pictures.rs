@@ -89,7 +89,7 @@ impl PictureFolder {
             bytes: &bytes,
             name: "",
             path: Some(&tables),
-            lift_m: None,
+            options: Default::default(),
         };
         let (drives, incomplete) = drives(&source).map_err(|e| e.at(&folder.display()))?;
         let found: usize = drives.iter().map(Vec::len).sum();
@@ -118,7 +118,7 @@ impl PictureFolder {
             bytes: &self.bytes,
             name: &scene_name(&self.tables),
             path: Some(&self.tables),
-            lift_m: None,
+            options: Default::default(),
         };
         let (loaded, recording) = read_drive(&source, which).map_err(|e| e.at(&self.tables.display()))?;
         let scene = loaded.scene;

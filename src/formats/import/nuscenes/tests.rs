@@ -374,7 +374,7 @@ fn occ3d_labels_beside_go_before_sweeps() {
     let frame = scene.canvas();
     let column = |x_m: f64, y_m: f64| {
         let [x, y] = frame.extent().column_at(x_m, y_m).expect("on the map");
-        *frame.occupancy.column(x, y)
+        *frame.occupancy.window_column(x, y)
     };
     // Labels are in the ego frame of the second key frame, 2.8 m ahead of the world's.
     let center = scene::Window::center(150, 120, 3);

@@ -3,6 +3,7 @@
 
 mod old_prompt;
 mod v1;
+mod v10;
 mod v2;
 mod v3;
 mod v4;
@@ -39,7 +40,7 @@ pub enum MigrationChange {
 }
 
 /// Every step, oldest first, each to the version that the next one takes.
-pub const ALL: [Migration; 9] = [
+pub const ALL: [Migration; 10] = [
     v1::TO_V2,
     v2::TO_V3,
     v3::TO_V4,
@@ -49,6 +50,7 @@ pub const ALL: [Migration; 9] = [
     v7::TO_V8,
     v8::TO_V9,
     v9::TO_V10,
+    v10::TO_V11,
 ];
 
 /// The entries of a file that a step may change.

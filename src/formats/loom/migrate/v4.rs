@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use scene::draft::{box_columns, ground_class};
-use scene::{BoxId, Class, Extent, Key, Motion, Pose, SceneBox, Thing};
+use scene::{BoxId, Class, Extent, Key, Motion, Pose, SceneBox, Thing, Window};
 use serde_json::{Map, Value, json};
 
 use super::super::archive::MAX_JSON;
@@ -34,7 +34,7 @@ const SOURCE_GRIDS: [(&str, &str); 2] = [("layout", "source_layout.u32"), ("reli
 /// How far a box may be from where it was and still stand, m (and its heading, rad).
 const STILL: f64 = 0.05;
 /// Largest grid of a file, bytes: four a column.
-const LARGEST_GRID: u64 = (Extent::MAX_COLUMNS * Extent::NZ) as u64;
+const LARGEST_GRID: u64 = (Extent::MAX_COLUMNS * Window::NZ) as u64;
 
 fn bad(detail: impl Into<String>) -> ProjectError {
     ProjectError::Json {
@@ -222,9 +222,9 @@ fn draft_voxels(b: &SceneBox) -> ([i32; 2], [usize; 2], Vec<u8>) {
     let low = [0, 1].map(|axis| columns.iter().map(|c| [c.0, c.1][axis]).min().unwrap_or(0));
     let high = [0, 1].map(|axis| columns.iter().map(|c| [c.0, c.1][axis] + 1).max().unwrap_or(0));
     let size = [high[0] - low[0].min(high[0]), high[1] - low[1].min(high[1])];
-    let mut labels = vec![Class::FREE; size[0] * size[1] * Extent::NZ];
+    let mut labels = vec![Class::FREE; size[0] * size[1] * Window::NZ];
     for (x, y, layers) in columns {
-        let column = ((x - low[0]) * size[1] + y - low[1]) * Extent::NZ;
+        let column = ((x - low[0]) * size[1] + y - low[1]) * Window::NZ;
         labels[column..column + layers].fill(b.class.id());
     }
     ([from[0] + low[0] as i32, from[1] + low[1] as i32], size, labels)
@@ -310,7 +310,7 @@ fn lift(labels: &mut [u8], layout: &[u8], extent: Extent, b: &SceneBox) {
     }
     scene::raster::box_cells(extent, b, scene::clip::MARGIN_M, |x, y| {
         let at = extent.index(x, y);
-        let column = &mut labels[at * Extent::NZ..(at + 1) * Extent::NZ];
+        let column = &mut labels[at * Window::NZ..(at + 1) * Window::NZ];
         let word = &layout[4 * at..4 * at + 4];
         let ground = ground_class(u32::from_le_bytes([word[0], word[1], word[2], word[3]]));
         for (z, label) in column.iter_mut().enumerate().filter(|(_, l)| **l == b.class.id()) {

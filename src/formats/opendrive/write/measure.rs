@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::*;
 use crate::loom;
 use scene::road_map::{project, resampled};
-use scene::{BevLayer, Extent, PolylineKind};
+use scene::{BevLayer, Extent, PolylineKind, Window};
 
 /// Figures of how well a layout came back.
 #[derive(Clone, Copy, Debug, Default)]
@@ -96,9 +96,9 @@ fn layout_of(path: &std::path::Path) -> BevLayout {
         return network.to_layout(at_m, heading_rad).layout;
     }
     let [low, high] = network.bounds_m();
-    let column = |m: f64| (m / Extent::VOXEL_M).floor() as i32;
+    let column = |m: f64| (m / Window::VOXEL_M).floor() as i32;
     let from = (low - 24.0).to_array().map(column);
-    let size = ((high - low + 48.0) / Extent::VOXEL_M)
+    let size = ((high - low + 48.0) / Window::VOXEL_M)
         .to_array()
         .map(|n| n as usize + 1);
     let extent = Extent::new(from, size).expect("a map");

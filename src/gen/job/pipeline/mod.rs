@@ -2,6 +2,7 @@
 //! the region that it touches under the new layout; outside the region the stored states are replayed, and the labels
 //! are copied from the source. After UniScene (occupancy; editing in C.1).
 
+mod lattice;
 mod network;
 mod new_ground;
 mod plan;
@@ -224,6 +225,8 @@ impl OccPipeline {
     /// network calls.
     pub fn prepare(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<usize, GenError> {
         let mut report = GenReport::default();
+        let inner = lattice::in_networks_lattice(job);
+        let job = inner.as_ref().unwrap_or(job);
         let cut = window::at_origin(job);
         let scene = cut.as_ref().map_or(&job.scene, |cut| &cut.scene);
         let condition = self.condition_of_source(scene);
@@ -517,6 +520,9 @@ impl Pipeline for OccPipeline {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         job.params.check()?;
         ctx.check()?;
+        if let Some(inner) = lattice::in_networks_lattice(job) {
+            return lattice::resampled(job, &inner, ctx, |job, ctx| self.run(job, ctx));
+        }
         let mut unfinished = std::mem::take(&mut self.unfinished);
         let result = window::over_the_map(job, ctx, &mut unfinished, |job, ctx| match job.params.region {
             RegionMode::Full => self.generate(job, ctx),

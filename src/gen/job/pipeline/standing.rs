@@ -32,7 +32,7 @@ pub fn keep_loose_things(scene: &Scene, region: &Region, generated: &mut VoxelGr
 }
 
 /// Puts labels into a column except where an object stands.
-fn stand_in_column(labels: &[u8; Window::NZ], column: &mut [u8; Window::NZ]) {
+fn stand_in_column(labels: &[u8], column: &mut [u8]) {
     let held = labels
         .iter()
         .zip(column)
@@ -66,7 +66,7 @@ impl SceneryVoxels {
         let mut columns = ColumnLabels::new();
         for thing in scene.background.in_extent(Extent::WINDOW) {
             for (at, labels) in thing.columns(layout) {
-                let all = columns.entry(at).or_insert([Class::FREE; Window::NZ]);
+                let all = columns.entry(at).or_insert_with(|| vec![Class::FREE; Window::NZ]);
                 let taken = labels.iter().zip(all).filter(|(label, _)| **label != Class::FREE);
                 taken.for_each(|(label, to)| *to = *label);
             }

@@ -11,7 +11,7 @@ use crate::contract::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, Jo
 use crate::inpaint::{self, InpaintMask};
 use crate::region::CELLS_PER_SIDE;
 use scene::raster::box_cells;
-use scene::{BevLayout, Extent, Frame, Scene, SceneBox, VoxelGrid};
+use scene::{BevLayout, Extent, Frame, Scene, SceneBox, VoxelGrid, Window};
 
 /// The window at the origin of a job's scene, as a job; `None` if the frame is that window.
 pub(super) fn at_origin(job: &Job) -> Option<Job> {
@@ -35,8 +35,12 @@ fn standing(job: &Job) -> Cow<'_, Job> {
 
 /// True if a job has nothing to generate.
 pub fn is_idle(job: &Job) -> bool {
-    let frame = job.scene.for_generation();
-    job.params.region == RegionMode::Auto && plan(frame.frame(), &job.params).is_empty()
+    if job.params.region != RegionMode::Auto {
+        return false;
+    }
+    let inner = super::lattice::in_networks_lattice(job);
+    let frame = inner.as_ref().unwrap_or(job).scene.for_generation();
+    plan(frame.frame(), &job.params).is_empty()
 }
 
 /// Runs a job in the window at the origin alone.
@@ -236,7 +240,7 @@ impl GeneratedMap {
                 for ([x, y], _) in taken {
                     let p = made.extent().center(x, y, 0);
                     if let Some([to_x, to_y]) = occupancy.extent().column_at(p.x, p.y) {
-                        *occupancy.column_mut(to_x, to_y) = *made.column(x, y);
+                        *occupancy.window_column_mut(to_x, to_y) = *made.window_column(x, y);
                     }
                 }
             }
@@ -272,7 +276,7 @@ impl GeneratedMap {
                 .zip(columns)
                 .filter(|(_, taken)| **taken);
             for [x, y] in drawn.filter_map(|([x, y], _)| on_map(x, y)) {
-                for z in 0..Extent::NZ {
+                for z in 0..Window::NZ {
                     holes.remove(&[x, y, z]);
                 }
             }

@@ -96,7 +96,7 @@ fn psnr_db(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
 /// A judged scene, as it stands in the report.
 fn judged(i: usize) -> anyhow::Result<Value> {
     let (name, scene) = scene_of(i)?;
-    let scene = scene.with_rig_in_world();
+    let scene = scene.for_sensors();
     let options = BakeOptions::default();
     let before = Instant::now();
     let mut baked = bake::bake_scene(&scene, &options, &|_| true).context("cancelled")?;

@@ -91,7 +91,7 @@ pub fn names() -> Vec<String> {
 /// Features of the 25 x 25 windows of a frame, row by row; in the order of [`names`].
 pub fn windows(grid: &VoxelGrid) -> Windows {
     let columns: Vec<ColumnFeatures> = (0..Window::COLUMNS)
-        .map(|c| ColumnFeatures::from_labels(grid.column(c / NY, c % NY)))
+        .map(|c| ColumnFeatures::from_labels(grid.window_column(c / NY, c % NY)))
         .collect();
     let by_chance = convolved(grid);
     let each = by_chance.into_iter().enumerate().map(|(i, by_chance)| {

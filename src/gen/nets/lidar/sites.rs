@@ -31,7 +31,7 @@ pub fn physical(grid: &VoxelGrid) -> Vec<u8> {
         .enumerate()
         .for_each(|(x, slice)| {
             for (y, to) in slice.chunks_exact_mut(Window::NZ).enumerate() {
-                raise(grid.column(x, y), to, &kinds);
+                raise(grid.window_column(x, y), to, &kinds);
             }
         });
     out

@@ -3,13 +3,13 @@
 use glam::{DVec2, DVec3};
 
 use nn::map::FeatureMap;
-use scene::{BoxId, BoxLabel, Class, Extent, SceneBox};
+use scene::{BoxId, BoxLabel, Class, SceneBox, Window};
 
 /// Numbers of a box: offset of its centre from the middle of the cell along x and y (cells), height of the centre (m), logs of length,
 /// width and height (m), cosine and sine of twice the yaw, which tell the axis, and of the yaw, which tell the heading.
 pub const BOX: usize = 10;
 /// Side of a cell, m.
-const CELL_M: f32 = 2.0 * Extent::VOXEL_M as f32;
+const CELL_M: f32 = 2.0 * Window::VOXEL_M as f32;
 /// Most boxes of a sweep.
 pub const MOST: usize = 200;
 /// Range of the logs of sizes; values beyond count as its ends.

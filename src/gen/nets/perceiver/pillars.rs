@@ -1,7 +1,7 @@
 //! Returns of a LiDAR as a map of columns: the input of the perceiver.
 
 use nn::map::FeatureMap;
-use scene::{Extent, Window};
+use scene::Window;
 
 /// Bins of height.
 const BINS: usize = 12;
@@ -14,7 +14,7 @@ const BIN_M: f32 = 0.4;
 const HEIGHTS_M: [f32; 2] = [-3.0, 6.0];
 /// Half the side of the window, m.
 const HALF_M: f32 = 40.0;
-const COLUMN_M: f32 = Extent::VOXEL_M as f32;
+const COLUMN_M: f32 = Window::VOXEL_M as f32;
 
 /// Sums over the returns of a column.
 #[derive(Clone, Copy)]

@@ -133,7 +133,7 @@ fn houses_that_are_joined_keep_their_own_looks() {
     let mut grid = VoxelGrid::new();
     for thing in background.iter() {
         for ([x, y], labels) in thing.columns(&layout) {
-            *grid.column_mut(x, y) = labels;
+            grid.column_mut(x, y).copy_from_slice(&labels);
         }
     }
     let apart = Frame::new(layout, Default::default(), grid);

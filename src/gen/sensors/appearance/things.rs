@@ -14,7 +14,7 @@ use super::noise::hash1;
 use build::ObjectBuilder;
 use part::rounded;
 use scene::clip::OwnShape;
-use scene::{BoxId, Class, Extent, Paint, SceneBox};
+use scene::{BoxId, Class, Paint, SceneBox, Window};
 use shapes::shape;
 use voxel_shape::voxel_shape;
 
@@ -155,7 +155,7 @@ impl DrawnObject {
         match own {
             None => shape(&mut build, b.class, id),
             // Three voxels across tell a shape; fewer do not.
-            Some(_) if b.size_m.truncate().min_element() < 3.0 * Extent::VOXEL_M => {
+            Some(_) if b.size_m.truncate().min_element() < 3.0 * Window::VOXEL_M => {
                 shape(&mut build, b.class, id)
             }
             Some(own) => voxel_shape(&mut build, b, own, PartMaterial::Plain(paint)),

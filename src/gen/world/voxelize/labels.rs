@@ -8,7 +8,7 @@ use super::observed::{Passed, seen_by_cameras};
 use super::{Vertical, finish_column};
 use crate::World;
 use scene::draw::Draw;
-use scene::{Class, LidarPattern, Relief, SensorRig, VoxelGrid, Window};
+use scene::{Class, LidarPattern, SensorRig, VoxelGrid, Window};
 
 /// Highest bin above the ground at which a column's lowest hit still belongs to an object that stands on it, before the
 /// smear.
@@ -167,7 +167,7 @@ fn voted(
         let mut column: [u8; Window::NZ] = std::array::from_fn(|z| column_votes[z].1);
         if vertical == Vertical::Occ3d {
             let p = Window::center(c / Window::NY, c % Window::NY, 0).truncate();
-            extend_to_ground(&mut column, Relief::physical_bin(world.ground_height(p)));
+            extend_to_ground(&mut column, scene::Lattice::OCC3D.bin(world.ground_height(p)));
         }
         if ground[c].is_none() && column.iter().all(|l| *l == Class::FREE) {
             continue;

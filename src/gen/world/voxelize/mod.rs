@@ -10,7 +10,7 @@ pub use drive::Drive;
 pub use labels::{Labelled, labelled, labels, observed_labels};
 use scene::raster::bev_channels;
 use scene::solid::fill::{SMEAR, fill, smear_down};
-use scene::{BevLayer, Class, Extent, Relief, VoxelGrid, Window};
+use scene::{BevLayer, Class, Extent, VoxelGrid, Window};
 
 /// Vertical position of the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -58,7 +58,7 @@ pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
 
 /// Bin of the ground in a column, at its measured height.
 fn ground_bin(world: &World, x: usize, y: usize) -> usize {
-    Relief::physical_bin(world.ground_height(Window::center(x, y, 0).truncate()))
+    scene::Lattice::OCC3D.bin(world.ground_height(Window::center(x, y, 0).truncate()))
 }
 
 /// Fills the side of a step: where the ground falls to a neighbour by more than a bin, its side is ground too, because
@@ -86,7 +86,7 @@ fn close_step(column: &mut [u8; Window::NZ], world: &World, [x, y]: [usize; 2], 
 /// Puts the ground below the objects that stand on it and applies the vertical convention.
 fn finish_column(column: &mut [u8; Window::NZ], ground: Option<(usize, u8)>, vertical: Vertical) {
     if vertical == Vertical::Occ3d {
-        smear_down(column);
+        smear_down(column, SMEAR);
     }
     if let Some((bin, class)) = ground {
         let shift = if vertical == Vertical::Occ3d { SMEAR } else { 0 };

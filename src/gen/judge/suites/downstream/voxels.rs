@@ -85,7 +85,7 @@ pub(super) struct VoxelFigures {
 
 /// Pictures of a scene by the shipped picture network, in the order of its rig.
 fn learned_pictures(scene: &Scene) -> anyhow::Result<Vec<Arc<CameraImage>>> {
-    let placed = scene.with_rig_in_world();
+    let placed = scene.for_sensors();
     let input = PaintInput {
         frame: placed.frame(),
         rig: &placed.rig,

@@ -257,7 +257,7 @@ impl<'a> Drives<'a> {
             let mut grid = vae.decode(&latents[0])?;
             for c in (0..Window::COLUMNS).filter(|c| seen[*c]) {
                 let (x, y) = (c / Window::NY, c % Window::NY);
-                *grid.column_mut(x, y) = *world.column(x, y);
+                *grid.window_column_mut(x, y) = *world.window_column(x, y);
             }
             seen_from.push(PosedVoxels {
                 grid: grid.clone(),
@@ -348,7 +348,7 @@ fn warped(grid: &VoxelGrid, from: &Pose, to: &ForecastCondition) -> VoxelGrid {
     let mut out = VoxelGrid::new();
     for [x, y] in Extent::WINDOW.all_columns() {
         if let Some([i, j]) = column_in(Window::center(x, y, 0), &to.pose, from) {
-            *out.column_mut(x, y) = *grid.column(i, j);
+            *out.window_column_mut(x, y) = *grid.window_column(i, j);
         }
     }
     out
@@ -393,9 +393,9 @@ fn moved_world(
             continue;
         };
         seen[x * Window::NY + y] = true;
-        *out.column_mut(x, y) = match was.moving[i * Window::NY + j] {
-            true => *ground.column(x, y),
-            false => *was.grid.column(i, j),
+        *out.window_column_mut(x, y) = match was.moving[i * Window::NY + j] {
+            true => *ground.window_column(x, y),
+            false => *was.grid.window_column(i, j),
         };
     }
     let seconds = (i + 1) as f64 * STEP_S;

@@ -31,7 +31,7 @@ fn unpaved(layout: &BevLayout) -> Vec<bool> {
 fn manmade_iou(a: &VoxelGrid, b: &VoxelGrid, free: [&[bool]; 2]) -> Option<f64> {
     let (mut both, mut either) = (0u64, 0u64);
     for c in (0..Window::COLUMNS).filter(|c| free[0][*c] && free[1][*c]) {
-        let column = |grid: &VoxelGrid| *grid.column(c / Window::NY, c % Window::NY);
+        let column = |grid: &VoxelGrid| *grid.window_column(c / Window::NY, c % Window::NY);
         for (a, b) in column(a).into_iter().zip(column(b)) {
             let [a, b] = [a, b].map(|l| l == Class::Manmade.id());
             both += u64::from(a && b);

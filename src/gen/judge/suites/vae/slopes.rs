@@ -44,7 +44,7 @@ fn tilted(grid: &VoxelGrid, grade: f64, up: DVec2) -> VoxelGrid {
         let rise_m = grade * up.dot(Window::center(x, y, 0).truncate());
         let bins = (rise_m / Window::VOXEL_M).round() as isize;
         let from = grid.column(x, y);
-        *out.column_mut(x, y) = std::array::from_fn(|z| {
+        *out.window_column_mut(x, y) = std::array::from_fn(|z| {
             let z = usize::try_from(z as isize - bins).ok();
             z.and_then(|z| from.get(z).copied()).unwrap_or(Class::Free as u8)
         });

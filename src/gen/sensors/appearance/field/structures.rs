@@ -23,7 +23,7 @@ const AROUND: usize = 12;
 const DEEPEST: u32 = 12;
 /// An edit changes no look farther away than this, m.
 #[cfg(test)]
-pub const FARTHEST_M: f64 = (REACH + AROUND) as f64 * scene::Extent::VOXEL_M;
+pub const FARTHEST_M: f64 = (REACH + AROUND) as f64 * scene::Window::VOXEL_M;
 
 /// Columns `[x][y]` of the field that hold man-made voxels.
 struct ManmadeColumns<'a> {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 /// Cells of a data set, counted from the lower corner along x, y and z of its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Lattice {
+pub(crate) struct DataCells {
     /// Cells along each axis.
     pub size: [usize; 3],
     /// Edge of a cell, m.
@@ -13,7 +13,7 @@ pub(crate) struct Lattice {
     pub min_m: [f64; 3],
 }
 
-impl Lattice {
+impl DataCells {
     /// Middle of a cell, m.
     pub fn center(&self, cell: [usize; 3]) -> DVec3 {
         let at = DVec3::from_array(cell.map(|c| c as f64 + 0.5));
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn centers_lie_in_their_cells() {
-        let lattice = Lattice {
+        let lattice = DataCells {
             size: [512, 512, 40],
             cell_m: 0.2,
             min_m: [-51.2, -51.2, -5.0],
