@@ -5,14 +5,11 @@ struct Plane {
     @location(0) p: vec3<f32>,
 }
 
-// Just above the top of the ground bin.
-const HEIGHT_M = -0.585;
-
 @vertex
 fn vs_main(@builtin(vertex_index) index: u32) -> Plane {
     let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * frame.grid_size.xy * frame.grid_size.w + frame.grid_min.xy;
     var out: Plane;
-    out.p = vec3<f32>(corner, HEIGHT_M);
+    out.p = vec3<f32>(corner, frame.ground.x);
     out.clip = frame.clip_from_ego * vec4<f32>(out.p, 1.0);
     return out;
 }

@@ -22,6 +22,8 @@ struct Frame {
     grid_min: vec4<f32>,
     // xyz: voxels of the map; w: edge of a voxel, m.
     grid_size: vec4<f32>,
+    // x: height of the layout's plane, just above the ground's voxels, m.
+    ground: vec4<f32>,
     // Per class: rgb squared sRGB; a: 1 for ground classes.
     palette: array<vec4<f32>, 18>,
 }

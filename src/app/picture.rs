@@ -234,10 +234,11 @@ impl View3d {
     /// Draws a picture of the scene. Errors if it is larger than [`bounds`] allow.
     pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<RgbaPicture> {
         bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
-        let scene = &*scene.for_sensors();
+        let of_sensors = scene;
+        let scene = &*scene.with_rig_in_world();
         let frame = scene.frame();
         let sweep = match options.lidar {
-            true => rolling::exact(scene),
+            true => rolling::exact(&of_sensors.for_sensors()),
             false => LidarSweep::default(),
         };
         let colors = lidar_colors(&sweep, LidarColorMode::Range);

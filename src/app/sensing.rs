@@ -19,7 +19,8 @@ use job::guard::Panicked;
 use job::product::{Ctx, Product, Wake, Worker};
 use language::tf;
 use nets::lidar::LidarNet;
-use scene::{LidarSweep, Scene, SceneRev, SensorRig};
+use scene::resample::shared_in;
+use scene::{Lattice, LidarSweep, Scene, SceneRev, SensorRig};
 use sensors::cameras::{SourceId, learned};
 use sensors::caster::Caster;
 use sensors::learned::Drops;
@@ -37,6 +38,7 @@ use views::Views;
 const SHOWN_RAYS: usize = 400;
 
 /// A request to sense a scene.
+#[derive(Clone)]
 struct SensingRequest {
     scene: Arc<Scene>,
     wanted: Wanted,
@@ -310,7 +312,11 @@ impl Product for Senses {
                 return SensingEvent::Ended;
             }
         }
-        sense(request, &mut self.kept, ctx);
+        let request = SensingRequest {
+            scene: shared_in(&request.scene, Lattice::OCC3D),
+            ..request.clone()
+        };
+        sense(&request, &mut self.kept, ctx);
         SensingEvent::Ended
     }
 

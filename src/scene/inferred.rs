@@ -32,7 +32,9 @@ impl Unobserved {
     }
 
     /// The unobserved voxels of a map, from its words; `None` unless there is one per column.
-    pub fn from_words(extent: Extent, words: Vec<u64>) -> Option<Self> {
+    pub fn from_words(extent: Extent, mut words: Vec<u64>) -> Option<Self> {
+        let all = extent.lattice().all_bins();
+        words.iter_mut().for_each(|word| *word &= all);
         (words.len() == extent.columns()).then(|| Self {
             extent,
             words: words.into(),

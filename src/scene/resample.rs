@@ -34,8 +34,20 @@ impl Scene {
     }
 }
 
+/// A shared scene with voxels of another lattice; see [`Scene::in_lattice`].
+pub fn shared_in(scene: &Arc<Scene>, lattice: Lattice) -> Arc<Scene> {
+    match scene.in_lattice(lattice) {
+        Cow::Borrowed(_) => scene.clone(),
+        Cow::Owned(other) => Arc::new(other),
+    }
+}
+
+/// Columns from the origin to each side of a map whose columns are too many in another lattice.
+const MOST_FROM_ORIGIN: i32 = 1024;
+
 impl Extent {
-    /// The smallest extent of another lattice that covers the same ground; [`Extent::WINDOW`] where none may be so large.
+    /// The smallest extent of another lattice that covers the same ground, or, where none may be so large, its part around the
+    /// origin.
     pub fn in_lattice(&self, lattice: Lattice) -> Self {
         if self.lattice() == lattice {
             return *self;
@@ -44,8 +56,14 @@ impl Extent {
         // A corner on a border of columns, but for rounding, begins no further column.
         let from = [low.x, low.y].map(|v| (v + 1e-6).floor() as i32);
         let to = [high.x, high.y].map(|v| (v - 1e-6).ceil() as i32);
-        let size = [0, 1].map(|axis| (to[axis] - from[axis]).max(1) as usize);
-        Self::over(lattice, from, size).unwrap_or(Self::WINDOW)
+        let over = |from: [i32; 2], to: [i32; 2]| {
+            let size = [0, 1].map(|axis| (to[axis] - from[axis]).max(1) as usize);
+            Self::over(lattice, from, size)
+        };
+        let near = |v: i32| v.clamp(-MOST_FROM_ORIGIN, MOST_FROM_ORIGIN);
+        over(from, to)
+            .or_else(|_| over(from.map(near), to.map(near)))
+            .unwrap_or(Self::WINDOW)
     }
 }
 
@@ -237,7 +255,8 @@ fn paint_in(painted: &VoxelPaint, occupancy: &VoxelGrid) -> VoxelPaint {
     out
 }
 
-/// Voxels whose middle lies in one that nothing observed.
+/// Voxels that nothing observed: of all bins that a label may stand for, its own and those above by which its lattice lets
+/// labels down, the middle lies in one that nothing observed.
 fn unobserved_in(unobserved: &Unobserved, from: Extent, to: Extent) -> Option<Unobserved> {
     let word = |[x, y]: [usize; 2]| {
         let p = to.center(x, y, 0);
@@ -245,10 +264,11 @@ fn unobserved_in(unobserved: &Unobserved, from: Extent, to: Extent) -> Option<Un
             return 0;
         };
         let of = unobserved.words()[from.index(i, j)];
-        let is_set = |z: usize| {
+        let is_hidden = |z: usize| {
             let bin = from.to_voxel_units(DVec3::new(p.x, p.y, to.center(x, y, z).z)).z;
             bin >= 0.0 && bin < from.nz() as f64 && of >> bin as u64 & 1 == 1
         };
+        let is_set = |z: usize| (z..=z + to.lattice().lowered()).all(is_hidden);
         (0..to.nz())
             .filter(|z| is_set(*z))
             .fold(0, |word, z| word | 1 << z)

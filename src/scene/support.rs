@@ -8,7 +8,7 @@ const WIDE_GROUND_M2: f64 = 16.0;
 /// Bins in which the ground of a flat map may lie: up to its true height, which is bin 2 in Occ3D; in its labels it is in
 /// bin 0.
 fn ground_bins(extent: Extent) -> u64 {
-    (2 << extent.lattice().bin(0.0)) - 1
+    u64::MAX >> (63 - extent.lattice().bin(0.0))
 }
 
 /// One word per column `[x][y]`, one bit per bin that is not free.
@@ -70,7 +70,7 @@ pub fn supported(extent: Extent, occupied: &[u64], ground: &[u64]) -> Vec<u64> {
 /// The part of `occupied` that is connected to the ground bins or to the seeds of a column, through voxels that touch
 /// by a face, an edge or a corner.
 pub fn reached(extent: Extent, occupied: &[u64], seeds: impl Fn(usize) -> u64) -> Vec<u64> {
-    let ground_bins = ground_bins(extent);
+    let (ground_bins, all) = (ground_bins(extent), extent.lattice().all_bins());
     let start = |(c, bits): (usize, &u64)| match *bits {
         0 => 0,
         bits => fill(bits & (ground_bins | seeds(c)), bits),
@@ -78,7 +78,7 @@ pub fn reached(extent: Extent, occupied: &[u64], seeds: impl Fn(usize) -> u64) -
     let mut out: Vec<u64> = occupied.iter().enumerate().map(start).collect();
     // Columns whose neighbours may still gain voxels: one that reaches no higher than the ground bins adds nothing.
     let mut queue: Vec<usize> = (0..out.len())
-        .filter(|c| out[*c] << 1 & !ground_bins != 0)
+        .filter(|c| out[*c] << 1 & all & !ground_bins != 0)
         .collect();
     while let Some(c) = queue.pop() {
         let reach = out[c] | out[c] << 1 | out[c] >> 1;

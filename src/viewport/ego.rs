@@ -41,12 +41,13 @@ impl Drawable for Ego {
 
     fn prepare(&mut self, gpu: Gpu<'_>, shown: DrawInput<'_>) -> PictureChange {
         let (rig, options) = (shown.scene.rig, shown.scene.options);
-        let lowered = options.drop_m.to_bits();
+        let drop_m = drop_m(shown.scene.grid.extent().lattice(), options);
+        let lowered = drop_m.to_bits();
         let held = self.uploaded.as_ref().map(|(rig, lowered)| (rig, *lowered));
         if held == Some((rig, lowered)) {
             return PictureChange::None;
         }
-        let vertices = car(rig, drop_m(options));
+        let vertices = car(rig, drop_m);
         self.quads.write(gpu.device, gpu.queue, "ego", &vertices);
         self.uploaded = Some((rig.clone(), lowered));
         PictureChange::All

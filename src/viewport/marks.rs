@@ -34,7 +34,7 @@ impl Marks {
     pub fn of(scene: &ViewScene<'_>) -> Self {
         let mut marks = Self::default();
         let (options, extent) = (scene.options, scene.grid.extent());
-        let down = DVec3::Z * drop_m(options);
+        let down = DVec3::Z * drop_m(extent.lattice(), options);
         if options.grid_lines {
             marks.metre_grid(extent);
         }

@@ -1,5 +1,7 @@
 //! Content and options of one picture.
 
+use scene::Lattice;
+
 use super::GROUND_TOP_M;
 use scene::{BoxId, LidarSweep, SceneBox, SensorRig, VoxelGrid};
 
@@ -154,7 +156,10 @@ pub struct ViewScene<'a> {
 }
 
 /// A usable [`ViewOptions::drop_m`].
-pub(super) fn drop_m(options: &ViewOptions) -> f64 {
+pub(super) fn drop_m(lattice: Lattice, options: &ViewOptions) -> f64 {
+    if lattice.lowered() == 0 {
+        return 0.0; // the ground is drawn where it is
+    }
     if options.drop_m.is_finite() {
         options.drop_m.clamp(-100.0, 100.0)
     } else {

@@ -126,7 +126,11 @@ impl Drawable for Points {
         self.uploaded = Some(points);
         let nothing = LidarSweep::default();
         let (sweep, colors) = lidar.map_or((&nothing, &[][..]), |l| (l.sweep, l.colors));
-        self.write(gpu, sweep, colors, f64::from(options.point_px))
+        let lift_m = match shown.scene.grid.extent().lattice() {
+            lattice if lattice.lowered() == 0 => 0.0,
+            lattice => lattice.ground_top_m() as f32,
+        };
+        self.write(gpu, sweep, colors, (f64::from(options.point_px), lift_m))
     }
 
     fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
@@ -188,14 +192,10 @@ impl Points {
         gpu: Gpu<'_>,
         sweep: &LidarSweep,
         colors: &[[u8; 4]],
-        point_px: f64,
+        (point_px, lift_m): (f64, f32),
     ) -> PictureChange {
         // The ground is drawn where the labels have it, so returns on the physical ground are moved with it.
-        let lift_m = if sweep.physical {
-            super::GROUND_TOP_M as f32
-        } else {
-            0.0
-        };
+        let lift_m = if sweep.physical { lift_m } else { 0.0 };
         let at = |[x, y, z]: [f32; 3]| [x, y, z + lift_m];
         let mut squares: Vec<Vec<PointVertex>> = vec![Vec::new(); SQUARES * SQUARES];
         for (i, p) in sweep.points.iter().enumerate() {

@@ -31,8 +31,12 @@ pub struct FrameUniforms {
     toggles: [f32; 4],
     grid_min: [f32; 4],
     grid_size: [f32; 4],
+    ground: [f32; 4],
     palette: [[f32; 4]; Class::COUNT],
 }
+
+/// Height of the layout's plane above the top of the ground's voxels, m.
+const OVER_GROUND_M: f64 = 0.015;
 
 /// Fog is made for maps as wide as this, m; it begins farther away over wider ones.
 const FOG_OVER_M: f64 = 80.0;
@@ -106,6 +110,12 @@ impl FrameUniforms {
                 extent.ny() as f32,
                 extent.nz() as f32,
                 extent.voxel_m() as f32,
+            ],
+            ground: [
+                (extent.lattice().ground_top_m() + OVER_GROUND_M) as f32,
+                0.0,
+                0.0,
+                0.0,
             ],
             palette: Class::ALL.map(|class| {
                 let [r, g, b, _] = rgba(class.color(), 1.0);

@@ -18,6 +18,7 @@ mod hostile_names;
 mod house;
 mod inferred;
 mod languages;
+mod lattices;
 mod map;
 mod names;
 mod opendrive;

@@ -10,7 +10,7 @@ use crate::painting::PaintWish;
 use job::guard::Panicked;
 use job::product::{Ctx, Product};
 use language::tf;
-use scene::{Scene, SceneRev};
+use scene::{Lattice, Scene, SceneRev};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, learned};
 use sensors::painter::{CameraPainter, PaintError, PaintModel, PaintProgress};
@@ -183,7 +183,8 @@ impl Product for Painting {
             Ok(painter) => painter,
             Err(problem) => return PaintingEvent::Problem(problem),
         };
-        let painted = painter.paint(&paint_input(&request.scene), &mut |progress| {
+        let scene = request.scene.in_lattice(Lattice::OCC3D);
+        let painted = painter.paint(&paint_input(&scene), &mut |progress| {
             let PaintProgress { step, steps, news } = progress;
             ctx.tell(PaintingEvent::Stage(
                 PaintStage::Step(step, steps),

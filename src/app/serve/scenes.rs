@@ -9,7 +9,8 @@ use tonic::Status;
 
 use crate::limits::MOST_SCENES;
 use crate::recent::Recent;
-use scene::Scene;
+use scene::resample::shared_in;
+use scene::{Lattice, Scene};
 
 /// Files of scenes by their ids, and the scenes used last.
 pub struct Scenes {
@@ -91,7 +92,7 @@ impl Scenes {
         }
         let unread = |e| Status::failed_precondition(one_line(&format!("scene {id:?}: {e}")));
         let scene = formats::loom::load(path).map_err(unread)?;
-        let scene = Arc::new(scene);
+        let scene = shared_in(&Arc::new(scene), Lattice::OCC3D);
         self.kept.put(id, scene.clone());
         Ok(scene)
     }

@@ -241,10 +241,11 @@ impl Live {
         let columns = edited_columns(frame, self.params.halo_columns as usize);
         let parts = parts(frame.extent(), &columns);
         let count = columns.iter().filter(|c| **c).count();
+        let cell_m2 = frame.extent().voxel_m().powi(2);
         let touched = Touched {
             is_empty: parts.is_empty(),
             extent_m: size_m(&parts, frame.extent().voxel_m()),
-            share: (count as f64 / COLUMNS as f64).min(1.0),
+            share: (count as f64 * cell_m2 / (COLUMNS as f64 * Window::VOXEL_M.powi(2))).min(1.0),
         };
         self.parts = parts.into();
         self.map_m = [frame.extent().nx(), frame.extent().ny()].map(|n| n as f64 * frame.extent().voxel_m());

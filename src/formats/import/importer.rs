@@ -9,7 +9,6 @@ use scene::{Extent, Frame, Inferred, Lattice, Scene, SensorRig, Unobserved, Voxe
 
 use crate::opendrive::RoadNetwork;
 use crate::recipe::Recipe;
-use crate::voxels::DataMap;
 use crate::{FormatError, Holds, input};
 
 /// A format that is read.
@@ -130,10 +129,18 @@ pub(crate) fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobser
     scene
 }
 
-/// A scene of labels on a data set's own map; see [`labelled`].
-pub(crate) fn on_data_map(name: &str, labels: VoxelGrid, map: &DataMap) -> Scene {
+/// A scene of labels on a data set's own map, whose origin is below the LiDAR: the vehicle and its sensors are moved so that
+/// the LiDAR is there; see [`labelled`].
+pub(crate) fn on_data_map(name: &str, labels: VoxelGrid) -> Scene {
     let mut scene = labelled(name, labels, None);
-    scene.change_canvas(|frame| frame.world_from_ego = map.world_from_ego);
+    let rig = Arc::make_mut(&mut scene.rig);
+    let [x_m, y_m, _] = rig.lidars.first().map_or([0.0; 3], |lidar| lidar.translation_m);
+    let cameras = rig.cameras.iter_mut().map(|camera| &mut camera.translation_m);
+    let lidars = rig.lidars.iter_mut().map(|lidar| &mut lidar.translation_m);
+    for at in cameras.chain(lidars).chain([&mut rig.ego_center_m]) {
+        at[0] -= x_m;
+        at[1] -= y_m;
+    }
     scene
 }
 

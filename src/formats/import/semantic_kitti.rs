@@ -38,7 +38,7 @@ fn read(source: &ImportFile<'_>) -> Result<Content, String> {
     let scene = match map {
         Some(map) => {
             let unobserved = invalid.and_then(|bits| own_mask(&map, &bits));
-            let mut scene = on_data_map(source.name, labels, &map);
+            let mut scene = on_data_map(source.name, labels);
             scene.change_canvas(|frame| frame.inferred.unobserved = unobserved);
             scene
         }

@@ -100,7 +100,7 @@ fn as_it_is(source: &ImportFile<'_>) -> Result<(Scene, BTreeMap<String, usize>),
         skipped.insert("velocities of voxels".to_owned(), table.rows);
     }
     skipped.insert(kind.assumed.to_owned(), table.rows);
-    Ok((on_data_map(source.name, grid, &map), skipped))
+    Ok((on_data_map(source.name, grid), skipped))
 }
 
 /// The labels that a file holds, and what was assumed and left out.

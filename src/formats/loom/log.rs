@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 use scene::grid::VoxelPatch;
 use scene::message::quoted;
 use scene::op::{Author, Change, LoggedState, Op, OpId, OpLog};
-use scene::{Background, Edit, Extent, Lattice, ProjectHistory, Scene, Thing, ThingId};
+use scene::{Background, Edit, Extent, ProjectHistory, Scene, Thing, ThingId};
 
 use super::archive::{MAX_JSON, Reader, Writer, parse, within};
 use super::migrate;
@@ -218,13 +218,11 @@ fn read_log<R: Read + Seek>(file: &mut Reader<R>, kept: &ProjectHistory) -> Resu
     let mut found = Found {
         versions: versions.collect(),
         states: BTreeMap::new(),
-        columns: 0,
-        patches: BTreeMap::new(),
+        voxels: 0,
+        patches: read_results(file, &header.results)?,
         file,
     };
     let origin = found.state(&header.origin)?;
-    let lattice = origin.scene.canvas().extent().lattice();
-    found.patches = read_results(found.file, &header.results, lattice)?;
     let op = |op: OpHeader| {
         Ok(Op {
             id: op.id,
@@ -257,7 +255,6 @@ fn read_log<R: Read + Seek>(file: &mut Reader<R>, kept: &ProjectHistory) -> Resu
 fn read_results<R: Read + Seek>(
     file: &mut Reader<R>,
     results: &[(String, usize)],
-    lattice: Lattice,
 ) -> Result<BTreeMap<String, Arc<VoxelPatch>>, ProjectError> {
     let mut patches = BTreeMap::new();
     if results.is_empty() {
@@ -276,7 +273,7 @@ fn read_results<R: Read + Seek>(
         if hash(bytes) != *name {
             return Err(damaged("its bytes are others than their hash says".into()));
         }
-        let patch = patch_from_bytes(lattice, bytes).map_err(damaged)?;
+        let patch = patch_from_bytes(bytes).map_err(damaged)?;
         patches.insert(name.clone(), Arc::new(patch));
         left = rest;
     }
@@ -288,8 +285,8 @@ struct Found<'a, R> {
     file: &'a mut Reader<R>,
     versions: BTreeMap<String, Arc<Vec<u8>>>,
     states: BTreeMap<String, Arc<LoggedState>>,
-    /// Columns of all states that were read: a small file could hold many large maps.
-    columns: usize,
+    /// Voxels of all states that were read: a small file could hold many large maps.
+    voxels: usize,
     patches: BTreeMap<String, Arc<VoxelPatch>>,
 }
 
@@ -309,11 +306,11 @@ impl<R: Read + Seek> Found<'_, R> {
             });
         }
         let scene = read_alone(Cursor::new(&bytes[..]), &migrate::ALL)?;
-        self.columns += scene.canvas().extent().columns();
+        self.voxels += scene.canvas().extent().voxels();
         within(
-            "the number of columns of all states",
-            self.columns as u64,
-            2 * Extent::MAX_COLUMNS as u64,
+            "the number of voxels of all states",
+            self.voxels as u64,
+            2 * Extent::MAX_VOXELS as u64,
         )?;
         let state = LoggedState::read(scene, bytes);
         self.states.insert(name.to_owned(), state.clone());

@@ -13,8 +13,6 @@ pub(crate) struct DataMap {
     /// Quarter turns from the data set's axes to the map's, 0 to 3.
     quarters: u8,
     extent: Extent,
-    /// Where the ego vehicle is on the map.
-    pub world_from_ego: Pose,
 }
 
 impl DataMap {
@@ -23,16 +21,12 @@ impl DataMap {
     pub fn new(cells: &DataCells, ego_from_cells: &Pose, lidar: &LidarPattern) -> Result<Self, String> {
         let ahead = ego_from_cells.rotation * DVec3::X;
         let quarters = (ahead.truncate().to_angle() / std::f64::consts::FRAC_PI_2).round();
-        let [x_m, y_m, z_m] = lidar.translation_m;
+        let z_m = lidar.translation_m[2];
         let lattice = Lattice::new(cells.cell_m, cells.size[2], cells.min_m[2] + z_m)?;
         let mut out = Self {
             cells: *cells,
             quarters: quarters.rem_euclid(4.0) as u8,
             extent: Extent::WINDOW,
-            world_from_ego: Pose {
-                translation_m: DVec3::new(-x_m, -y_m, 0.0),
-                ..Pose::IDENTITY
-            },
         };
         let corners = [[0, 0], [cells.size[0] - 1, cells.size[1] - 1]].map(|cell| out.turned(cell));
         let low = [0, 1].map(|axis| corners[0][axis].min(corners[1][axis]));

@@ -3,7 +3,7 @@
 use super::scenery::SceneryWish;
 use editor::{Edit, apply_all};
 use job::inpaint::InpaintMask;
-use scene::Scene;
+use scene::{Lattice, Scene};
 
 /// Edits that may make a map larger, followed by edits that draw scenery beside the new roads if there is scenery
 /// beside the old ones. Every place that applies edits of a user (window, command line, assistants, batches) takes them
@@ -28,7 +28,8 @@ fn may_grow(edit: &Edit) -> bool {
 /// Edits that draw scenery where a map has become larger; none if there was no scenery before.
 pub fn beside_new_ground(before: &Scene, larger: &Scene) -> Vec<Edit> {
     let (old, new) = (before.canvas().extent(), larger.canvas().extent());
-    if old == new || !before.background.describes_place() {
+    let is_drawn = new.lattice() == Lattice::OCC3D;
+    if old == new || !is_drawn || !before.background.describes_place() {
         return Vec::new();
     }
     let mut region = InpaintMask::of_rect(new, new.min_m().truncate(), new.max_m().truncate());

@@ -8,7 +8,7 @@ use job::network_scenery::drawn_scenery;
 use job::pipeline::windows_over;
 use nets::scenery::SceneryNet;
 use scene::raster::box_cells;
-use scene::{Background, BevLayer, Class, Extent, Form, Scene, Thing, ThingId, Window};
+use scene::{Background, BevLayer, Class, Extent, Form, Lattice, Scene, Thing, ThingId, Window};
 use world::scenery::{self, RoadsideKind, RoadsideStyle, Style};
 
 use super::scenery_around;
@@ -88,6 +88,13 @@ impl SceneryWish {
     /// Edits that draw scenery in place of the things for which `may_go` is true.
     fn edits_without(&self, scene: &Scene, may_go: impl Fn(&Thing) -> bool) -> Result<Vec<Edit>, GenError> {
         let map = scene.frame().extent();
+        if map.lattice() != Lattice::OCC3D {
+            return Err(GenError::failed(format!(
+                "scenery is drawn on maps of voxels of {} m, and this one is of {}",
+                Lattice::OCC3D.voxel_m(),
+                map.lattice()
+            )));
+        }
         let (mut ids, mut forms, mut cleared) = (Vec::new(), Vec::new(), Vec::new());
         for (place, own) in windows_over(map) {
             let to_window = place.to_window();

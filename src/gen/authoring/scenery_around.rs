@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use scene::raster::{disc_cells, line_cells, polygon_cells};
-use scene::{Background, Extent, Form, Window};
+use scene::{Background, Extent, Form};
 
 /// Room around a thing of the file, m.
 const ROOM_M: f64 = 1.0;
@@ -56,7 +56,7 @@ pub fn columns(extent: Extent, form: &Form, margin_m: f64, mut visit: impl FnMut
     let around = |outline_m: &[DVec2], visit: &mut dyn FnMut(usize, usize)| {
         polygon_cells(extent, outline_m, &mut *visit);
         let ring: Vec<DVec2> = outline_m.iter().chain(outline_m.first()).copied().collect();
-        line_cells(extent, &ring, margin_m + Window::VOXEL_M / 2.0, visit);
+        line_cells(extent, &ring, margin_m + extent.voxel_m() / 2.0, visit);
     };
     match form {
         Form::Building(b) => around(&b.outline_m, &mut visit),

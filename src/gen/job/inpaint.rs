@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::params::GenParams;
 use super::region::{COLUMNS_PER_CELL, Region, edited_columns};
 use scene::raster::{box_cells, polygon_cells};
-use scene::{Extent, Frame, SceneBox, Window};
+use scene::{Extent, Frame, Lattice, SceneBox, Window};
 
 /// A sparse set of latent cells, 1.6 m wide: `[i, j]` along ego x and y, counted from the corner of the networks' window, so
 /// that a cell of the window at the origin lies in `0..50`. A cell may lie anywhere on the map. As JSON a list of `[i, j]`.
@@ -64,6 +64,11 @@ impl InpaintMask {
 
     /// The cell that holds a column of a map.
     pub fn cell_of(extent: Extent, [x, y]: [usize; 2]) -> [i32; 2] {
+        if extent.lattice() != Lattice::OCC3D {
+            let p = extent.center(x, y, 0).truncate() - Extent::WINDOW.min_m().truncate();
+            let cell_m = COLUMNS_PER_CELL as f64 * Window::VOXEL_M;
+            return (p / cell_m).floor().as_ivec2().to_array();
+        }
         let (from, window) = (extent.from(), Extent::WINDOW.from());
         let along = |axis: usize, at: usize| {
             (from[axis] - window[axis] + at as i32).div_euclid(COLUMNS_PER_CELL as i32)

@@ -8,7 +8,7 @@ use nets::perceiver::against::{Beside, against};
 use nets::perceiver::detection::Detection;
 use nets::perceiver::stands::{Stands, standing};
 use nets::perceiver::{LidarPerceiver, Perceived};
-use scene::{BoxId, Extent, LidarSweep, Pose, Scene, SceneBox};
+use scene::{BoxId, Extent, Lattice, LidarSweep, Pose, Scene, SceneBox};
 
 /// Radius around a return within which columns count, columns: 1.2 m.
 const NEAR_COLUMNS: usize = 3;
@@ -83,6 +83,7 @@ pub fn report(scene: &Scene) -> Result<SweepReport, PaintError> {
         .map(detected)
         .collect();
     // Ground truth of the columns around the vehicle, in its own frame, near returns.
+    let scene = &*scene.in_lattice(Lattice::OCC3D);
     let around = scene.in_ego();
     let truth = standing(&around.frame().occupancy.crop(Extent::WINDOW));
     let told = truth

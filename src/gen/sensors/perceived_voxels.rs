@@ -16,8 +16,11 @@ use crate::rolling;
 use nets::perceiver::against::returns_on;
 use nets::sensor_occupancy::{SensorOccupancy, UNSEEN};
 use scene::raster::box_cells;
+use scene::resample::voxels_in;
 use scene::truth::TruthClass;
-use scene::{BoxId, BoxLabel, Camera, Class, Extent, LidarSweep, Pose, Scene, SceneBox, VoxelGrid, Window};
+use scene::{
+    BoxId, BoxLabel, Camera, Class, Extent, Lattice, LidarSweep, Pose, Scene, SceneBox, VoxelGrid, Window,
+};
 
 /// A box of fewer voxels is too small to be missed.
 pub const LEAST_VOXELS: usize = 2;
@@ -232,6 +235,7 @@ pub fn report(scene: &Scene, hears: Hears) -> Result<VoxelReport, PaintError> {
 pub fn report_of(scene: &Scene, heard: &PerceptionInput, hears: Hears) -> Result<VoxelReport, PaintError> {
     let voxels = heard.voxels(hears)?;
     let map_from_vehicle = scene.frame().world_from_ego;
+    let scene = &*scene.in_lattice(Lattice::OCC3D);
     let around = scene.in_ego();
     let truth = around.frame().occupancy.crop(Extent::WINDOW);
     let near = near(&heard.sweep, &map_from_vehicle);
@@ -265,6 +269,7 @@ pub fn report_of(scene: &Scene, heard: &PerceptionInput, hears: Hears) -> Result
 
 /// Result for one box; `None` if it is not in the window.
 pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenInVoxels>, PaintError> {
+    let scene = &*scene.in_lattice(Lattice::OCC3D);
     let around = scene.in_ego();
     let inside = |b: &&SceneBox| Window::column_at(b.center_m.x, b.center_m.y).is_some();
     let Some(b) = around.frame().boxes.get(&id).filter(inside) else {
@@ -393,6 +398,10 @@ fn is_thing(label: u8) -> bool {
 /// Copies voxels around a vehicle onto a map: each column of the map takes the column of the window in which its middle
 /// lies, at the same height.
 pub fn on_map(voxels: &VoxelGrid, extent: Extent, map_from_vehicle: &Pose) -> VoxelGrid {
+    let of_networks = extent.in_lattice(Lattice::OCC3D);
+    if of_networks != extent {
+        return voxels_in(&on_map(voxels, of_networks, map_from_vehicle), extent);
+    }
     let mut out = VoxelGrid::over(extent);
     let to_vehicle = map_from_vehicle.inverse();
     for x in 0..extent.nx() {

@@ -35,6 +35,9 @@ impl Extent {
     /// Most columns in all: 1.6 km by 1.6 km of 0.4 m.
     pub const MAX_COLUMNS: usize = 1 << 24;
 
+    /// Most voxels in all: as many columns of 16 bins.
+    pub const MAX_VOXELS: usize = Self::MAX_COLUMNS * 16;
+
     /// The frame of Occ3D, which the networks read and write: 200 x 200 columns around the ego vehicle.
     pub const WINDOW: Self = Self {
         from: [-100, -100],
@@ -63,6 +66,13 @@ impl Extent {
                 "a map of {nx} x {ny} columns, expected sides of 1 to {} and at most {} columns",
                 Self::MAX_SIDE,
                 Self::MAX_COLUMNS
+            ));
+        }
+        if nx * ny * lattice.bins() > Self::MAX_VOXELS {
+            return Err(format!(
+                "a map of {nx} x {ny} columns of {}, expected at most {} voxels",
+                lattice.bins(),
+                Self::MAX_VOXELS
             ));
         }
         const FARTHEST: i32 = Extent::MAX_COLUMNS as i32;

@@ -40,12 +40,15 @@ pub fn boxes_around(extent: Extent, class: Class, voxels: &[[usize; 3]]) -> Vec<
     let mut columns: Vec<[usize; 2]> = voxels.iter().map(|&[x, y, _]| [x, y]).collect();
     columns.sort_unstable();
     columns.dedup();
+    // As the labels of Occ3D have it, whose bin of the same height counts.
+    let top =
+        |z: usize| Lattice::OCC3D.bin(extent.center(0, 0, z).z + (extent.voxel_m() - Window::VOXEL_M) / 2.0);
     let component = Component {
         points_m: columns
             .iter()
             .map(|&[x, y]| extent.center(x, y, 0).truncate())
             .collect(),
-        top: voxels.iter().map(|v| v[2]).max().unwrap_or(0),
+        top: voxels.iter().map(|v| v[2]).max().map_or(0, top),
     };
     if component.points_m.is_empty() {
         return Vec::new();

@@ -27,7 +27,8 @@ pub fn relief(labels: &VoxelGrid) -> Relief {
         // A road lies in that bin, a sidewalk in it or one higher, a verge may be bumpy.
         let flat_bins = level + usize::from(class != Class::DriveableSurface);
         ground += 1;
-        uneven += usize::from(bin > flat_bins);
+        // In the labels of Occ3D nothing lies lower.
+        uneven += usize::from(bin > flat_bins || bin + 1 < level);
         let above = if class == Class::Sidewalk && bin > level {
             KERB_M
         } else {

@@ -23,10 +23,11 @@ pub(super) fn tipped(
             return Vec::new();
         }
         let lattice = frame.extent().lattice();
-        let floor_m = lattice.bottom_m() + lattice.voxel_m() / 2.0;
+        let floor = lattice.ground_bin(0.0);
+        let floor_m = frame.extent().center(0, 0, floor).z;
         let ground = pick::ray_ground(ray, floor_m).and_then(|p| frame.extent().voxel_at(p));
         let floor = ground.map(|[x, y, _]| VoxelHit {
-            cell: [x, y, 0],
+            cell: [x, y, floor],
             label: Class::FREE,
             normal: [0, 0, 1],
             distance_m: 0.0,

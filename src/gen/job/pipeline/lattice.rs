@@ -63,7 +63,7 @@ fn put_back(fine: &Frame, coarse: &Frame, result: &VoxelGrid) -> VoxelGrid {
     let (extent, of) = (fine.extent(), result.extent());
     let (lattice, of_lattice) = (extent.lattice(), of.lattice());
     let (draft, source) = (&fine.occupancy, &fine.source.occupancy);
-    let mut out = source.clone();
+    let mut out = draft.clone();
     // The bin of the networks that holds the middle of each bin of the map, both at true heights.
     let bin = |z: usize| {
         let height_m = lattice.bottom_m() + (z as f64 + 0.5) * lattice.voxel_m();
@@ -80,12 +80,12 @@ fn put_back(fine: &Frame, coarse: &Frame, result: &VoxelGrid) -> VoxelGrid {
             continue;
         };
         let column = result.column(i, j);
-        if column == coarse.source.occupancy.column(i, j) {
+        if column == coarse.occupancy.column(i, j) {
             continue;
         }
-        if column == coarse.occupancy.column(i, j) {
+        if column == coarse.source.occupancy.column(i, j) {
             if draft.column(x, y) != source.column(x, y) {
-                out.column_mut(x, y).copy_from_slice(draft.column(x, y));
+                out.column_mut(x, y).copy_from_slice(source.column(x, y));
             }
             continue;
         }

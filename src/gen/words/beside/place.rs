@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::{SideOf, Where};
 use scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
 use scene::road_map::RoadMap;
-use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, SceneBox, Window};
+use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, SceneBox};
 use world::scenery::distance_cells;
 
 /// Distance from the border of the grid at which things end, m.
@@ -69,7 +69,7 @@ impl FreeGround {
     /// Distance from paved ground, m.
     pub fn paved_m(&self, p: DVec2) -> f64 {
         self.extent.column_at(p.x, p.y).map_or(0.0, |[x, y]| {
-            f64::from(self.to_paved[self.extent.index(x, y)]) * Window::VOXEL_M
+            f64::from(self.to_paved[self.extent.index(x, y)]) * self.extent.voxel_m()
         })
     }
 
@@ -87,7 +87,7 @@ impl FreeGround {
 
     fn is_free(&self, x: usize, y: usize, gap_m: f64) -> bool {
         let c = self.extent.index(x, y);
-        !self.taken[c] && f64::from(self.to_paved[c]) * Window::VOXEL_M > gap_m
+        !self.taken[c] && f64::from(self.to_paved[c]) * self.extent.voxel_m() > gap_m
     }
 
     /// True if a disc is free and off the paved ground.
@@ -133,7 +133,7 @@ impl FreeGround {
         let mut order: Vec<(f64, usize)> = (0..self.extent.columns())
             .filter(|c| !self.taken[*c])
             .filter_map(|c| {
-                let paved = f64::from(self.to_paved[c]) * Window::VOXEL_M;
+                let paved = f64::from(self.to_paved[c]) * self.extent.voxel_m();
                 let own = all[c];
                 // Prefers places beside the ego's road to places beside one that leads away from it.
                 let cost = (own.x - along_m).abs() * 2.0 + own.y.abs() * 0.25 + (paved - from_paved_m).abs();
@@ -159,7 +159,7 @@ impl FreeGround {
         let all = self.own();
         for (c, own) in all.iter().enumerate() {
             let p = self.middle_m(c);
-            let paved = f64::from(self.to_paved[c]) * Window::VOXEL_M;
+            let paved = f64::from(self.to_paved[c]) * self.extent.voxel_m();
             let wrong_side = (own.y > 0.0) != (side == SideOf::Left);
             if wrong_side
                 || (paved - from_paved_m).abs() > 0.3
