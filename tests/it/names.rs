@@ -10,7 +10,7 @@ const SHARED_NAMES: f64 = 0.05;
 /// Share of comments that open with neither a noun nor a verb.
 const NOUNLESS_COMMENTS: f64 = 0.015;
 /// Lines with a bare 2.5 or 0.4 outside the grid; the aim is none but colours and weights.
-const BARE_LITERALS: usize = 240;
+const BARE_LITERALS: usize = 227;
 /// Files with an `impl SceneloomApp`; the aim is 6.
 const APP_FILES: usize = 28;
 
