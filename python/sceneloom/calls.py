@@ -223,6 +223,7 @@ class Calls:
     def open(
         self,
         *,
+        as_it_is: bool | None = None,
         at_m: Sequence[float] | None = None,
         file: str | None = None,
         heading_deg: float | None = None,
@@ -233,6 +234,8 @@ class Calls:
         picture that this program made (.png), or another format that is read. It can be undone. list_files
         tells what is there.
 
+        as_it_is: For voxels of OpenOccupancy, SurroundOcc, UniScene or SemanticKITTI: true to keep their
+            size and heights, in place of those of the networks.
         at_m: For a road file: position of the ego vehicle in the file's frame, m; a good place on a lane if
             left out.
         file: File in the folder of this session, such as `a.loom`, `road.xodr` or `labels.npz`; without it
@@ -245,6 +248,7 @@ class Calls:
         """
         args = _given(
             {
+                'as_it_is': as_it_is,
                 'at_m': at_m,
                 'file': file,
                 'heading_deg': heading_deg,
