@@ -10,10 +10,10 @@ pub use job::pipeline::Bounds;
 use job::pipeline::parts;
 use job::region::{CELLS, COLUMNS_PER_CELL, edited_columns};
 use job::{ChosenDensities, GenParams, JobId, JobKey, RegionMode, Stage};
-use scene::{Scene, SceneRev, Window};
+use scene::{Lattice, Scene, SceneRev};
 
 /// Edge of a latent cell, m.
-const CELL_M: f64 = COLUMNS_PER_CELL as f64 * Window::VOXEL_M;
+const CELL_M: f64 = COLUMNS_PER_CELL as f64 * Lattice::OCC3D.voxel_m();
 /// Mean time of runs up to which there is no grace, s.
 const QUICK_S: f64 = 1.5;
 /// The grace after the last edit if runs are slower, s.
@@ -245,7 +245,7 @@ impl Live {
         let touched = Touched {
             is_empty: parts.is_empty(),
             extent_m: size_m(&parts, frame.extent().voxel_m()),
-            share: (count as f64 * cell_m2 / (COLUMNS as f64 * Window::VOXEL_M.powi(2))).min(1.0),
+            share: (count as f64 * cell_m2 / (COLUMNS as f64 * Lattice::OCC3D.voxel_m().powi(2))).min(1.0),
         };
         self.parts = parts.into();
         self.map_m = [frame.extent().nx(), frame.extent().ny()].map(|n| n as f64 * frame.extent().voxel_m());

@@ -244,7 +244,7 @@ impl Hand {
     /// The voxel brush one voxel higher or lower.
     pub fn step_height(&mut self, step: i32) {
         let height = self.voxel_height as i32 + step;
-        self.voxel_height = height.clamp(1, scene::Window::NZ as i32) as usize;
+        self.voxel_height = height.clamp(1, scene::Lattice::OCC3D.bins() as i32) as usize;
     }
 
     /// True if the layer must not be painted.

@@ -174,7 +174,7 @@ impl Hand {
                 (self.voxel_mode, self.verb, self.voxel_class) = (*mode, *verb, *class);
                 self.voxel_tip = *tip;
                 self.voxel_size = (*size).clamp(1, Self::MAX_VOXEL_SIZE);
-                self.voxel_height = (*height).clamp(1, scene::Window::NZ);
+                self.voxel_height = (*height).clamp(1, scene::Lattice::OCC3D.bins());
             }
             BrushSettings::Stamp(stamp) => {
                 self.tool = ToolId::VOXEL;

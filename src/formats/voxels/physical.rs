@@ -287,7 +287,7 @@ mod tests {
         let mut observed = vec![0; Extent::WINDOW.columns()];
         observed[7] = 1 << 2 | 1 << 17;
         let found = unobserved(Extent::WINDOW, &observed).expect("a word per column");
-        assert_eq!(found.words()[7], !(0b111 | 1 << 15));
+        assert_eq!(found.words()[7], 0xffff & !(0b111 | 1 << 15));
         assert_eq!(found.words()[8], 0xffff);
     }
 }

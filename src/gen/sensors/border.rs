@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use scene::{Class, Extent, VoxelGrid, Window};
+use scene::{Class, Extent, Lattice, VoxelGrid};
 use world::World;
 
 /// Depths at which the ground is sampled, in cells from the edge.
@@ -168,13 +168,13 @@ impl Border {
 
     /// The edge of a voxel grid; `lift_m` is the height by which labels put the ground too low.
     pub fn of_grid(grid: &VoxelGrid, lift_m: f64) -> Self {
-        let top = |z: usize| Window::MIN_M[2] + Window::VOXEL_M * (z + 1) as f64;
+        let top = |z: usize| Lattice::OCC3D.bottom_m() + Lattice::OCC3D.voxel_m() * (z + 1) as f64;
         let known = |label: u8| Class::from_id(label).filter(|c| *c != Class::Free);
         Self::new(
             grid.extent(),
             |x, y| {
                 let column = grid.column(x, y);
-                let ground = (0..Window::NZ).find_map(|z| {
+                let ground = (0..Lattice::OCC3D.bins()).find_map(|z| {
                     let class = known(column[z]).filter(|c| c.is_ground())?;
                     Some((class, top(z) + lift_m))
                 });
@@ -182,10 +182,10 @@ impl Border {
             },
             |x, y, ground_m| {
                 let column = grid.column(x, y);
-                (0..Window::NZ).rev().find_map(|z| {
+                (0..Lattice::OCC3D.bins()).rev().find_map(|z| {
                     let class = known(column[z]).filter(|c| !c.is_ground())?;
                     // The height of a thing that reaches the ceiling is unknown: some storeys are added.
-                    let more = if z + 1 == Window::NZ { 4.0 } else { 0.0 };
+                    let more = if z + 1 == Lattice::OCC3D.bins() { 4.0 } else { 0.0 };
                     Some((class, top(z) + more - ground_m))
                 })
             },
@@ -313,7 +313,7 @@ impl Border {
             high: p[axis] > (low[axis] + high[axis]) / 2.0,
         };
         // Casts saturate; NaN is 0.
-        let along = ((p[1 - axis] - low[1 - axis]) / Window::VOXEL_M) as usize;
+        let along = ((p[1 - axis] - low[1 - axis]) / Lattice::OCC3D.voxel_m()) as usize;
         (side, along.min(side.cells(self.extent) - 1))
     }
 }

@@ -9,7 +9,7 @@ use super::lidar::{EgoBox, Rays, look_through};
 use super::raycast::{ColumnMasks, LANES, Packet, PacketHit};
 use super::shaped;
 use super::surroundings::{Height, SurroundingHits};
-use scene::{Class, Extent, Frame, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid, Window};
+use scene::{Class, Extent, Frame, Lattice, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
 
 /// With more changed boxes than this, all rays are cast: testing them would cost as much.
 const MAX_BOXES: usize = 16;
@@ -123,7 +123,7 @@ impl Caster {
         let beam = |beam: usize| {
             columns.iter().filter_map(move |&column| {
                 let ray = beam * kept.columns + column;
-                let reach = f64::from(kept.found[ray].0) / Window::VOXEL_M;
+                let reach = f64::from(kept.found[ray].0) / Lattice::OCC3D.voxel_m();
                 let inverse = kept.rays.directions[ray].to_array().map(inverse).into();
                 let met = |b: &Changed| b.is_met(kept.origins[column], inverse, reach);
                 changed.iter().any(met).then_some(ray)
@@ -212,7 +212,7 @@ impl Caster {
                 }
             };
             let count = rows.first().map_or(0, |row| row.len() * groups);
-            let max_t = self.pattern.max_range_m / Window::VOXEL_M;
+            let max_t = self.pattern.max_range_m / Lattice::OCC3D.voxel_m();
             self.masks.cast_packets(count, max_t, packet, |i, met| {
                 let (column, first) = (i / groups, i % groups * LANES);
                 for (beam, met) in (first..beams).zip(met) {
@@ -227,7 +227,7 @@ impl Caster {
     #[inline]
     fn cast_one(&self, ray: usize) -> RayOutcome {
         let (origin, direction) = (self.origins[ray % self.columns], self.rays.directions[ray]);
-        let max_t = self.pattern.max_range_m / Window::VOXEL_M;
+        let max_t = self.pattern.max_range_m / Lattice::OCC3D.voxel_m();
         let met = self.masks.cast_in_voxels(origin, direction, max_t);
         self.found(ray, met.map(|(t, voxel)| (t, voxel.map(|v| v as u16))))
     }
@@ -239,7 +239,7 @@ impl Caster {
             return (f32::INFINITY, None);
         };
         let (origin, direction) = self.rays.get(ray);
-        let range_m = t * Window::VOXEL_M;
+        let range_m = t * Lattice::OCC3D.voxel_m();
         let [x, y, z] = voxel.map(usize::from);
         let point = || LidarPoint {
             position_in_ego: (origin + direction * range_m).as_vec3().to_array(),
@@ -275,7 +275,7 @@ fn changed_in(before: &VoxelGrid, after: &VoxelGrid, brick: usize) -> Option<Cha
             if a == b {
                 continue;
             }
-            for z in (0..Window::NZ).filter(|&z| a[z] != b[z]) {
+            for z in (0..Lattice::OCC3D.bins()).filter(|&z| a[z] != b[z]) {
                 let (low, high) = found.get_or_insert(([x, y, z], [x, y, z]));
                 for (axis, v) in [x, y, z].into_iter().enumerate() {
                     low[axis] = low[axis].min(v);
@@ -384,7 +384,7 @@ mod tests {
     fn a_rolling_sweep_sees_from_where_the_vehicle_was() {
         let mut grid = VoxelGrid::new();
         for y in 0..Window::NY {
-            for z in 0..Window::NZ {
+            for z in 0..Lattice::OCC3D.bins() {
                 grid.set(150, y, z, Class::Manmade.id()); // a wall, its face at x = 20 m
             }
         }

@@ -14,7 +14,7 @@ use nets::lidar::field::{LidarRay, RaySampling, SignedDistanceField};
 use nets::lidar::update::{Changed, Region};
 use nets::lidar::{LearnedRay, LidarNet};
 use scene::moved::ColumnShift;
-use scene::{LidarPattern, LidarSweep, SensorRig, VoxelGrid, Window};
+use scene::{Lattice, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
 
 /// A voxel's numbers reach half a voxel beyond it, as far as the neighbours' centres.
 const HALO: f64 = 0.5;
@@ -116,7 +116,7 @@ impl LearnedCaster {
         let boxes: Vec<[DVec3; 2]> = regions.iter().map(reached).collect();
         let rays = self.rays.par_iter().zip(&self.answers).with_min_len(CHUNK);
         let touched = rays.enumerate().filter(|(_, (ray, answer))| {
-            let reach = f64::from(answer.met.reach_m) / Window::VOXEL_M + MARGIN;
+            let reach = f64::from(answer.met.reach_m) / Lattice::OCC3D.voxel_m() + MARGIN;
             boxes.iter().any(|b| meets(ray, b, reach))
         });
         let again: Vec<usize> = touched.map(|(i, _)| i).collect();
@@ -191,7 +191,7 @@ fn reached(region: &Region) -> [DVec3; 2] {
     let corner = |xy: [usize; 2], z: usize, by: f64| DVec3::new(xy[0] as f64, xy[1] as f64, z as f64) + by;
     [
         corner(region.low, 0, -HALO - MARGIN),
-        corner(region.high, Window::NZ, HALO + MARGIN),
+        corner(region.high, Lattice::OCC3D.bins(), HALO + MARGIN),
     ]
 }
 

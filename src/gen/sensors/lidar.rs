@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::caster::Caster;
 use super::raycast::ColumnMasks;
-use scene::{LidarPattern, LidarSweep, Pose, SensorRig, VoxelGrid, Window};
+use scene::{Lattice, LidarPattern, LidarSweep, Pose, SensorRig, VoxelGrid};
 
 /// The ego vehicle as a box along the ego frame's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +126,7 @@ pub(super) fn look_through(masks: &mut ColumnMasks, ego: EgoBox) {
     };
     for x in range(0, extent.nx()) {
         for y in range(1, extent.ny()) {
-            for z in range(2, Window::NZ) {
+            for z in range(2, Lattice::OCC3D.bins()) {
                 if ego.contains(extent.center(x, y, z)) {
                     masks.set(x, y, z, false);
                 }

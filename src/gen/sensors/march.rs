@@ -20,7 +20,7 @@ use ground::GroundHeightField;
 use paint::RoadMarkings;
 use scene::raster::box_cells;
 use scene::sensor_data::RenderId;
-use scene::{BevLayout, BoxId, Camera, CameraMaps, Class, SceneBox, SensorRig, VoxelGrid, Window};
+use scene::{BevLayout, BoxId, Camera, CameraMaps, Class, Lattice, SceneBox, SensorRig, VoxelGrid};
 use solids::{SolidHit, SolidIndex};
 
 /// Columns this far outside a box still belong to it, m: voxels stick out by up to half of one.
@@ -148,8 +148,8 @@ impl MarchScene {
             let p = self.units.to_ego(origin + unit * h.t).truncate();
             (self.road_id(h.class, h.normal, p), h.normal, None)
         });
-        if let Some(s) = solids(unit, best * Window::VOXEL_M) {
-            best = s.t_m / Window::VOXEL_M;
+        if let Some(s) = solids(unit, best * Lattice::OCC3D.voxel_m()) {
+            best = s.t_m / Lattice::OCC3D.voxel_m();
             let id = s.solid.class.id();
             hit = Some((id, s.solid.normal_at(s.origin + unit * s.t_m), s.box_id));
         }
@@ -164,7 +164,7 @@ impl MarchScene {
             hit = Some((self.road_id(self.label(voxel), normal, p), normal, None));
         }
         hit.map(|(id, normal, box_id)| MarchHit {
-            t: best * Window::VOXEL_M / speed,
+            t: best * Lattice::OCC3D.voxel_m() / speed,
             id,
             normal,
             box_id,
@@ -311,7 +311,7 @@ pub(crate) fn remove_voxels(
     };
     let extent = grid.extent();
     box_cells(extent, b, margin_m, |x, y| {
-        for z in 0..Window::NZ {
+        for z in 0..Lattice::OCC3D.bins() {
             let middle = extent.center(x, y, z).z;
             if (bottom..top).contains(&middle) && grid.get(x, y, z) == b.class.id() {
                 grid.set(x, y, z, Class::FREE);

@@ -12,7 +12,7 @@ use super::cloud::{render_id, road_id};
 use super::raycast::grid_span;
 use super::rays::CameraRays;
 use scene::sensor_data::{PlaneDepths, PlaneRun, RenderId};
-use scene::{Camera, Class, Extent, MultiPlaneImage, VoxelGrid, Window};
+use scene::{Camera, Class, Extent, Lattice, MultiPlaneImage, VoxelGrid};
 
 const FREE: u8 = Class::FREE;
 /// Free in a table of render ids, where 17 is a crossing.
@@ -33,7 +33,7 @@ impl RenderIds {
     pub fn new(grid: &VoxelGrid, bev: &[u32]) -> Self {
         let extent = grid.extent();
         let mut ids = vec![NONE; extent.voxels()];
-        for (column, ids) in ids.chunks_exact_mut(Window::NZ).enumerate() {
+        for (column, ids) in ids.chunks_exact_mut(Lattice::OCC3D.bins()).enumerate() {
             let road = road_id(bev.get(column).copied().unwrap_or(0));
             let [x, y] = extent.column(column);
             let labels = grid.column(x, y);
@@ -58,7 +58,7 @@ impl RenderIds {
         if !(p.min_element() >= 0.0 && p.cmplt(self.size).all()) {
             return NONE;
         }
-        self.ids[(p.x as usize * self.ny + p.y as usize) * Window::NZ + p.z as usize]
+        self.ids[(p.x as usize * self.ny + p.y as usize) * Lattice::OCC3D.bins() + p.z as usize]
     }
 }
 
@@ -79,7 +79,7 @@ pub fn render(
             // Unit depth, so that a multiple of it is a depth.
             let (origin, step) = (
                 ids.extent.to_voxel_units(ray.origin),
-                ray.direction / Window::VOXEL_M,
+                ray.direction / Lattice::OCC3D.voxel_m(),
             );
             if step != DVec3::ZERO {
                 trace(ids, origin, step, planes, &mut runs);
@@ -197,7 +197,7 @@ mod tests {
     fn a_wall_shows_where_it_stands_and_odd_cameras_do_no_harm() {
         let mut grid = VoxelGrid::new();
         for y in 0..Window::NY {
-            for z in 0..Window::NZ {
+            for z in 0..Lattice::OCC3D.bins() {
                 grid.set(150, y, z, Class::Manmade.id()); // x = 20.0 to 20.4 m
             }
         }

@@ -8,10 +8,10 @@ use super::lidar::{EgoBox, Rays, look_through};
 use super::march::CameraRays;
 use super::own_body::OwnBody;
 use super::raycast::ColumnMasks;
-use scene::{Camera, LidarPattern, SensorRig, VoxelGrid, Window};
+use scene::{Camera, Lattice, LidarPattern, SensorRig, VoxelGrid};
 
 /// Rays of a camera are at most this far apart at the far end of the grid, m, unless its pixels are wider.
-const APART_M: f64 = Window::VOXEL_M / 2.0;
+const APART_M: f64 = Lattice::OCC3D.voxel_m() / 2.0;
 /// Rays that one thread works on in a row.
 const RAYS: usize = 4096;
 
@@ -113,8 +113,10 @@ fn marked(masks: &ColumnMasks, rays: usize, ray: impl Fn(usize) -> ObservationRa
             } = ray(i);
             way.clear();
             let origin = extent.to_voxel_units(origin);
-            let hit = masks.walk_in_voxels(origin, direction, most / Window::VOXEL_M, |v| way.push(v));
-            if hit.is_none_or(|(t, _)| t * Window::VOXEL_M >= least) {
+            let hit = masks.walk_in_voxels(origin, direction, most / Lattice::OCC3D.voxel_m(), |v| {
+                way.push(v)
+            });
+            if hit.is_none_or(|(t, _)| t * Lattice::OCC3D.voxel_m() >= least) {
                 way.iter()
                     .for_each(|&[x, y, z]| words[extent.index(x, y)] |= 1 << z);
             }
@@ -197,7 +199,7 @@ mod tests {
         let mut grid = VoxelGrid::new();
         let extent = grid.extent();
         let wall = 180;
-        for (y, z) in (0..extent.ny()).flat_map(|y| (0..Window::NZ).map(move |z| (y, z))) {
+        for (y, z) in (0..extent.ny()).flat_map(|y| (0..Lattice::OCC3D.bins()).map(move |z| (y, z))) {
             grid.set(wall, y, z, Class::Manmade.id());
         }
         let found = observed(&grid, &rig);
@@ -208,7 +210,7 @@ mod tests {
         for x in 110..=wall {
             let ahead_m = extent.center(x, 0, 0).x;
             let [across_m, up_m] = [35f64.to_radians().tan() - 0.05, 0.35].map(|slope| slope * ahead_m);
-            for (y, z) in (0..extent.ny()).flat_map(|y| (0..Window::NZ).map(move |z| (y, z))) {
+            for (y, z) in (0..extent.ny()).flat_map(|y| (0..Lattice::OCC3D.bins()).map(move |z| (y, z))) {
                 let p = extent.center(x, y, z);
                 if p.y.abs() < across_m - 0.4 && (p.z - 1.5).abs() < up_m - 0.4 {
                     assert!(word(x, y) >> z & 1 == 1, "{p}");

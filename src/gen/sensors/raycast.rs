@@ -14,7 +14,7 @@ use glam::DVec3;
 pub use packet::{LANES, Packet, PacketHit};
 use scan::{Scan, Slab};
 use scene::grid::bricks_along;
-use scene::{Class, Extent, VoxelGrid, Window};
+use scene::{Class, Extent, Lattice, VoxelGrid};
 use walk::{GridEntry, walk};
 pub use walk::{RaySpan, grid_span};
 
@@ -132,7 +132,7 @@ impl ColumnMasks {
 
     /// True where a voxel is occupied. Panics outside the grid.
     pub fn occupied(&self, x: usize, y: usize, z: usize) -> bool {
-        assert!(z < Window::NZ, "height {z}");
+        assert!(z < Lattice::OCC3D.bins(), "height {z}");
         self.column(x, y) >> z & 1 == 1
     }
 
@@ -153,10 +153,10 @@ impl ColumnMasks {
         let (t, voxel) = self.cast_in_voxels(
             self.extent.to_voxel_units(origin_in_ego),
             direction_in_ego,
-            max_range_m / Window::VOXEL_M,
+            max_range_m / Lattice::OCC3D.voxel_m(),
         )?;
         Some(RayHit {
-            range_m: t * Window::VOXEL_M,
+            range_m: t * Lattice::OCC3D.voxel_m(),
             voxel,
         })
     }
@@ -202,8 +202,8 @@ impl ColumnMasks {
 
 /// Bits of the voxels that are not free.
 #[inline]
-fn column_mask(column: &[u8; Window::NZ]) -> u16 {
-    if *column == [Class::FREE; Window::NZ] {
+fn column_mask(column: &[u8; Lattice::OCC3D.bins()]) -> u16 {
+    if *column == [Class::FREE; Lattice::OCC3D.bins()] {
         return 0;
     }
     let bits = column.iter().enumerate();

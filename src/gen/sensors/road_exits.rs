@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::border::{Border, Covered, DEPTHS, GridSide, SIDES};
-use scene::{Class, Polyline, PolylineKind, Window};
+use scene::{Class, Lattice, Polyline, PolylineKind};
 
 /// Least and largest width of a road, cells: narrower ground is no road, wider ground is a road along the edge.
 const LEAST: usize = 7;
@@ -79,9 +79,9 @@ pub fn exits(border: &Border, lines: &[Polyline]) -> Vec<Exit> {
                 continue;
             }
             let (a, b) = (side.point(extent, 0, run[0]), side.point(extent, 0, run[1] - 1));
-            let wide = 0.5 * Window::VOXEL_M;
+            let wide = 0.5 * Lattice::OCC3D.voxel_m();
             let at = (a + b) / 2.0 + side.normal() * wide;
-            let near = |p: DVec2| p.distance(at) < (cells as f64 / 2.0 + 2.0) * Window::VOXEL_M;
+            let near = |p: DVec2| p.distance(at) < (cells as f64 / 2.0 + 2.0) * Lattice::OCC3D.voxel_m();
             let lanes = ends
                 .iter()
                 .filter(|[p, _]| near(*p) && inside_m(covered, *p, side) < AT_EDGE_M);
@@ -103,7 +103,7 @@ pub fn exits(border: &Border, lines: &[Polyline]) -> Vec<Exit> {
                 at,
                 heading,
                 half_m: cells as f64 * wide * cosine,
-                walk_m: walk_m.map(|cells| cells as f64 * Window::VOXEL_M * cosine),
+                walk_m: walk_m.map(|cells| cells as f64 * Lattice::OCC3D.voxel_m() * cosine),
             });
         }
     }

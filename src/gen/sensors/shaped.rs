@@ -14,7 +14,8 @@ use super::raycast::ColumnMasks;
 use scene::raster::box_cells;
 use scene::solid::Solid;
 use scene::{
-    BoxId, Class, Extent, Frame, LidarPattern, LidarPoint, LidarSweep, SceneBox, SensorRig, VoxelGrid, Window,
+    BoxId, Class, Extent, Frame, Lattice, LidarPattern, LidarPoint, LidarSweep, SceneBox, SensorRig,
+    VoxelGrid,
 };
 use world::objects;
 
@@ -229,7 +230,7 @@ impl<'a> ShapedBoxes<'a> {
                 ReturnPlacement::At(range_m, class)
             });
         }
-        let max_t = pattern.max_range_m / Window::VOXEL_M;
+        let max_t = pattern.max_range_m / Lattice::OCC3D.voxel_m();
         let (mut from, mut behind) = (0.0, None);
         for _ in 0..MOST_VOXELS {
             let start = origin + ray.direction * from;
@@ -238,18 +239,18 @@ impl<'a> ShapedBoxes<'a> {
             };
             let (t, label) = (from + t, grid.get(voxel[0], voxel[1], voxel[2]));
             let out = left_at(origin, ray.direction, voxel);
-            let met_m = ray.origin.z + ray.direction.z * (t * Window::VOXEL_M + INTO_M);
+            let met_m = ray.origin.z + ray.direction.z * (t * Lattice::OCC3D.voxel_m() + INTO_M);
             match self.owner(voxel, label, met_m, 0.0) {
                 None => {
-                    behind = Some((t * Window::VOXEL_M, label));
+                    behind = Some((t * Lattice::OCC3D.voxel_m(), label));
                     break;
                 }
                 Some(VoxelOwner::Voxels(b)) => {
                     if let Some([near_m, far_m]) = through(b, ray)
-                        && near_m <= out * Window::VOXEL_M
-                        && far_m >= t * Window::VOXEL_M
+                        && near_m <= out * Lattice::OCC3D.voxel_m()
+                        && far_m >= t * Lattice::OCC3D.voxel_m()
                     {
-                        behind = Some(((t * Window::VOXEL_M).clamp(near_m, far_m), label));
+                        behind = Some(((t * Lattice::OCC3D.voxel_m()).clamp(near_m, far_m), label));
                         break;
                     }
                 }
@@ -292,7 +293,7 @@ impl<'a> ShapedBoxes<'a> {
     fn voxel_at(&self, p: DVec3) -> Option<[usize; 3]> {
         let [x, y] = self.extent.column_at(p.x, p.y)?;
         let z = self.extent.to_voxel_units(p).z;
-        (z >= 0.0 && z < Window::NZ as f64).then_some([x, y, z as usize])
+        (z >= 0.0 && z < Lattice::OCC3D.bins() as f64).then_some([x, y, z as usize])
     }
 }
 

@@ -12,7 +12,7 @@ use super::lidar::{EgoBox, Rays};
 use super::march::{GroundHeight, MarchOptions, MarchScene};
 use super::material::{Materials, PulseHit};
 use super::own_body::{OwnBody, is_blind};
-use scene::{BevLayout, Class, Extent, LidarPattern, LidarPoint, VoxelGrid, Window};
+use scene::{BevLayout, Class, Extent, Lattice, LidarPattern, LidarPoint, VoxelGrid};
 use world::SurfacePoint;
 use world::draw::{Draw, hash};
 
@@ -156,7 +156,7 @@ impl SurroundingHits {
                 let backdrop = backdrop.as_ref()?;
                 // The height of things above the voxels is not known.
                 let left_m = backdrop.border().covered().left_by(origin, direction);
-                if origin.z + direction.z * left_m > Window::MAX_M[2] {
+                if origin.z + direction.z * left_m > Lattice::OCC3D.top_m() {
                     return None;
                 }
                 backdrop.cast(origin, direction, pattern.max_range_m)

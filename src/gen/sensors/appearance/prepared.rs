@@ -11,7 +11,7 @@ use crate::march::paint::RoadMarkings;
 use crate::march::{GroundHeight, ground, remove_voxels};
 use crate::rays::CameraRay;
 use scene::appearance::{BLOCK_M, FAR_M, FieldShape};
-use scene::{Background, Conditions, Extent, Frame, Pose, SceneBox, SensorRig, Window};
+use scene::{Background, Conditions, Extent, Frame, Lattice, Pose, SceneBox, SensorRig};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
 const STRAY_M: f64 = 0.7;
@@ -368,7 +368,7 @@ fn within(from: f32, to: f32, n: usize) -> std::ops::Range<usize> {
 
 /// The part of a map that can be seen from near the ego vehicle; a single column if none can.
 fn in_sight(map: Extent, vehicle: &Pose) -> Extent {
-    let columns = (f64::from(FAR_M) / Window::VOXEL_M).ceil() as usize;
+    let columns = (f64::from(FAR_M) / Lattice::OCC3D.voxel_m()).ceil() as usize;
     let middle = [vehicle.translation_m.x, vehicle.translation_m.y].map(|v| (v * 2.5).round() as i32);
     let far = Extent::new(middle.map(|c| c.saturating_sub(columns as i32)), [2 * columns; 2]);
     let seen = far.ok().and_then(|far| far.overlap(&map).map(|part| (far, part)));

@@ -14,7 +14,7 @@ use super::noise::hash1;
 use build::ObjectBuilder;
 use part::rounded;
 use scene::clip::OwnShape;
-use scene::{BoxId, Class, Paint, SceneBox, Window};
+use scene::{BoxId, Class, Lattice, Paint, SceneBox};
 use shapes::shape;
 use voxel_shape::voxel_shape;
 
@@ -155,7 +155,7 @@ impl DrawnObject {
         match own {
             None => shape(&mut build, b.class, id),
             // Three voxels across tell a shape; fewer do not.
-            Some(_) if b.size_m.truncate().min_element() < 3.0 * Window::VOXEL_M => {
+            Some(_) if b.size_m.truncate().min_element() < 3.0 * Lattice::OCC3D.voxel_m() => {
                 shape(&mut build, b.class, id)
             }
             Some(own) => voxel_shape(&mut build, b, own, PartMaterial::Plain(paint)),

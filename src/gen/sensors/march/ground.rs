@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 
-use scene::{Class, Extent, VoxelGrid, Window};
+use scene::{Class, Extent, Lattice, VoxelGrid};
 
 /// Height at which the ground is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -71,18 +71,18 @@ pub fn split(grid: &VoxelGrid, height: GroundHeight) -> (VoxelGrid, GroundHeight
     for x in 0..extent.nx() {
         for y in 0..extent.ny() {
             let column = grid.window_column(x, y);
-            if *column == [Class::FREE; Window::NZ] {
+            if *column == [Class::FREE; Lattice::OCC3D.bins()] {
                 continue;
             }
             let mut upper = *column;
-            if let Some(bin) = (0..Window::NZ).rev().find(|z| is_ground(column[*z])) {
+            if let Some(bin) = (0..Lattice::OCC3D.bins()).rev().find(|z| is_ground(column[*z])) {
                 ground.set(extent.index(x, y), top_of(bin), column[bin]);
                 for label in upper.iter_mut().filter(|l| is_ground(**l)) {
                     *label = Class::FREE;
                 }
             }
             unsmear(&mut upper);
-            if upper != [Class::FREE; Window::NZ] {
+            if upper != [Class::FREE; Lattice::OCC3D.bins()] {
                 *out.window_column_mut(x, y) = upper;
             }
         }
@@ -99,10 +99,10 @@ pub fn top_of(bin: usize) -> f64 {
 }
 
 /// Removes the two lowest voxels of every run that hangs in the air, and the voxels below the ground.
-fn unsmear(column: &mut [u8; Window::NZ]) {
+fn unsmear(column: &mut [u8; Lattice::OCC3D.bins()]) {
     let labels = *column;
     // A run from bin 1 stands on a pavement.
-    for z in SMEAR..Window::NZ {
+    for z in SMEAR..Lattice::OCC3D.bins() {
         let begins = labels[z] != Class::FREE && labels[z - 1] == Class::FREE;
         let run = labels[z..].iter().take_while(|l| **l != Class::FREE).count();
         if begins && run > SMEAR {
@@ -123,7 +123,12 @@ impl GroundHeightField {
     pub fn at(&self, x: usize, y: usize) -> Option<(u8, f64)> {
         let i = self.extent.index(x, y);
         let top = *self.top.get(i)?;
-        (!top.is_nan()).then(|| (self.class[i], top * Window::VOXEL_M + Window::MIN_M[2]))
+        (!top.is_nan()).then(|| {
+            (
+                self.class[i],
+                top * Lattice::OCC3D.voxel_m() + Lattice::OCC3D.bottom_m(),
+            )
+        })
     }
 
     /// Marks a column whose ground an object hid, for [`Self::fill_wanted`].

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::walk::{GridEntry, inverse_of, walk};
 use super::wide::{Wide, WideKernel, heights, run};
 use super::{BLOCK, BORDER, ColumnMasks};
-use scene::{Extent, Window};
+use scene::{Extent, Lattice};
 
 /// Rays in a packet.
 pub const LANES: usize = 8;
@@ -25,7 +25,7 @@ pub(super) const MARGIN: i32 = 1 << (FRACTION - 12);
 const MOST: i32 = 384;
 /// Rays that run this much faster across than along the packet's main axis are cast alone.
 const ASKEW: f64 = 1.25;
-const _: () = assert!(Extent::MAX_SIDE < 1 << 16 && Window::NZ == 16);
+const _: () = assert!(Extent::MAX_SIDE < 1 << 16 && Lattice::OCC3D.bins() == 16);
 const _: () = assert!(MOST as f64 * ASKEW + 3.0 * (BLOCK as f64) < 512.0);
 
 /// Rays from one origin. Fewer than [`LANES`] rays: repeat one.

@@ -5,13 +5,13 @@ use glam::IVec3;
 use super::super::noise::{hash1, unit};
 use super::Structure;
 use scene::appearance::{FieldShape, NZ, TRUNK};
-use scene::{Class, Window};
+use scene::{Class, Lattice};
 
 /// Continues above the grid the structures and crowns that reach its top.
 pub fn raise(shape: &FieldShape, solid: &mut [u8], structure: &[u16], structures: &mut [Structure]) {
     let FieldShape { nx, ny, .. } = *shape;
     let at = |x: usize, y: usize, z: usize| shape.at(x, y, z);
-    let top = Window::NZ; // padded index of the highest voxel
+    let top = Lattice::OCC3D.bins(); // padded index of the highest voxel
     let (made, green) = (Class::Manmade.id(), Class::Vegetation.id());
     for s in structures.iter_mut() {
         if s.height_m > 5.3 && !s.thin {

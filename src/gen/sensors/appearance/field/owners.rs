@@ -6,10 +6,10 @@ use glam::{DVec2, Vec2};
 use scene::appearance::FieldShape;
 use scene::background::in_extent;
 use scene::raster::{disc_cells, line_cells, polygon_cells};
-use scene::{Background, BevLayout, Class, Extent, Form, Thing, Window};
+use scene::{Background, BevLayout, Class, Extent, Form, Lattice, Thing};
 
 /// Margin around a thing's ground plan within which voxels are its own too, m: labels and networks are not exact.
-const MARGIN_M: f64 = Window::VOXEL_M;
+const MARGIN_M: f64 = Lattice::OCC3D.voxel_m();
 
 /// Look of a thing of man-made voxels.
 #[derive(Clone, Copy, Debug)]
@@ -108,9 +108,9 @@ fn owner(thing: &Thing, layout: &BevLayout) -> ColumnOwner {
     let tops = solids.iter().map(|s| s.center.z + s.reach().z);
     let top_m = tops.fold(f64::NEG_INFINITY, f64::max);
     // As high as its highest voxel, which the grid may cut.
-    let bins = ((top_m + 1.0) / Window::VOXEL_M)
+    let bins = ((top_m + 1.0) / Lattice::OCC3D.voxel_m())
         .round()
-        .clamp(1.0, Window::NZ as f64);
+        .clamp(1.0, Lattice::OCC3D.bins() as f64);
     let width_m = 2.0 * form.overhang_m();
     ColumnOwner {
         look: thing.look,
@@ -119,8 +119,9 @@ fn owner(thing: &Thing, layout: &BevLayout) -> ColumnOwner {
                 true => Vec2::X,
                 false => DVec2::from_angle(sum.to_angle() / 4.0).as_vec2(),
             },
-            columns: (length_m / Window::VOXEL_M * (width_m / Window::VOXEL_M).max(1.0)) as u32,
-            height_m: (bins * Window::VOXEL_M - 1.0) as f32,
+            columns: (length_m / Lattice::OCC3D.voxel_m() * (width_m / Lattice::OCC3D.voxel_m()).max(1.0))
+                as u32,
+            height_m: (bins * Lattice::OCC3D.voxel_m() - 1.0) as f32,
             middle: middle_m.as_vec2(),
         }),
     }

@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::PartMaterial;
 use super::build::ObjectBuilder;
 use scene::clip::OwnShape;
-use scene::{SceneBox, Window};
+use scene::{Lattice, SceneBox};
 
 /// Most blocks: a number that the lists of a graphics card hold easily.
 const MOST: usize = 400;
@@ -17,7 +17,7 @@ const BEVEL_M: f32 = 0.03;
 /// Adds the voxels of an object as blocks, as few as are needed; see [`scene::Edit::SetShape`] for the cells. Parts
 /// beyond the box are cut off.
 pub(super) fn voxel_shape(build: &mut ObjectBuilder, b: &SceneBox, shape: &OwnShape, material: PartMaterial) {
-    let voxel = Window::VOXEL_M as f32;
+    let voxel = Lattice::OCC3D.voxel_m() as f32;
     let below = shape.bottom_m(b) as f32;
     let half = build.s / 2.0;
     for (lo, hi) in blocks(&shape.cells()).into_iter().take(MOST) {
