@@ -25,9 +25,12 @@ pub const IMPORTER: Importer = Importer {
 };
 
 fn read(source: &ImportFile<'_>) -> Result<Content, String> {
-    let (labels, mut skipped, map) = match source.options.as_it_is {
-        true => as_it_is(source.bytes)?,
-        false => labels(source.bytes).map(|(labels, skipped)| (labels, skipped, None))?,
+    let rig = SensorRig::default();
+    let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
+    let map = source.options.as_it_is.then(|| own_map(lidar)).transpose()?;
+    let (labels, mut skipped) = match &map {
+        Some(map) => as_it_is(source.bytes, map)?,
+        None => labels(source.bytes)?,
     };
     let invalid = beside(source, "invalid")?;
     for extension in ["bin", "occluded"] {
@@ -67,11 +70,9 @@ fn check_size(bytes: &[u8]) -> Result<(), String> {
     ))
 }
 
-/// Labels in the cells of the file, what was assumed and left out, and their map.
-fn as_it_is(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>, Option<DataMap>), String> {
+/// Labels in the cells of the file, and what was assumed and left out.
+fn as_it_is(bytes: &[u8], map: &DataMap) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> {
     check_size(bytes)?;
-    let rig = SensorRig::default();
-    let map = own_map(rig.lidars.first().ok_or("the usual rig has no LiDAR")?)?;
     let mut grid = VoxelGrid::over(map.extent());
     let mut unknown = 0;
     for (index, raw) in bytes.chunks_exact(2).enumerate() {
@@ -92,7 +93,7 @@ fn as_it_is(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>, Option<
     }
     let placed = "voxels taken around the place of the LiDAR on the nuScenes vehicle";
     skipped.insert(placed.to_owned(), grid.count_set());
-    Ok((grid, skipped, Some(map)))
+    Ok((grid, skipped))
 }
 
 /// The voxels of a map of the cells that no scan saw.

@@ -57,8 +57,8 @@ impl Lattice {
                 Self::MAX_BINS
             ));
         }
-        // Written so that NaN fails too.
-        if !(bottom_m.abs() <= Self::FARTHEST_BOTTOM_M) {
+        const FARTHEST: f64 = Lattice::FARTHEST_BOTTOM_M;
+        if !(-FARTHEST..=FARTHEST).contains(&bottom_m) {
             return Err(format!(
                 "a lowest bin at {bottom_m} m, expected a height within {} m",
                 Self::FARTHEST_BOTTOM_M
