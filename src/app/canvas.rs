@@ -474,6 +474,17 @@ fn thing_under(scene: &Scene, p_m: DVec2) -> Option<&Thing> {
     scene.background.get(id)
 }
 
+/// A voxel's class, and the name that its data set has for it where that says more.
+pub(super) fn label_text(scene: &Scene, class: Class, voxel: [usize; 3]) -> String {
+    let name = t(&class.label()).to_owned();
+    let labels = scene.frame().inferred.data_labels.as_ref();
+    let told = labels.and_then(|labels| labels.set().name(labels.label(voxel, class)));
+    match told.filter(|told| *told != class.name()) {
+        Some(told) => format!("{name} ({told})"),
+        None => name,
+    }
+}
+
 /// The status bar's text for a point of the view: position, layers, voxels, box or thing.
 pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
     let mut parts = vec![position_text(p_m)];
@@ -497,8 +508,8 @@ pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
     }
     let column = frame.occupancy.column(x, y);
     let top = column.iter().rposition(|v| *v != Class::FREE);
-    parts.push(match top.and_then(|z| Class::from_id(column[z])) {
-        Some(class) => tf!("on top {class}", class = t(&class.label())),
+    parts.push(match top.and_then(|z| Class::from_id(column[z]).zip(Some(z))) {
+        Some((class, z)) => tf!("on top {class}", class = label_text(scene, class, [x, y, z])),
         None => t("nothing seen").into(),
     });
     if let Some(id) = pick::box_at(frame, p_m) {

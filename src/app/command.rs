@@ -44,7 +44,7 @@ pub enum FileCommand {
     /// Starts a new scene.
     New,
     /// Starts from a ready-made road.
-    NewFrom(&'static str),
+    NewFrom(&'static str, scene::Lattice),
     /// Makes a new scene from a description in words.
     Describe(String),
     /// Makes a new scene from a prompt that was read, with a seed.

@@ -111,7 +111,7 @@ pub fn export_all(
     // Files of a moment are in the ego frame; sensors are computed in the world frame.
     for format in formats {
         let of_file = match format.span {
-            ExportSpan::Moment if formats::export::keeps_lattice(format, scene) => Cow::Owned(scene.still()),
+            ExportSpan::Moment if formats::export::keeps_lattice(format, scene) => scene.in_ego(),
             ExportSpan::Clip if formats::export::keeps_lattice(format, scene) => Cow::Borrowed(scene),
             ExportSpan::Moment => Cow::Owned(scene.in_lattice(Lattice::OCC3D).in_ego().into_owned()),
             ExportSpan::Clip => scene.in_lattice(Lattice::OCC3D),

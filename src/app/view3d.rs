@@ -18,6 +18,7 @@ use viewport::{
     lidar_colors,
 };
 
+use super::canvas::label_text;
 use super::canvas_tools::{Driver, ViewContext};
 use super::command::Command;
 use super::marks::Board;
@@ -574,7 +575,7 @@ fn readout(scene: &Scene, hit: &PickHit, ray: &PickRay) -> String {
             }
         }
         PickHit::Voxel(v) => {
-            parts.push(Class::from_id(v.label).map_or_else(String::new, |c| t(&c.label()).to_owned()));
+            parts.push(Class::from_id(v.label).map_or_else(String::new, |c| label_text(scene, c, v.cell)));
             let thing = pick_things::thing_of_voxel(scene.frame(), &scene.background, v.cell);
             if let Some(thing) = thing.and_then(|id| scene.background.get(id)) {
                 parts.push(format!("{} #{}", t(thing.form.name()), thing.id.0));

@@ -24,6 +24,7 @@ mod moments;
 pub mod multi_plane;
 mod npy;
 pub mod npz;
+mod nuplan_occ;
 pub mod nuscenes;
 pub mod occ3d;
 pub mod opendrive;

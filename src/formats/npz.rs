@@ -1,6 +1,6 @@
 //! Numpy archives, written: named arrays, compressed; equal arrays give equal bytes.
 
-use std::io::{self, Cursor, Write as _};
+use std::io::{self, Cursor, Read as _, Write as _};
 
 use bytemuck::cast_slice;
 use npyz::{AutoSerialize, WriteOptions, WriterBuilder};
@@ -44,6 +44,24 @@ pub fn to_bytes(arrays: &[Array<'_>]) -> io::Result<Vec<u8>> {
         zip.write_all(values)?;
     }
     Ok(zip.finish()?.into_inner())
+}
+
+/// An archive with one array, given as an `.npy` file.
+pub fn holding(name: &str, npy: &[u8]) -> io::Result<Vec<u8>> {
+    let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    let options = zip::write::SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
+    zip.start_file(npyz::npz::file_name_from_array_name(name), options)?;
+    zip.write_all(npy)?;
+    Ok(zip.finish()?.into_inner())
+}
+
+/// An array of an archive as an `.npy` file; `None` if there is none of that name, or it is larger than the limit, bytes.
+pub fn entry(bytes: &[u8], name: &str, limit: u64) -> Option<Vec<u8>> {
+    let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).ok()?;
+    let file = zip.by_name(&npyz::npz::file_name_from_array_name(name)).ok()?;
+    let mut out = Vec::new();
+    file.take(limit + 1).read_to_end(&mut out).ok()?;
+    (out.len() as u64 <= limit).then_some(out)
 }
 
 /// One array of whole numbers (`<i4`) as an `.npy` file. Errors if it has not as many values as its shape says.

@@ -2,9 +2,7 @@
 //! [200, 200, 16], index `[x][y][z]`, ego frame, 0.4 m, 17 = free; a mask is 0 where nothing was observed. Ours have `recipe` too:
 //! the bytes of a JSON text, see [`Recipe`].
 //! Also read: an archive with one array, `occ` (UniScene's output) or `arr_0` (submission files); OpenDriveLab's openocc labels
-//! and Occ3D-Waymo labels of 0.4 m, which have the same shape and other numbers ([`Numbering`]).
-
-mod numbering;
+//! and Occ3D-Waymo labels of 0.4 m, which have the same shape and other numbers ([`scene::label_sets`]).
 
 use std::io::{Cursor, Read};
 use std::path::Path;
@@ -13,14 +11,13 @@ use npyz::{NpyFile, Order};
 use thiserror::Error;
 use zip::ZipArchive;
 
-pub use numbering::Numbering;
-
 use super::input::{self, InputError};
 use super::npy;
 use super::npz::{self, NpzValues as Npy};
 use super::recipe::{self, Recipe};
+use scene::label_sets::{OCC3D_WAYMO, OPEN_OCC};
 use scene::message::{one_line, quoted, shortened};
-use scene::{Class, VoxelGrid, Window};
+use scene::{Class, DataLabels, Extent, LabelSet, VoxelGrid, Window};
 
 /// Names that the labels may have, in order of preference.
 const NAMES: [&str; 4] = ["semantics", "occ", "arr_0", WAYMO_LABELS];
@@ -90,8 +87,10 @@ pub fn load(path: &Path) -> Result<Occ3dFrame, Occ3dError> {
 pub struct Occ3dFile {
     /// The frame, its classes numbered as [`Class`].
     pub frame: Occ3dFrame,
-    /// How the file numbers them.
-    pub numbering: Numbering,
+    /// Label set of the file, if it is another than [`Class`].
+    pub set: Option<&'static LabelSet>,
+    /// Labels of the file that say more than the class.
+    pub data_labels: Option<DataLabels>,
     /// How the file came to be, if it says: a [`crate::recipe::Recipe`].
     pub recipe: Option<serde_json::Value>,
     /// Arrays of the file that are not read.
@@ -117,10 +116,13 @@ pub fn read_found(bytes: &[u8]) -> Result<Occ3dFile, Occ3dError> {
             return Err(Occ3dError::NoLabels { found });
         }
     };
-    let (labels, numbering) = classes(&name, array(&mut zip, &name)?)?;
-    let masks = match numbering {
-        Numbering::Waymo => WAYMO_MASKS,
-        _ => MASKS,
+    let values = bytes_of(&name, array(&mut zip, &name)?)?;
+    let set = label_set(&name, &values);
+    let data_labels = (set == Some(&OCC3D_WAYMO)).then(|| waymo_labels(&values));
+    let labels = classes(&name, values, set)?;
+    let masks = match set == Some(&OCC3D_WAYMO) {
+        true => WAYMO_MASKS,
+        false => MASKS,
     };
     let mut mask = |name: &str| -> Result<Option<Vec<bool>>, Occ3dError> {
         if !found.iter().any(|f| f == name) {
@@ -141,7 +143,8 @@ pub fn read_found(bytes: &[u8]) -> Result<Occ3dFile, Occ3dError> {
     let is_read = |other: &String| *other == name || masks.contains(&other.as_str()) || is_recipe(other);
     Ok(Occ3dFile {
         frame,
-        numbering,
+        set,
+        data_labels,
         left_out: found.iter().filter(|other| !is_read(other)).cloned().collect(),
         recipe,
     })
@@ -162,45 +165,75 @@ fn recipe(zip: &mut ZipArchive<Cursor<&[u8]>>) -> Option<serde_json::Value> {
     serde_json::from_slice(&text.into_vec::<u8>().ok()?).ok()
 }
 
-/// The classes of an array of labels, and how it numbers them.
-fn classes(name: &str, values: LabelValues) -> Result<(Vec<u8>, Numbering), Occ3dError> {
-    let wrong = |i: usize, found: i64, numbering: Numbering| Occ3dError::Array {
-        name: quoted(name, 80),
-        problem: format!(
-            "class {found} at voxel {}, {}, {}, expected {}",
-            i / (Window::NY * Window::NZ),
-            i / Window::NZ % Window::NY,
-            i % Window::NZ,
-            numbering.expected()
-        ),
-    };
-    let mut labels: Vec<u8> = match values {
-        LabelValues::Bytes(labels) => labels,
+/// Labels as bytes. Errors on one that is no byte.
+fn bytes_of(name: &str, values: LabelValues) -> Result<Vec<u8>, Occ3dError> {
+    match values {
+        LabelValues::Bytes(labels) => Ok(labels),
         LabelValues::Wide(labels) => {
             let byte = |(i, label): (usize, &i64)| {
-                u8::try_from(*label).map_err(|_| wrong(i, *label, Numbering::Occ3d))
+                u8::try_from(*label).map_err(|_| wrong_label(name, i, *label, "0 to 17"))
             };
-            labels.iter().enumerate().map(byte).collect::<Result<_, _>>()?
+            labels.iter().enumerate().map(byte).collect()
         }
-    };
-    let mut counts = [0; 256];
-    labels.iter().for_each(|label| counts[usize::from(*label)] += 1);
-    let numbering = match name == WAYMO_LABELS {
-        true => Numbering::Waymo,
-        false => Numbering::of_histogram(&counts),
-    };
-    let class: [Option<u8>; 256] = std::array::from_fn(|label| numbering.class(label as u8).map(Class::id));
-    if (0..256).any(|label| counts[label] > 0 && class[label].is_none()) {
-        let at = labels.iter().position(|l| class[usize::from(*l)].is_none());
-        let at = at.unwrap_or_default();
-        return Err(wrong(at, labels[at].into(), numbering));
     }
-    if numbering != Numbering::Occ3d {
+}
+
+fn wrong_label(name: &str, i: usize, found: i64, expected: &str) -> Occ3dError {
+    let [x, y, z] = place(i);
+    Occ3dError::Array {
+        name: quoted(name, 80),
+        problem: format!("class {found} at voxel {x}, {y}, {z}, expected {expected}"),
+    }
+}
+
+/// The voxel with a number in arrays `[x][y][z]`.
+fn place(i: usize) -> [usize; 3] {
+    [
+        i / (Window::NY * Window::NZ),
+        i / Window::NZ % Window::NY,
+        i % Window::NZ,
+    ]
+}
+
+/// The label set of an array: that of its name, or the one that its most frequent label tells. Free is by far the most frequent
+/// label, so an array without 17 in which more than half of the voxels are 16 is openocc's. `None` for the labels of Occ3D.
+fn label_set(name: &str, labels: &[u8]) -> Option<&'static LabelSet> {
+    if name == WAYMO_LABELS {
+        return Some(&OCC3D_WAYMO);
+    }
+    let count = |of: u8| labels.iter().filter(|label| **label == of).count();
+    let is_openocc = !labels.contains(&Class::FREE) && 2 * count(Class::FREE - 1) > labels.len();
+    is_openocc.then_some(&OPEN_OCC)
+}
+
+/// The classes of labels. Errors on a label that the set does not have.
+fn classes(name: &str, mut labels: Vec<u8>, set: Option<&LabelSet>) -> Result<Vec<u8>, Occ3dError> {
+    let class_of = |label: usize| match set {
+        Some(set) => set.class(label as u16).map(Class::id),
+        None => Class::from_id(label as u8).map(Class::id),
+    };
+    let class: [Option<u8>; 256] = std::array::from_fn(class_of);
+    let found = labels.iter().position(|l| class[usize::from(*l)].is_none());
+    if let Some(at) = found {
+        let expected = set.map_or_else(|| "0 to 17".to_owned(), LabelSet::numbers);
+        return Err(wrong_label(name, at, labels[at].into(), &expected));
+    }
+    if set.is_some() {
         for label in &mut labels {
             *label = class[usize::from(*label)].unwrap_or(Class::FREE);
         }
     }
-    Ok((labels, numbering))
+    Ok(labels)
+}
+
+/// Labels of Occ3D-Waymo on the window. Free is 15 or 23, whichever is more frequent.
+fn waymo_labels(labels: &[u8]) -> DataLabels {
+    let count = |of: u8| labels.iter().filter(|label| **label == of).count();
+    let free = if count(15) > count(23) { 15 } else { 23 };
+    let voxels = labels.iter().enumerate();
+    let set = voxels.filter(|(_, label)| u16::from(**label) != free);
+    let set = set.map(|(i, label)| (place(i), u16::from(*label)));
+    DataLabels::new(&OCC3D_WAYMO, Extent::WINDOW, free, set)
 }
 
 /// Labels as an npz file with the array `semantics`, compressed; equal labels give equal bytes.
@@ -220,14 +253,45 @@ pub fn frame_with_recipe_to_bytes(frame: &Occ3dFrame, recipe: &Recipe) -> Vec<u8
     arrays_to_bytes(&frame.labels, masks.map(Option::as_deref), Some(recipe))
 }
 
+/// A frame as Occ3D-Waymo keeps it, its labels in that set: those of the file that it came from where no edit changed the class.
+pub fn waymo_to_bytes(frame: &Occ3dFrame, data_labels: Option<&DataLabels>) -> Vec<u8> {
+    let usual = DataLabels::new(&OCC3D_WAYMO, Extent::WINDOW, 23, []);
+    let of_file = data_labels
+        .filter(|l| l.set() == &OCC3D_WAYMO)
+        .map(|l| l.crop(Extent::WINDOW));
+    let labels = of_file.unwrap_or(usual).dense(&frame.labels);
+    // (a number above 255, which no file has, would be shown as others)
+    let others = OCC3D_WAYMO.label(Class::Others) as u8;
+    let labels = labels
+        .iter()
+        .map(|label| u8::try_from(*label).unwrap_or(others))
+        .collect();
+    let masks = [&frame.lidar_observed, &frame.camera_observed].map(Option::as_deref);
+    npz_of(labels, WAYMO_LABELS, WAYMO_MASKS.into_iter().zip(masks), None)
+}
+
 fn arrays_to_bytes(labels: &VoxelGrid, masks: [Option<&[bool]>; 2], recipe: Option<&Recipe>) -> Vec<u8> {
+    npz_of(
+        labels.to_dense(),
+        "semantics",
+        MASKS.into_iter().zip(masks),
+        recipe,
+    )
+}
+
+fn npz_of<'a>(
+    labels: Vec<u8>,
+    name: &'a str,
+    masks: impl IntoIterator<Item = (&'a str, Option<&'a [bool]>)>,
+    recipe: Option<&Recipe>,
+) -> Vec<u8> {
     let array = |name, bytes| npz::Array {
         name,
         shape: &[Window::NX, Window::NY, Window::NZ],
         values: Npy::U8(bytes),
     };
-    let mut all = vec![array("semantics", labels.to_dense())];
-    for (name, mask) in MASKS.into_iter().zip(masks) {
+    let mut all = vec![array(name, labels)];
+    for (name, mask) in masks {
         all.extend(mask.map(|mask| array(name, mask.iter().map(|seen| u8::from(*seen)).collect())));
     }
     let text = recipe.map(|r| r.to_json().into_bytes()).unwrap_or_default();

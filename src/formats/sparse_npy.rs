@@ -8,7 +8,8 @@
 //!
 //! Classes 1 to 16 are those of [`scene::Class`] in all of them.
 
-use scene::{Frame, LidarPattern, Pose, Scene};
+use scene::label_sets::NUSCENES;
+use scene::{Class, Frame, LabelSet, LidarPattern, Pose, Scene};
 
 use crate::voxels::{DataCells, DataMap, LabelledCell, cells_of, check, physical};
 use crate::{FormatError, npz};
@@ -46,7 +47,8 @@ pub(crate) const SURROUND_OCC: SparseDataset = SparseDataset {
     z_first: false,
 };
 
-const SURROUND_OCC_FINE: SparseDataset = SparseDataset {
+/// See the module.
+pub(crate) const SURROUND_OCC_FINE: SparseDataset = SparseDataset {
     assumed: "rows taken as SurroundOcc: x, y, z, class in cells of 0.2 m of the LiDAR's frame, the LiDAR as on the nuScenes vehicle",
     lattice: DataCells {
         size: [500, 500, 40],
@@ -56,7 +58,8 @@ const SURROUND_OCC_FINE: SparseDataset = SparseDataset {
     z_first: false,
 };
 
-const UNI_SCENE: SparseDataset = SparseDataset {
+/// See the module.
+pub(crate) const UNI_SCENE: SparseDataset = SparseDataset {
     assumed: "rows taken as UniScene: x, y, z, class in cells of 0.125 m of the LiDAR's frame, the LiDAR as on the nuScenes vehicle",
     lattice: DataCells {
         size: [800, 800, 64],
@@ -73,19 +76,19 @@ const LOW_M: [f64; 3] = [-50.0, -50.0, -5.0];
 pub(crate) const KINDS: [SparseDataset; 4] = [OPEN_OCCUPANCY, SURROUND_OCC, SURROUND_OCC_FINE, UNI_SCENE];
 
 impl SparseDataset {
-    /// The cell that a row's first three values tell.
-    pub fn cell(&self, [a, b, c]: [usize; 3]) -> [usize; 3] {
+    /// The cell that a row's first three values tell, and the values that tell a cell.
+    pub fn cell<T>(&self, [a, b, c]: [T; 3]) -> [T; 3] {
         match self.z_first {
             true => [c, b, a],
             false => [a, b, c],
         }
     }
 
-    /// The data set's own map, if a scene is on it.
+    /// The data set's own map, if that of a scene holds it.
     pub fn own_map(&self, scene: &Scene) -> Option<DataMap> {
         let lidar = scene.rig.lidars.first()?;
-        let map = DataMap::new(&self.lattice, &ego_from_lidar(lidar), lidar).ok()?;
-        (map.extent() == scene.frame().extent()).then_some(map)
+        let map = DataMap::new(&self.lattice, &ego_from_lidar(lidar)).ok()?;
+        map.lies_in(scene.frame().extent()).then_some(map)
     }
 
     /// The kind of a file with these largest values in its first three columns: the smallest grid that holds them. Where both
@@ -102,36 +105,77 @@ impl SparseDataset {
     }
 }
 
-/// The voxels of a map of the data set's own.
-fn own_cells(frame: &Frame, map: &DataMap) -> Result<Vec<LabelledCell>, FormatError> {
-    check(frame)?;
-    let voxels = frame.occupancy.iter_set();
-    let cell = |(x, y, z, class)| LabelledCell {
-        at: map.cell([x, y, z]).map(|v| v as u16),
-        class,
-    };
-    Ok(voxels.map(cell).collect())
+/// The first of some kinds whose own map that of a scene holds.
+pub(crate) fn own_kind(kinds: &[SparseDataset], scene: &Scene) -> Option<SparseDataset> {
+    kinds.iter().find(|kind| kind.own_map(scene).is_some()).copied()
 }
 
-/// A scene's voxels as such a file, sorted by the columns, at their true height instead of that of Occ3D.
-pub(crate) fn to_bytes(scene: &Scene, kind: &SparseDataset) -> Result<Vec<u8>, FormatError> {
+/// Rows of the cells that are not free, of a scene in the voxels of Occ3D, at their true height: x, y, z, label.
+pub(crate) fn resampled_rows(
+    frame: &Frame,
+    cells: &DataCells,
+    ego_from_cells: &Pose,
+    set: &LabelSet,
+) -> Result<Vec<[i32; 4]>, FormatError> {
+    let row = |cell: &LabelledCell| {
+        let [x, y, z] = cell.at.map(i32::from);
+        let class = Class::from_id(cell.class).unwrap_or(Class::Others);
+        [x, y, z, i32::from(set.label(class))]
+    };
+    Ok(cells_of(&physical(frame)?, cells, ego_from_cells)
+        .iter()
+        .map(row)
+        .collect())
+}
+
+/// Rows of the voxels of a frame that lie on a data set's own map: x, y, z of the cell, and the label that it was read with where
+/// no edit changed the class.
+pub(crate) fn own_rows(frame: &Frame, map: &DataMap, set: &LabelSet) -> Result<Vec<[i32; 4]>, FormatError> {
+    check(frame)?;
+    let frame = frame.crop(map.extent());
+    let data_labels = frame
+        .inferred
+        .data_labels
+        .as_ref()
+        .filter(|labels| labels.set() == set);
+    let row = |(x, y, z, class)| {
+        let class = Class::from_id(class).unwrap_or(Class::Others);
+        let label = match data_labels {
+            Some(labels) => labels.label([x, y, z], class),
+            None => set.label(class),
+        };
+        let [i, j, k] = map.cell([x, y, z]).map(|v| v as i32);
+        [i, j, k, i32::from(label)]
+    };
+    Ok(frame.occupancy.iter_set().map(row).collect())
+}
+
+/// A scene's voxels as a file of the first of some kinds on whose own map it is, or else of the first of them: sorted by the
+/// columns, at their true height instead of that of Occ3D.
+pub(crate) fn to_bytes(scene: &Scene, kinds: &[SparseDataset]) -> Result<Vec<u8>, FormatError> {
     let lidar = scene.rig.lidars.first();
     let lidar =
         lidar.ok_or_else(|| FormatError::new("the rig has no LiDAR, in whose frame the voxels are"))?;
-    let cells = match kind.own_map(scene) {
-        Some(map) => own_cells(scene.frame(), &map)?,
-        None => cells_of(&physical(scene.frame())?, &kind.lattice, &ego_from_lidar(lidar)),
+    let own = own_kind(kinds, scene);
+    let kind = own.unwrap_or(kinds[0]);
+    let mut rows = match own.and_then(|kind| kind.own_map(scene)) {
+        Some(map) => own_rows(scene.frame(), &map, &NUSCENES)?,
+        None => resampled_rows(scene.frame(), &kind.lattice, &ego_from_lidar(lidar), &NUSCENES)?,
     };
-    if cells.is_empty() {
+    for row in &mut rows {
+        let [x, y, z, _] = *row;
+        row[..3].copy_from_slice(&kind.cell([x, y, z]));
+    }
+    as_array(rows)
+}
+
+/// Rows as an array, sorted. Errors if there is none.
+pub(crate) fn as_array(mut rows: Vec<[i32; 4]>) -> Result<Vec<u8>, FormatError> {
+    if rows.is_empty() {
         return Err(FormatError::new(
             "no voxel around the vehicle, and readers of such files expect one",
         ));
     }
-    let row = |cell: &LabelledCell| {
-        let [a, b, c] = kind.cell(cell.at.map(usize::from)).map(|v| v as i32);
-        [a, b, c, i32::from(cell.class)]
-    };
-    let mut rows: Vec<[i32; 4]> = cells.iter().map(row).collect();
     rows.sort_unstable();
     npz::npy(&[rows.len(), 4], rows.as_flattened()).map_err(FormatError::new)
 }

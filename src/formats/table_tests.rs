@@ -309,7 +309,7 @@ pub(crate) fn round_trip(exporter: &Exporter, scene: &Scene) -> Option<Content> 
         (None, [file]) => folder.path().join(&file.name),
         (None, files) => panic!("{}: {} files, expected one", exporter.id, files.len()),
     };
-    Some(import::read_as(importer, &first).expect(exporter.id))
+    Some(import::read_resampled(importer, &first).expect(exporter.id))
 }
 
 /// Panics where a format that loses nothing has not brought back what it holds.

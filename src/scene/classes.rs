@@ -61,26 +61,69 @@ impl Palette {
     }
 }
 
-/// After Okabe and Ito (2008), objects saturated, surroundings pale or dark.
-const SAFE_COLORS: [[u8; 3]; 18] = [
-    [128, 128, 128],
-    [190, 120, 40],
-    [204, 121, 167],
-    [240, 228, 66],
-    [0, 114, 178],
-    [0, 190, 170],
-    [230, 159, 0],
-    [213, 94, 0],
-    [255, 250, 200],
-    [120, 80, 40],
-    [86, 180, 233],
-    [84, 88, 100],
-    [150, 150, 146],
-    [178, 166, 186],
-    [176, 182, 150],
-    [214, 212, 220],
-    [44, 92, 70],
-    [0, 0, 0],
+/// Facts about a class. A class is one row of [`ROWS`].
+struct ClassRow {
+    class: Class,
+    /// Name as in files.
+    name: &'static str,
+    /// sRGB colour in each [`Palette`]: close to the palette of OccWorld and Occ3D, with lightness tuned so that large surfaces
+    /// stay calm and objects stand out; and after Okabe and Ito (2008), objects saturated, surroundings pale or dark.
+    colors: [[u8; 3]; 2],
+    role: ClassRole,
+    /// Length, width and height of a typical object, m (median of the nuScenes boxes, rounded).
+    size_m: Option<[f64; 3]>,
+}
+
+/// Part that a class plays in a scene.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum ClassRole {
+    /// Object that drives, has a box.
+    Vehicle,
+    /// Other object with a box.
+    Object,
+    /// Surface that one stands on.
+    Ground,
+    /// All else.
+    Other,
+}
+
+const fn row(
+    class: Class,
+    name: &'static str,
+    role: ClassRole,
+    colors: [[u8; 3]; 2],
+    size_m: Option<[f64; 3]>,
+) -> ClassRow {
+    ClassRow {
+        class,
+        name,
+        colors,
+        role,
+        size_m,
+    }
+}
+
+/// Every class, in the order of its label value.
+#[rustfmt::skip]
+static ROWS: [ClassRow; Class::COUNT] = [
+    row(Class::Others, "others", ClassRole::Other, [[128, 128, 128], [128, 128, 128]], None),
+    row(Class::Barrier, "barrier", ClassRole::Object, [[255, 120, 50], [190, 120, 40]], Some([0.5, 2.5, 1.0])),
+    row(Class::Bicycle, "bicycle", ClassRole::Object, [[255, 170, 190], [204, 121, 167]], Some([1.7, 0.6, 1.3])),
+    row(Class::Bus, "bus", ClassRole::Vehicle, [[250, 220, 40], [240, 228, 66]], Some([11.0, 2.95, 3.5])),
+    row(Class::Car, "car", ClassRole::Vehicle, [[30, 150, 245], [0, 114, 178]], Some([4.6, 1.95, 1.7])),
+    row(Class::ConstructionVehicle, "construction_vehicle", ClassRole::Vehicle, [[20, 220, 225], [0, 190, 170]], Some([6.4, 2.85, 3.2])),
+    row(Class::Motorcycle, "motorcycle", ClassRole::Object, [[255, 127, 0], [230, 159, 0]], Some([2.1, 0.8, 1.5])),
+    row(Class::Pedestrian, "pedestrian", ClassRole::Object, [[240, 40, 50], [213, 94, 0]], Some([0.7, 0.7, 1.75])),
+    row(Class::TrafficCone, "traffic_cone", ClassRole::Object, [[255, 236, 140], [255, 250, 200]], Some([0.4, 0.4, 1.05])),
+    row(Class::Trailer, "trailer", ClassRole::Vehicle, [[150, 85, 30], [120, 80, 40]], Some([12.3, 2.9, 3.9])),
+    row(Class::Truck, "truck", ClassRole::Vehicle, [[160, 60, 240], [86, 180, 233]], Some([6.9, 2.5, 2.85])),
+    row(Class::DriveableSurface, "driveable_surface", ClassRole::Ground, [[104, 94, 116], [84, 88, 100]], None),
+    row(Class::OtherFlat, "other_flat", ClassRole::Ground, [[139, 137, 137], [150, 150, 146]], None),
+    row(Class::Sidewalk, "sidewalk", ClassRole::Ground, [[152, 124, 148], [178, 166, 186]], None),
+    row(Class::Terrain, "terrain", ClassRole::Ground, [[138, 170, 98], [176, 182, 150]], None),
+    row(Class::Manmade, "manmade", ClassRole::Other, [[205, 203, 214], [214, 212, 220]], None),
+    row(Class::Vegetation, "vegetation", ClassRole::Other, [[62, 140, 66], [44, 92, 70]], None),
+    row(Class::Free, "free", ClassRole::Other, [[0, 0, 0], [0, 0, 0]], None),
 ];
 
 impl Class {
@@ -89,26 +132,15 @@ impl Class {
     /// Label value of empty space.
     pub const FREE: u8 = Class::Free as u8;
     /// Every class in the order of its label value.
-    pub const ALL: [Class; 18] = [
-        Class::Others,
-        Class::Barrier,
-        Class::Bicycle,
-        Class::Bus,
-        Class::Car,
-        Class::ConstructionVehicle,
-        Class::Motorcycle,
-        Class::Pedestrian,
-        Class::TrafficCone,
-        Class::Trailer,
-        Class::Truck,
-        Class::DriveableSurface,
-        Class::OtherFlat,
-        Class::Sidewalk,
-        Class::Terrain,
-        Class::Manmade,
-        Class::Vegetation,
-        Class::Free,
-    ];
+    pub const ALL: [Class; Class::COUNT] = {
+        let mut all = [Class::Free; Class::COUNT];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = ROWS[i].class;
+            i += 1;
+        }
+        all
+    };
     /// The ten classes a box may have.
     pub const OBJECTS: [Class; 10] = [
         Class::Car,
@@ -135,29 +167,13 @@ impl Class {
         self as u8
     }
 
+    fn row(self) -> &'static ClassRow {
+        &ROWS[self as usize]
+    }
+
     /// Name as in files: `driveable_surface`.
     pub fn name(self) -> &'static str {
-        const NAMES: [&str; 18] = [
-            "others",
-            "barrier",
-            "bicycle",
-            "bus",
-            "car",
-            "construction_vehicle",
-            "motorcycle",
-            "pedestrian",
-            "traffic_cone",
-            "trailer",
-            "truck",
-            "driveable_surface",
-            "other_flat",
-            "sidewalk",
-            "terrain",
-            "manmade",
-            "vegetation",
-            "free",
-        ];
-        NAMES[self as usize]
+        self.row().name
     }
 
     /// The class of that name.
@@ -172,73 +188,33 @@ impl Class {
 
     /// True for the ten classes a box may have.
     pub fn is_object(self) -> bool {
-        (1..=10).contains(&self.id())
+        matches!(self.row().role, ClassRole::Vehicle | ClassRole::Object)
     }
 
     /// True for the classes that drive: bus, car, construction vehicle, trailer, truck.
     pub fn is_vehicle(self) -> bool {
-        matches!(
-            self,
-            Class::Bus | Class::Car | Class::ConstructionVehicle | Class::Trailer | Class::Truck
-        )
+        self.row().role == ClassRole::Vehicle
     }
 
     /// True for surfaces one stands on: ids 11 to 14.
     #[inline]
     pub fn is_ground(self) -> bool {
-        (11..=14).contains(&self.id())
+        self.row().role == ClassRole::Ground
     }
 
-    /// sRGB colour on screen. The hues keep the field's convention (palette of OccWorld and
-    /// Occ3D); lightness is tuned so that large surfaces stay calm and objects stand out.
+    /// sRGB colour on screen.
     pub fn color(self) -> [u8; 3] {
         self.color_in(Palette::current())
     }
 
     /// sRGB colour in a palette; no two classes have the same.
     pub fn color_in(self, palette: Palette) -> [u8; 3] {
-        const COLORS: [[u8; 3]; 18] = [
-            [128, 128, 128],
-            [255, 120, 50],
-            [255, 170, 190],
-            [250, 220, 40],
-            [30, 150, 245],
-            [20, 220, 225],
-            [255, 127, 0],
-            [240, 40, 50],
-            [255, 236, 140],
-            [150, 85, 30],
-            [160, 60, 240],
-            [104, 94, 116],
-            [139, 137, 137],
-            [152, 124, 148],
-            [138, 170, 98],
-            [205, 203, 214],
-            [62, 140, 66],
-            [0, 0, 0],
-        ];
-        match palette {
-            Palette::Standard => COLORS[self as usize],
-            Palette::ColorBlindSafe => SAFE_COLORS[self as usize],
-        }
+        self.row().colors[palette as usize]
     }
 
-    /// Length, width and height in metres of a typical object of this class (median of the
-    /// nuScenes boxes, rounded); `None` for classes that are not objects.
+    /// Length, width and height in metres of a typical object of this class; `None` for classes that are not objects.
     pub fn typical_size_m(self) -> Option<[f64; 3]> {
-        Some(match self {
-            Class::Car => [4.6, 1.95, 1.7],
-            Class::Truck => [6.9, 2.5, 2.85],
-            Class::ConstructionVehicle => [6.4, 2.85, 3.2],
-            Class::Bus => [11.0, 2.95, 3.5],
-            Class::Trailer => [12.3, 2.9, 3.9],
-            Class::Barrier => [0.5, 2.5, 1.0],
-            Class::Motorcycle => [2.1, 0.8, 1.5],
-            Class::Bicycle => [1.7, 0.6, 1.3],
-            Class::Pedestrian => [0.7, 0.7, 1.75],
-            Class::TrafficCone => [0.4, 0.4, 1.05],
-            _ => return None,
-        })
+        self.row().size_m
     }
 }
 

@@ -134,6 +134,7 @@ fn in_ego(frame: &Frame, extent: Extent) -> Frame {
         painted,
         inferred: Inferred {
             unobserved,
+            data_labels: None,
             ..frame.inferred.clone()
         },
         waivers: Arc::new(

@@ -108,6 +108,7 @@ impl Frame {
             painted: self.painted.crop(extent),
             inferred: Inferred {
                 unobserved: self.inferred.unobserved.as_ref().map(|u| u.crop(extent)),
+                data_labels: self.inferred.data_labels.as_ref().map(|l| l.crop(extent)),
                 ..self.inferred.clone()
             },
             source: Arc::new(source),

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::{BoxId, Extent, Recorded, Window};
+use super::{BoxId, DataLabels, Extent, Recorded, Window};
 
 /// Bit beside the 16 bits of a column's observed bins in the networks' window: set if these are known. A column of 0 is
 /// unknown.
@@ -92,6 +92,8 @@ pub struct Inferred {
     pub background: bool,
     /// Voxels that the data set's masks mark as unobserved, if it has masks.
     pub unobserved: Option<Unobserved>,
+    /// Labels of the data set where they say more than the class of the voxel, if it has such.
+    pub data_labels: Option<DataLabels>,
     /// Parts that are as a recording has them: neither guesses nor mistakes of a designer.
     pub recorded: Arc<Recorded>,
 }

@@ -83,6 +83,7 @@ impl ColumnShift {
             occupancy: self.grid(&frame.source.occupancy),
         };
         let unobserved = frame.inferred.unobserved.as_ref();
+        let data_labels = frame.inferred.data_labels.as_ref();
         Frame {
             time_s: frame.time_s,
             world_from_ego: Pose {
@@ -96,6 +97,7 @@ impl ColumnShift {
             inferred: Inferred {
                 unobserved: unobserved
                     .and_then(|u| Unobserved::from_words(self.extent(u.extent()), u.words().to_vec())),
+                data_labels: data_labels.and_then(|labels| labels.on(self.extent(labels.extent()))),
                 ..frame.inferred.clone()
             },
             waivers: Arc::new(

@@ -93,6 +93,7 @@ fn frame_in(frame: &Frame, lattice: Lattice) -> Frame {
         painted: paint_in(&frame.painted, &occupancy),
         inferred: Inferred {
             unobserved: unobserved.and_then(|unobserved| unobserved_in(unobserved, from, to)),
+            data_labels: None,
             ..frame.inferred.clone()
         },
         occupancy,

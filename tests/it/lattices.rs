@@ -82,11 +82,7 @@ fn read_rows(bytes: &[u8]) -> Vec<[i32; 4]> {
 }
 
 fn open(path: &Path) -> Scene {
-    let options = ImportOptions {
-        as_it_is: true,
-        ..ImportOptions::default()
-    };
-    match import::read_with(path, options).expect("read").1 {
+    match import::read(path).expect("read").1 {
         Content::Scene(found) => found.scene,
         other => panic!("{other:?}"),
     }
@@ -210,7 +206,7 @@ fn a_file_keeps_the_lattice_and_the_history() {
 }
 
 /// A project file with another `scene.json`.
-fn rewritten(bytes: &[u8], change: impl Fn(&str) -> String) -> Vec<u8> {
+pub(crate) fn rewritten(bytes: &[u8], change: impl Fn(&str) -> String) -> Vec<u8> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).expect("a zip");
     let mut out = ZipWriter::new(Cursor::new(Vec::new()));
     for i in 0..archive.len() {
@@ -287,7 +283,7 @@ fn sensors_and_networks_work_on_it_and_leave_the_rest() {
 #[test]
 fn what_has_no_voxels_of_a_data_set_is_refused_in_one_line() {
     let options = ImportOptions {
-        as_it_is: true,
+        resample: true,
         ..ImportOptions::default()
     };
     let path = crate::house::root().join("assets/roads/four_arm_junction.xodr");

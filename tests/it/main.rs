@@ -17,6 +17,7 @@ mod history;
 mod hostile_names;
 mod house;
 mod inferred;
+mod label_sets;
 mod languages;
 mod lattices;
 mod map;

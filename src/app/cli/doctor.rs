@@ -42,7 +42,7 @@ fn simd() -> Vec<&'static str> {
 }
 
 impl Doctor {
-    pub(super) fn run(self) -> CommandResult {
+    pub(super) fn run(self, version: &str) -> CommandResult {
         let adapter = match headless_device() {
             Ok((info, ..)) => {
                 json!({ "name": info.name, "kind": format!("{:?}", info.device_type), "backend": format!("{:?}", info.backend) })
@@ -55,7 +55,7 @@ impl Doctor {
         };
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let report = json!({
-            "version": env!("CARGO_PKG_VERSION"),
+            "version": version,
             "display": has_display(),
             "adapter": adapter,
             "threads": threads,

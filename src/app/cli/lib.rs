@@ -43,7 +43,7 @@ mod viewpoint;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use common::{CommandResult, Gen, Moment, Stop};
 pub(crate) use common::{Common, Weights};
@@ -140,10 +140,19 @@ fn quiet_when_nobody_reads() {
     }));
 }
 
-/// Parses the arguments, runs the command or the editor, prints an error once; the exit code of the process.
-pub fn main() -> ExitCode {
+/// Version of the program and, where it is known, the commit that it was built from: `0.2.0 (1a2b3c4d5e)`.
+fn version(commit: Option<&str>) -> String {
+    let number = env!("CARGO_PKG_VERSION");
+    commit.map_or_else(|| number.to_owned(), |commit| format!("{number} ({commit})"))
+}
+
+/// Parses the arguments, runs the command or the editor, prints an error once; the exit code of the process. `commit` is told by
+/// `--version` and `doctor`.
+pub fn main(commit: Option<&str>) -> ExitCode {
     quiet_when_nobody_reads();
-    let cli = match Cli::try_parse() {
+    let version: &'static str = version(commit).leak(); // as clap wants it; once a process
+    let matches = Cli::command().version(version).try_get_matches();
+    let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
             // --help and --version come this way too, with exit 0; bad arguments with 2.
@@ -183,7 +192,7 @@ pub fn main() -> ExitCode {
         Some(Command::Mcp(c)) => c.run(),
         Some(Command::Serve(c)) => c.run(),
         Some(Command::Schema(c)) => c.run(),
-        Some(Command::Doctor(c)) => c.run(),
+        Some(Command::Doctor(c)) => c.run(version),
         Some(Command::Licences(c)) => c.run(),
         None => editor(cli.scene, cli.trace),
     };

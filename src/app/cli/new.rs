@@ -8,7 +8,7 @@ use serde_json::json;
 use super::{CommandResult, Common, output};
 use app::open;
 use formats::loom;
-use scene::{Class, Scene};
+use scene::{Class, Lattice, Scene, drawn};
 use world::scenery::RoadsideKind;
 use world::template::TEMPLATES;
 use world::terrain::Terrain;
@@ -28,6 +28,12 @@ pub struct New {
     /// Fixes every random draw.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Edge of the voxels, m: 0.4 as the networks have it, or 0.05 to 2.
+    #[arg(long, value_name = "M", default_value_t = Lattice::OCC3D.voxel_m())]
+    voxel: f64,
+    /// Voxels above one another, from about 1 m below the road up, at most 64; up to 5.4 m above it if left out.
+    #[arg(long, value_name = "N")]
+    bins: Option<usize>,
     /// Scene to write.
     #[arg(short, long, value_name = "S.loom")]
     output: Option<PathBuf>,
@@ -65,6 +71,9 @@ impl New {
                     TEMPLATES.join(", ")
                 )
             })?;
+        let lattice =
+            drawn::new_lattice(self.voxel, self.bins).map_err(|e| anyhow!("--voxel, --bins: {e}"))?;
+        let scene = scene.drawn_in(lattice);
         loom::save(&path, &scene)?;
         let frame = scene.frame();
         let report = json!({

@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use super::CommandResult;
+#[cfg(feature = "serve")]
 use ::serve::{Options, Server, ServerLidarModel};
 
 /// Arguments.
@@ -30,6 +31,24 @@ pub struct Serve {
 }
 
 impl Serve {
+    /// Errors with how to get a program that has the server.
+    #[cfg(not(feature = "serve"))]
+    pub(super) fn run(self) -> CommandResult {
+        let Self {
+            scenes: _,
+            listen: _,
+            jobs: _,
+            waiting: _,
+            keep: _,
+            lidar: _,
+        } = self;
+        Err(anyhow::anyhow!(
+            "the renderer for simulators is not in this program; build it with cargo build --release --features serve"
+        )
+        .into())
+    }
+
+    #[cfg(feature = "serve")]
     pub(super) fn run(self) -> CommandResult {
         let server = Server::bind(Options {
             listen: self.listen,

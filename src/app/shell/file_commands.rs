@@ -69,7 +69,7 @@ impl SceneloomApp {
                     self.execute(command, ctx);
                 }
             }
-            FileCommand::NewFrom(name) => self.guarded(Next::NewFrom(name), ctx),
+            FileCommand::NewFrom(name, lattice) => self.guarded(Next::NewFrom(name, lattice), ctx),
             FileCommand::PlaceModel => self.ask_model(false, ctx),
             FileCommand::ShapeOfChosen => self.ask_model(true, ctx),
             FileCommand::PictureWeights => {
@@ -120,12 +120,13 @@ impl SceneloomApp {
                 let make = self.files.disk.new_scene.clone();
                 self.load(t("New scene").into(), None, false, ctx, move || make());
             }
-            Next::NewFrom(name) => {
+            Next::NewFrom(name, lattice) => {
                 let seed = std::time::SystemTime::now()
                     .duration_since(std::time::UNIX_EPOCH)
                     .map_or(1, |d| u64::from(d.subsec_nanos()) % 100_000);
                 let make = move || {
                     open::from_template(name, seed)
+                        .map(|scene| scene.drawn_in(lattice))
                         .ok_or_else(|| anyhow::anyhow!("there is no template {name:?}"))
                 };
                 self.load(t("New scene").into(), None, false, ctx, make);

@@ -35,7 +35,7 @@ pub struct Disk {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Next {
     New,
-    NewFrom(&'static str),
+    NewFrom(&'static str, scene::Lattice),
     AskOpen,
     Open(PathBuf),
     /// A variant of a batch of the queue.

@@ -8,6 +8,7 @@ use egui::{Id, Modal, Sense, Ui, WidgetInfo, vec2};
 use crate::command::{Command, FileCommand};
 use crate::shell::settings::Settings;
 use language::{t, tf};
+use scene::{Lattice, drawn};
 use widgets::theme;
 use world::template::TEMPLATES;
 
@@ -66,11 +67,12 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                 }
             }
             widgets::icons::section(right, t("Roads to begin with"));
+            let lattice = voxels_of(right);
             for pair in TEMPLATES.chunks(2) {
                 right.columns(2, |cells| {
                     for (ui, name) in cells.iter_mut().zip(pair) {
                         if road(ui, name).clicked() {
-                            choose(open, Command::File(FileCommand::NewFrom(name)));
+                            choose(open, Command::File(FileCommand::NewFrom(name, lattice)));
                         }
                     }
                 });
@@ -88,6 +90,27 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
     });
     if shown.should_close() {
         *open = false;
+    }
+}
+
+/// The choice of voxels of a new scene: those of the networks, or finer ones.
+fn voxels_of(ui: &mut Ui) -> Lattice {
+    let id = Id::unique("voxels of a new scene");
+    let mut is_fine: bool = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    ui.horizontal(|ui| {
+        ui.label(
+            egui::RichText::new(t("Voxels of"))
+                .small()
+                .color(theme::text_weak()),
+        );
+        ui.selectable_value(&mut is_fine, false, "0.4 m");
+        let finer = ui.selectable_value(&mut is_fine, true, "0.2 m");
+        finer.on_hover_text(t("Finer to paint; sensors and networks work in 0.4 m"));
+    });
+    ui.data_mut(|d| d.insert_temp(id, is_fine));
+    match is_fine {
+        true => drawn::new_lattice(0.2, Some(36)).unwrap_or(Lattice::OCC3D),
+        false => Lattice::OCC3D,
     }
 }
 

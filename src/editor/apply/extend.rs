@@ -92,6 +92,7 @@ fn over(frame: &Frame, layout: BevLayout) -> Frame {
         painted: frame.painted.crop(new),
         inferred: Inferred {
             unobserved: frame.inferred.unobserved.as_ref().map(|u| u.crop(new)),
+            data_labels: frame.inferred.data_labels.as_ref().map(|l| l.crop(new)),
             ..frame.inferred.clone()
         },
         source: Arc::new(source),

@@ -12,6 +12,7 @@ pub mod kitti;
 pub mod las;
 pub mod loom;
 pub mod mcap;
+pub mod nuplan_occ;
 pub mod nuscenes;
 pub mod nuscenes_lidar;
 pub mod occ3d;
@@ -41,8 +42,10 @@ pub use exporter::{
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
 const TABLE: &[&Exporter] = &[
     &occ3d::EXPORTER,
+    &occ3d::WAYMO_EXPORTER,
     &openoccupancy::EXPORTER,
     &surroundocc::EXPORTER,
+    &nuplan_occ::EXPORTER,
     &semantic_kitti::EXPORTER,
     &vox::EXPORTER,
     &boxes::EXPORTER,
@@ -77,11 +80,13 @@ pub fn all() -> &'static [&'static Exporter] {
 /// True if a format writes the voxels of a map of another lattice as they are: the program's own, and a data set's own for a
 /// scene on its map.
 pub fn keeps_lattice(format: &Exporter, scene: &Scene) -> bool {
-    let is_on = |kind: &sparse_npy::SparseDataset| kind.own_map(scene).is_some();
+    let is_on = |kinds: &[sparse_npy::SparseDataset]| sparse_npy::own_kind(kinds, scene).is_some();
     match format.id {
         id if id == loom::EXPORTER.id => true,
-        id if id == openoccupancy::EXPORTER.id => is_on(&sparse_npy::OPEN_OCCUPANCY),
-        id if id == surroundocc::EXPORTER.id => is_on(&sparse_npy::SURROUND_OCC),
+        id if id == openoccupancy::EXPORTER.id => is_on(&openoccupancy::KINDS),
+        id if id == surroundocc::EXPORTER.id => is_on(&surroundocc::KINDS),
+        id if id == nuplan_occ::EXPORTER.id => crate::nuplan_occ::own_map(scene).is_some(),
+        id if id == semantic_kitti::EXPORTER.id => semantic_kitti::own_map_of(scene).is_some(),
         _ => false,
     }
 }

@@ -2,9 +2,9 @@
 
 use scene::{Class, Extent, Frame, Window};
 
-use super::{ExportSpan, Exporter, ObservationMasks, OutFile, Product};
+use super::{ExportSpan, Exporter, ObservationMasks, OutFile, Product, Products};
 use crate::occ3d::{self, Occ3dFrame};
-use crate::{Holds, voxels};
+use crate::{FormatError, Holds, voxels};
 
 /// See [`occ3d`].
 pub const EXPORTER: Exporter = Exporter {
@@ -16,24 +16,45 @@ pub const EXPORTER: Exporter = Exporter {
     span: ExportSpan::Moment,
     needs: &[Product::Observed],
     write: |scene, products| {
-        // A map of another extent is cut to the window of the format.
-        let frame = scene.frame();
-        voxels::check(frame)?;
-        let labels = frame.occupancy.crop(Extent::WINDOW);
-        let ObservationMasks { lidar, camera } = products.observed()?;
-        let known = known(frame);
-        let [lidar_observed, camera_observed] = [lidar, camera].map(|words| Some(mask(&words, &known)));
-        let found = Occ3dFrame {
-            labels,
-            lidar_observed,
-            camera_observed,
-        };
+        let found = labelled_frame(scene.frame(), products)?;
         Ok(vec![OutFile::new(
             "labels.npz",
             occ3d::frame_with_recipe_to_bytes(&found, products.recipe()),
         )])
     },
 };
+
+/// See [`occ3d`].
+pub const WAYMO_EXPORTER: Exporter = Exporter {
+    id: "occ3d-waymo",
+    title: "Occupancy: Occ3D-Waymo, 200 x 200 x 16 labels of Waymo, masks of LiDAR and cameras",
+    file_name: Some("occ3d_waymo_04.npz"),
+    holds: &[Holds::Occupancy],
+    lost: "classes that are not among Waymo's: trucks, buses, trailers and construction vehicles come back as cars, barriers as \
+           others, other flat ground and terrain as sidewalk; which sensor observed a voxel: what any of them observed comes \
+           back as observed",
+    span: ExportSpan::Moment,
+    needs: &[Product::Observed],
+    write: |scene, products| {
+        let found = labelled_frame(scene.frame(), products)?;
+        let data_labels = scene.frame().inferred.data_labels.as_ref();
+        let bytes = occ3d::waymo_to_bytes(&found, data_labels);
+        Ok(vec![OutFile::new("occ3d_waymo_04.npz", bytes)])
+    },
+};
+
+/// Labels and masks of the networks' window. A map of another extent is cut to it.
+fn labelled_frame(frame: &Frame, products: &mut dyn Products) -> Result<Occ3dFrame, FormatError> {
+    voxels::check(frame)?;
+    let ObservationMasks { lidar, camera } = products.observed()?;
+    let known = known(frame);
+    let [lidar_observed, camera_observed] = [lidar, camera].map(|words| Some(mask(&words, &known)));
+    Ok(Occ3dFrame {
+        labels: frame.occupancy.crop(Extent::WINDOW),
+        lidar_observed,
+        camera_observed,
+    })
+}
 
 /// A bit for each voxel per column of the window, set if its content is known: the voxel is not free, or the frame's
 /// data set does not say that nothing observed it. In other voxels free means unknown, whatever rays pass them now.
@@ -65,8 +86,8 @@ mod tests {
     use scene::Unobserved;
 
     use super::*;
-    use crate::export::Products;
     use crate::import::Content;
+    use crate::npz;
     use crate::table_tests::{Small, random_scene, round_trip, scene};
 
     /// What comes back: all labels, and as observed what the LiDAR or a camera observed.
@@ -97,6 +118,37 @@ mod tests {
                 let word = unobserved.words()[Extent::WINDOW.index(x, y)];
                 assert_eq!(word, expected, "seed {seed}, column {x}, {y}");
             }
+        }
+    }
+
+    /// Labels of Waymo come back as they were, but for the voxel that was painted.
+    #[test]
+    fn labels_of_waymo_come_back_but_for_the_edit() {
+        let at = |x: usize, y: usize, z: usize| (x * Window::NY + y) * Window::NZ + z;
+        for free in [15, 23] {
+            let mut labels = vec![free; Window::VOXELS];
+            for (i, label) in labels.iter_mut().enumerate().take(150_000) {
+                *label = [free, 0, 1, 3, 4, 5, 6, 8, 10, 11, 12, 13, 14][i % 13];
+            }
+            let array = npz::Array {
+                name: "voxel_label",
+                shape: &[Window::NX, Window::NY, Window::NZ],
+                values: npz::NpzValues::U8(labels.clone()),
+            };
+            let bytes = npz::to_bytes(&[array]).expect("memory");
+            let found = occ3d::read_found(&bytes).expect("read");
+            let mut scene = scene();
+            scene.change_canvas(|frame| {
+                frame.occupancy = found.frame.labels.clone();
+                frame.inferred.data_labels = found.data_labels.clone();
+                frame.occupancy.set(0, 0, 3, Class::Vegetation.id()); // was a sign
+            });
+            labels[at(0, 0, 3)] = 11;
+            let written = (WAYMO_EXPORTER.write)(&scene, &mut Small)
+                .expect("written")
+                .remove(0);
+            let back = npz::entry(&written.bytes, "voxel_label", 1 << 24).expect("an array");
+            assert!(back.ends_with(&labels), "free is {free}");
         }
     }
 

@@ -1,12 +1,13 @@
 //! Occupancy as the voxels of SemanticKITTI: the labels, and which voxels one scan sees.
 
 use glam::DVec3;
+use scene::label_sets::SEMANTIC_KITTI;
 use scene::solid::fill::SMEAR;
 use scene::{Class, Frame, LidarSweep, Pose, Scene, Window};
 
 use super::{ExportSpan, Exporter, ObservationMasks, OutFile, Product, Products};
-use crate::semantic_kitti::{CELLS, LATTICE, ego_from_cells, packed, raw_id};
-use crate::voxels::{Physical, cells_of, physical};
+use crate::semantic_kitti::{CELLS, LATTICE, ego_from_cells, own_map, packed};
+use crate::voxels::{DataMap, Physical, cells_of, check, physical};
 use crate::{FormatError, Holds};
 
 /// See `semantic_kitti`.
@@ -15,7 +16,7 @@ pub const EXPORTER: Exporter = Exporter {
     title: "Occupancy: SemanticKITTI voxels, 256 x 256 x 32 cells of 0.2 m ahead of the LiDAR, with what one scan sees",
     file_name: None,
     holds: &[Holds::Occupancy],
-    lost: "what is behind the LiDAR, more than 51.2 m ahead of it, 25.6 m beside it or 2 m below it; barriers come back as \
+    lost: "of a scene in other voxels: what is behind the LiDAR, more than 51.2 m ahead of it, 25.6 m beside it or 2 m below it; barriers come back as \
            manmade, construction vehicles as trailers, traffic cones as others; things less than three voxels high come back \
            three high",
     span: ExportSpan::Moment,
@@ -30,19 +31,17 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
     let lidar = scene.rig.lidars.first();
     let lidar = lidar.ok_or_else(|| FormatError::new("the rig has no LiDAR, around which the voxels are"))?;
     let frame = scene.frame();
-    let physical = physical(frame)?;
     let pose = ego_from_cells(lidar);
-    let mut labels = vec![0u16; CELLS];
-    for cell in cells_of(&physical, &LATTICE, &pose) {
-        let class = Class::from_id(cell.class).unwrap_or(Class::Others);
-        labels[LATTICE.index(cell.at.map(usize::from))] = raw_id(class);
-    }
+    let labels = match own_map_of(scene) {
+        Some(map) => own_labels(frame, &map)?,
+        None => resampled(frame, &pose)?,
+    };
     let observed = products.observed()?;
     let (mut invalid, mut occluded) = (vec![false; CELLS], vec![false; CELLS]);
-    for index in 0..CELLS {
+    for (index, label) in labels.iter().enumerate() {
         let p = pose.apply(LATTICE.center(LATTICE.cell(index)));
-        invalid[index] = labels[index] == 0 && !is_known(frame, p);
-        occluded[index] = !is_seen(&physical, &observed, p);
+        invalid[index] = *label == 0 && !is_known(frame, p);
+        occluded[index] = !is_seen(*label, &observed, p);
     }
     let scan = scan(&products.sweep()?, &labels, &pose);
     let file = |extension: &str, bytes| {
@@ -56,6 +55,38 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
     ])
 }
 
+/// The data set's own map, if that of a scene holds it.
+pub(super) fn own_map_of(scene: &Scene) -> Option<DataMap> {
+    let map = own_map(scene.rig.lidars.first()?).ok()?;
+    map.lies_in(scene.frame().extent()).then_some(map)
+}
+
+/// Raw ids of all cells, of a scene on the data set's own map.
+fn own_labels(frame: &Frame, map: &DataMap) -> Result<Vec<u16>, FormatError> {
+    check(frame)?;
+    let frame = frame.crop(map.extent());
+    let data_labels = frame.inferred.data_labels.as_ref();
+    let data_labels = data_labels.filter(|labels| labels.set() == &SEMANTIC_KITTI);
+    let mut labels = vec![0; CELLS];
+    for (x, y, z, class) in frame.occupancy.iter_set() {
+        let class = Class::from_id(class).unwrap_or(Class::Others);
+        let usual = SEMANTIC_KITTI.label(class);
+        let id = data_labels.map_or(usual, |labels| labels.label([x, y, z], class));
+        labels[LATTICE.index(map.cell([x, y, z]))] = id;
+    }
+    Ok(labels)
+}
+
+/// Raw ids of all cells, of a scene in the voxels of Occ3D.
+fn resampled(frame: &Frame, pose: &Pose) -> Result<Vec<u16>, FormatError> {
+    let mut labels = vec![0; CELLS];
+    for cell in cells_of(&physical(frame)?, &LATTICE, pose) {
+        let class = Class::from_id(cell.class).unwrap_or(Class::Others);
+        labels[LATTICE.index(cell.at.map(usize::from))] = SEMANTIC_KITTI.label(class);
+    }
+    Ok(labels)
+}
+
 /// True at a point of the map whose content the scene knows: within its edge, and not where a data set's masks say that
 /// nothing observed it.
 fn is_known(frame: &Frame, p_in_ego: DVec3) -> bool {
@@ -65,14 +96,12 @@ fn is_known(frame: &Frame, p_in_ego: DVec3) -> bool {
     })
 }
 
-/// True at a point that a ray of the LiDAR passed or ended at. Rays met the ground where Occ3D has it.
-fn is_seen(physical: &Physical, observed: &ObservationMasks, p_in_ego: DVec3) -> bool {
+/// True at a point, in a cell of a label, that a ray of the LiDAR passed or ended at. Rays met the ground where Occ3D has it.
+fn is_seen(label: u16, observed: &ObservationMasks, p_in_ego: DVec3) -> bool {
     let Some([x, y, z]) = Physical::voxel_at(ObservationMasks::EXTENT, p_in_ego) else {
         return false;
     };
-    let here = Physical::voxel_at(physical.extent(), p_in_ego);
-    let label = here.map_or(Class::FREE, |[x, y, z]| physical.column(x, y)[z]);
-    let is_ground = Class::from_id(label).is_some_and(Class::is_ground);
+    let is_ground = SEMANTIC_KITTI.class(label).is_some_and(Class::is_ground);
     let bin = if is_ground { z.saturating_sub(SMEAR) } else { z };
     let word = observed.lidar.get(ObservationMasks::EXTENT.index(x, y));
     word.is_some_and(|word| u32::from(*word) >> bin & 1 == 1)
@@ -103,7 +132,7 @@ fn scan(sweep: &LidarSweep, labels: &[u16], pose: &Pose) -> Vec<bool> {
 mod tests {
     use super::*;
     use crate::import::Content;
-    use crate::semantic_kitti::{bit, class_of};
+    use crate::semantic_kitti::bit;
     use crate::table_tests::{Small, random_scene, round_trip, scene};
     use scene::{BoxId, Extent, VoxelGrid};
 
@@ -125,14 +154,14 @@ mod tests {
         for seed in 0..100 {
             let scene = random_scene(seed);
             let [_, label, ..] = files(&scene, &mut Small);
-            let back = crate::import::semantic_kitti::labels(&label).expect("read").0;
+            let back = crate::import::semantic_kitti::labels(&label).expect("read");
             let mut physical = Physical::raised(&scene.frame().occupancy);
             let extent = Extent::WINDOW;
             for [x, y] in extent.all_columns() {
                 let column = physical.column_mut(x, y);
                 for label in column.iter_mut().filter(|label| **label != Class::FREE) {
                     let class = Class::from_id(*label).expect("a class");
-                    *label = class_of(raw_id(class)).expect("known").expect("not free").id();
+                    *label = SEMANTIC_KITTI.shown(SEMANTIC_KITTI.label(class)).id();
                 }
                 column[..2].fill(Class::FREE); // below the cells
             }

@@ -5,10 +5,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use scene::resample::voxels_in;
-use scene::{Extent, Frame, Inferred, Lattice, Scene, SensorRig, Unobserved, VoxelGrid, infer};
+use scene::{
+    Class, DataLabels, Extent, Frame, Inferred, LabelSet, Lattice, Scene, SensorRig, Unobserved, VoxelGrid,
+    infer,
+};
 
 use crate::opendrive::RoadNetwork;
 use crate::recipe::Recipe;
+use crate::voxels::DataMap;
 use crate::{FormatError, Holds, input};
 
 /// A format that is read.
@@ -51,8 +55,8 @@ pub struct ImportFile<'a> {
 pub struct ImportOptions {
     /// Height by which a point cloud is lifted, m; `None` to take it from the ground.
     pub lift_m: Option<f64>,
-    /// True to keep the voxels of a data set in its own size and heights, in place of those of the networks.
-    pub as_it_is: bool,
+    /// True to take voxels of a data set to those of the networks, 0.4 m and 16 bins, in place of its own.
+    pub resample: bool,
 }
 
 impl ImportFile<'_> {
@@ -129,10 +133,23 @@ pub(crate) fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobser
     scene
 }
 
-/// A scene of labels on a data set's own map, whose origin is below the LiDAR: the vehicle and its sensors are moved so that
-/// the LiDAR is there; see [`labelled`].
-pub(crate) fn on_data_map(name: &str, labels: VoxelGrid) -> Scene {
-    let mut scene = labelled(name, labels, None);
+/// A scene of cells and their labels on a data set's own map, whose origin is below the LiDAR: the vehicle and its sensors are
+/// moved so that the LiDAR is there; see [`labelled`]. Labels that say more than a class stay beside it.
+pub(crate) fn on_data_map(
+    name: &str,
+    map: &DataMap,
+    cells: &[([usize; 3], u16)],
+    set: &'static LabelSet,
+) -> Scene {
+    let mut grid = VoxelGrid::over(map.extent());
+    for (cell, label) in cells {
+        let [x, y, z] = map.voxel(*cell);
+        grid.set(x, y, z, set.shown(*label).id());
+    }
+    let labels = cells.iter().map(|(cell, label)| (map.voxel(*cell), *label));
+    let data_labels = DataLabels::new(set, map.extent(), set.label(Class::Free), labels);
+    let mut scene = labelled(name, grid, None);
+    scene.change_canvas(|frame| frame.inferred.data_labels = Some(data_labels));
     let rig = Arc::make_mut(&mut scene.rig);
     let [x_m, y_m, _] = rig.lidars.first().map_or([0.0; 3], |lidar| lidar.translation_m);
     let cameras = rig.cameras.iter_mut().map(|camera| &mut camera.translation_m);

@@ -18,6 +18,7 @@ pub mod lanelet2;
 mod lanelet2_tests;
 pub mod las;
 pub mod loom;
+mod nuplan_occ;
 pub mod nuscenes;
 pub mod nuscenes_lidar;
 pub mod occ3d;
@@ -123,7 +124,7 @@ pub fn read(path: &Path) -> Result<(&'static Importer, Content), FormatError> {
 pub const FARTHEST_LIFT_M: f64 = 10_000.0;
 
 /// Reads a file as [`read`] does, with wishes. Errors also if a lift is given for a file that is no point cloud, for more than
-/// [`FARTHEST_LIFT_M`], and if voxels are to stay as they are in a file that has none of a data set.
+/// [`FARTHEST_LIFT_M`], and if voxels are to be resampled in a file that has none of a data set.
 pub fn read_with(path: &Path, options: ImportOptions) -> Result<(&'static Importer, Content), FormatError> {
     let (importer, path) = match path.is_dir() {
         true => of_folder(path)?,
@@ -139,9 +140,10 @@ pub fn read_with(path: &Path, options: ImportOptions) -> Result<(&'static Import
             return Err(FormatError::new(line).at(&path.display()));
         }
     }
-    if options.as_it_is && !OWN_LATTICE.contains(&importer.id) {
+    if options.resample && !OWN_LATTICE.contains(&importer.id) {
         let line = format!(
-            "{}, expected voxels of OpenOccupancy, SurroundOcc, UniScene or SemanticKITTI where they are to stay as they are",
+            "{}, expected voxels of Occ3D, OpenOccupancy, SurroundOcc, UniScene, SemanticKITTI or Nuplan-Occ where they are to \
+             be resampled",
             importer.title
         );
         return Err(FormatError::new(line).at(&path.display()));
@@ -149,8 +151,12 @@ pub fn read_with(path: &Path, options: ImportOptions) -> Result<(&'static Import
     Ok((importer, read_file(importer, &path, options)?))
 }
 
-/// Formats whose voxels can stay as they are.
-const OWN_LATTICE: [&str; 2] = [sparse_npy::IMPORTER.id, semantic_kitti::IMPORTER.id];
+/// Formats of voxels in the lattice of a data set.
+const OWN_LATTICE: [&str; 3] = [
+    occ3d::IMPORTER.id,
+    sparse_npy::IMPORTER.id,
+    semantic_kitti::IMPORTER.id,
+];
 
 /// Formats of point clouds.
 const CLOUDS: [&str; 5] = [
@@ -197,6 +203,16 @@ fn first_readable(folder: &Path) -> Option<String> {
 /// Reads a file of a format.
 pub fn read_as(importer: &Importer, path: &Path) -> Result<Content, FormatError> {
     read_file(importer, path, ImportOptions::default())
+}
+
+/// Reads a file of a format, voxels of a data set in those of the networks.
+#[cfg(test)]
+pub(crate) fn read_resampled(importer: &Importer, path: &Path) -> Result<Content, FormatError> {
+    let options = ImportOptions {
+        resample: true,
+        ..ImportOptions::default()
+    };
+    read_file(importer, path, options)
 }
 
 fn read_file(importer: &Importer, path: &Path, options: ImportOptions) -> Result<Content, FormatError> {

@@ -5,19 +5,22 @@ use std::collections::BTreeMap;
 use scene::Unobserved;
 use scene::message::quoted;
 
-use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, first_entry_ends, labelled};
+use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, first_entry_ends, labelled, nuplan_occ};
 use crate::{FormatError, Holds, occ3d, recipe};
 
 /// See [`occ3d`].
 pub const IMPORTER: Importer = Importer {
     id: "occ3d",
-    title: "Occ3D labels",
+    title: "labels of Occ3D and Nuplan-Occ",
     extensions: &["npz"],
     holds: &[Holds::Occupancy],
     largest: occ3d::LARGEST_FILE,
     recognises: |head| first_entry_ends(head, ".npy"),
     in_folder: None,
-    read: |source| read(source).map_err(FormatError::new),
+    read: |source| match nuplan_occ::list_in(source.bytes) {
+        Some(list) => nuplan_occ::read(source, &list).map_err(FormatError::new),
+        None => read(source).map_err(FormatError::new),
+    },
     #[cfg(test)]
     sample: || occ3d::to_bytes(&crate::table_tests::scene().frame().occupancy),
 };
@@ -26,8 +29,13 @@ fn read(source: &ImportFile<'_>) -> Result<Content, occ3d::Occ3dError> {
     let found = occ3d::read_found(source.bytes)?;
     let frame = found.frame;
     let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
-    if let Some(note) = found.numbering.note() {
-        skipped.insert(note.into(), frame.labels.count_set());
+    if let Some(set) = found.set {
+        let renamed = match set.renamed() {
+            none if none.is_empty() => "renumbered".to_owned(),
+            renamed => format!("shown as classes: {renamed}"),
+        };
+        let note = format!("labels taken for those of {} and {renamed}", set.title);
+        skipped.insert(note, frame.labels.count_set());
     }
     for name in &found.left_out {
         *skipped.entry(format!("array {}", quoted(name, 40))).or_default() += 1;
@@ -39,6 +47,9 @@ fn read(source: &ImportFile<'_>) -> Result<Content, occ3d::Occ3dError> {
     };
     let unobserved = seen.and_then(|seen: Vec<bool>| Unobserved::from_observed(&seen));
     let mut scene = labelled(source.name, frame.labels, unobserved);
+    if found.data_labels.is_some() {
+        scene.change_canvas(|frame| frame.inferred.data_labels = found.data_labels);
+    }
     if let Some(told) = &found.recipe {
         recipe::restore(told, &mut scene);
     }
@@ -109,11 +120,13 @@ mod tests {
             notes(&openocc),
             [
                 "array flow 1",
-                "labels taken for those of OpenDriveLab's openocc (16 is free) and renumbered 1"
+                "labels taken for those of OpenDriveLab's openocc and renumbered 1"
             ]
         );
         assert!(
-            notes(&waymo)[0].starts_with("labels of Occ3D-Waymo renumbered"),
+            notes(&waymo)[0].starts_with(
+                "labels taken for those of Occ3D-Waymo and shown as classes: general object as others; vehicle as car; sign, traffic light"
+            ),
             "{:?}",
             notes(&waymo)
         );
@@ -158,7 +171,7 @@ mod tests {
         );
         assert_eq!(
             line("voxel_label", 17, 23),
-            "array voxel_label: class 17 at voxel 0, 1, 0, expected 0 to 14, and 15 or 23 for free"
+            "array voxel_label: class 17 at voxel 0, 1, 0, expected 0 to 15, 23"
         );
         let large = Array {
             name: "voxel_label",

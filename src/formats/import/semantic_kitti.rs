@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use scene::{Class, Extent, SensorRig, Unobserved, VoxelGrid};
+use scene::label_sets::SEMANTIC_KITTI;
+use scene::{Extent, Scene, SensorRig, Unobserved, VoxelGrid};
 
 use super::{Content, GUESSED, ImportFile, ImportedScene, Importer, labelled, on_data_map};
-use crate::semantic_kitti::{BIT_BYTES, CELLS, LATTICE, bit, class_of, ego_from_cells, own_map};
+use crate::semantic_kitti::{BIT_BYTES, CELLS, LATTICE, bit, ego_from_cells, own_map};
 use crate::voxels::{DataMap, Physical, VoxelVotes, unobserved};
 use crate::{FormatError, Holds};
 
@@ -27,11 +28,9 @@ pub const IMPORTER: Importer = Importer {
 fn read(source: &ImportFile<'_>) -> Result<Content, String> {
     let rig = SensorRig::default();
     let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
-    let map = source.options.as_it_is.then(|| own_map(lidar)).transpose()?;
-    let (labels, mut skipped) = match &map {
-        Some(map) => as_it_is(source.bytes, map)?,
-        None => labels(source.bytes)?,
-    };
+    let map = (!source.options.resample).then(|| own_map(lidar)).transpose()?;
+    let mut skipped = BTreeMap::new();
+    let cells = cells(source.bytes, &mut skipped)?;
     let invalid = beside(source, "invalid")?;
     for extension in ["bin", "occluded"] {
         if beside(source, extension)?.is_some() {
@@ -39,17 +38,14 @@ fn read(source: &ImportFile<'_>) -> Result<Content, String> {
         }
     }
     let scene = match map {
-        Some(map) => {
-            let unobserved = invalid.and_then(|bits| own_mask(&map, &bits));
-            let mut scene = on_data_map(source.name, labels);
-            scene.change_canvas(|frame| frame.inferred.unobserved = unobserved);
-            scene
-        }
+        Some(map) => as_it_is(source.name, &cells, &map, invalid.as_deref()),
         None => {
+            let labels = on_window(&cells, &mut skipped)?;
             let unobserved = invalid.and_then(|bits| mask(labels.extent(), &bits));
             labelled(source.name, labels, unobserved)
         }
     };
+    skipped.insert(PLACED.to_owned(), scene.frame().occupancy.count_set());
     Ok(Content::Scene(Box::new(ImportedScene {
         scene,
         inferred: &GUESSED,
@@ -58,42 +54,44 @@ fn read(source: &ImportFile<'_>) -> Result<Content, String> {
     })))
 }
 
-/// Errors unless there are two bytes for each cell.
-fn check_size(bytes: &[u8]) -> Result<(), String> {
-    if bytes.len() == 2 * CELLS {
-        return Ok(());
-    }
-    Err(format!(
-        "{} bytes, expected {}: the raw ids of 256 x 256 x 32 voxels of SemanticKITTI, two bytes each",
-        bytes.len(),
-        2 * CELLS
-    ))
-}
+/// Assumption on where the cells lie, for a person.
+const PLACED: &str = "voxels taken around the place of the LiDAR on the nuScenes vehicle";
 
-/// Labels in the cells of the file, and what was assumed and left out.
-fn as_it_is(bytes: &[u8], map: &DataMap) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> {
-    check_size(bytes)?;
-    let mut grid = VoxelGrid::over(map.extent());
-    let mut unknown = 0;
-    for (index, raw) in bytes.chunks_exact(2).enumerate() {
-        let class = match class_of(u16::from_le_bytes([raw[0], raw[1]])) {
-            Some(None) => continue,
-            Some(Some(class)) => class,
-            None => {
-                unknown += 1;
-                Class::Others
-            }
-        };
-        let [x, y, z] = map.voxel(LATTICE.cell(index));
-        grid.set(x, y, z, class.id());
+/// Cells that are not free: numbers of cells and raw ids. Ids that are not known are counted.
+fn cells(bytes: &[u8], skipped: &mut BTreeMap<String, usize>) -> Result<Vec<(usize, u16)>, String> {
+    if bytes.len() != 2 * CELLS {
+        return Err(format!(
+            "{} bytes, expected {}: the raw ids of 256 x 256 x 32 voxels of SemanticKITTI, two bytes each",
+            bytes.len(),
+            2 * CELLS
+        ));
     }
-    let mut skipped = BTreeMap::new();
+    let ids = bytes
+        .as_chunks::<2>()
+        .0
+        .iter()
+        .map(|raw| u16::from_le_bytes(*raw));
+    let cells: Vec<(usize, u16)> = ids.enumerate().filter(|(_, id)| *id != 0).collect();
+    let unknown = cells
+        .iter()
+        .filter(|(_, id)| SEMANTIC_KITTI.class(*id).is_none())
+        .count();
     if unknown > 0 {
         skipped.insert("raw ids that are not known, taken as others".to_owned(), unknown);
     }
-    let placed = "voxels taken around the place of the LiDAR on the nuScenes vehicle";
-    skipped.insert(placed.to_owned(), grid.count_set());
-    Ok((grid, skipped))
+    Ok(cells)
+}
+
+/// A scene in the cells of the file.
+fn as_it_is(name: &str, cells: &[(usize, u16)], map: &DataMap, invalid: Option<&[u8]>) -> Scene {
+    let cells: Vec<_> = cells
+        .iter()
+        .map(|(index, id)| (LATTICE.cell(*index), *id))
+        .collect();
+    let unobserved = invalid.and_then(|bits| own_mask(map, bits));
+    let mut scene = on_data_map(name, map, &cells, &SEMANTIC_KITTI);
+    scene.change_canvas(|frame| frame.inferred.unobserved = unobserved);
+    scene
 }
 
 /// The voxels of a map of the cells that no scan saw.
@@ -107,37 +105,26 @@ fn own_mask(map: &DataMap, invalid: &[u8]) -> Option<Unobserved> {
     Unobserved::from_words(extent, words)
 }
 
-/// The labels that a file holds, and what was assumed and left out.
-pub(crate) fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> {
-    check_size(bytes)?;
+/// The labels in the voxels of Occ3D.
+fn on_window(cells: &[(usize, u16)], skipped: &mut BTreeMap<String, usize>) -> Result<VoxelGrid, String> {
     let rig = SensorRig::default();
     let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
     let pose = ego_from_cells(lidar);
-    let mut cells = VoxelVotes::new(&LATTICE, &pose)?;
-    let mut unknown = 0;
-    for (index, raw) in bytes.chunks_exact(2).enumerate() {
-        let class = match class_of(u16::from_le_bytes([raw[0], raw[1]])) {
-            Some(None) => continue,
-            Some(Some(class)) => class,
-            None => {
-                unknown += 1;
-                Class::Others
-            }
-        };
-        cells.add(LATTICE.cell(index), class.id());
+    let mut votes = VoxelVotes::new(&LATTICE, &pose)?;
+    for (index, id) in cells {
+        votes.add(LATTICE.cell(*index), SEMANTIC_KITTI.shown(*id).id());
     }
-    let (voxels, elsewhere) = cells.voxels();
-    let counts = [
-        ("raw ids that are not known, taken as others", unknown),
-        ("cells above the map", elsewhere),
-        (
-            "voxels taken around the place of the LiDAR on the nuScenes vehicle",
-            voxels.iter_set().count(),
-        ),
-    ];
-    let some = counts.into_iter().filter(|(_, n)| *n > 0);
-    let skipped = some.map(|(what, n)| (what.to_owned(), n)).collect();
-    Ok((voxels.lowered(), skipped))
+    let (voxels, elsewhere) = votes.voxels();
+    if elsewhere > 0 {
+        skipped.insert("cells above the map".to_owned(), elsewhere);
+    }
+    Ok(voxels.lowered())
+}
+
+/// The labels of a file in the voxels of Occ3D.
+#[cfg(test)]
+pub(crate) fn labels(bytes: &[u8]) -> Result<VoxelGrid, String> {
+    on_window(&cells(bytes, &mut BTreeMap::new())?, &mut BTreeMap::new())
 }
 
 /// The file of the same frame with another ending: a bit per cell. `None` if it is not there; errors if it is of
@@ -196,6 +183,7 @@ fn first_label(folder: &Path) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
+    use scene::Class;
 
     use super::*;
     use crate::semantic_kitti::packed;
@@ -217,7 +205,10 @@ mod tests {
             bytes,
             name: "000000",
             path,
-            options: Default::default(),
+            options: super::super::ImportOptions {
+                lift_m: None,
+                resample: true,
+            },
         };
         match read(&source)? {
             Content::Scene(loaded) => Ok(*loaded),

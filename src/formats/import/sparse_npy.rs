@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use scene::label_sets::NUSCENES;
 use scene::message::quoted;
 use scene::{Class, Scene, SensorRig, VoxelGrid};
 
@@ -12,8 +13,8 @@ use crate::sparse_npy::{OPEN_OCCUPANCY, SparseDataset, ego_from_lidar};
 use crate::voxels::{DataMap, VoxelVotes};
 use crate::{FormatError, Holds};
 
-/// Classes that readers of these files ignore: noise, and the number that they replace it by.
-const IGNORED: [f64; 2] = [0.0, 255.0];
+/// Labels that readers of these files ignore: noise, and the number that they replace it by.
+const IGNORED: [u16; 2] = [0, 255];
 
 /// See `sparse_npy`.
 pub const IMPORTER: Importer = Importer {
@@ -30,13 +31,17 @@ pub const IMPORTER: Importer = Importer {
 };
 
 fn read(source: &ImportFile<'_>) -> Result<Content, String> {
-    let (scene, skipped) = match source.options.as_it_is {
-        true => as_it_is(source)?,
-        false => {
-            let (labels, skipped) = labels(source.bytes)?;
-            (labelled(source.name, labels, None), skipped)
-        }
+    let (table, kind) = table(source.bytes)?;
+    let mut skipped = BTreeMap::new();
+    let cells = cells(&table, &kind, &mut skipped);
+    let scene = match source.options.resample {
+        false => as_it_is(source.name, &cells, &kind)?,
+        true => labelled(source.name, on_window(&cells, &kind, &mut skipped)?, None),
     };
+    if table.columns == 7 {
+        skipped.insert("velocities of voxels".to_owned(), table.rows);
+    }
+    skipped.insert(kind.assumed.to_owned(), table.rows);
     Ok(Content::Scene(Box::new(ImportedScene {
         scene,
         inferred: &GUESSED,
@@ -55,6 +60,12 @@ fn table(bytes: &[u8]) -> Result<(NpyMatrix<'_>, SparseDataset), String> {
         ));
     }
     let kind = kind_of(&table, |row| !is_finite(&table, row))?;
+    if rows > kind.lattice.cells() {
+        return Err(format!(
+            "{rows} rows, expected at most {}, one for each cell",
+            kind.lattice.cells()
+        ));
+    }
     Ok((table, kind))
 }
 
@@ -62,94 +73,77 @@ fn is_finite(table: &NpyMatrix<'_>, row: usize) -> bool {
     (0..table.columns).all(|column| table.get(row, column).is_finite())
 }
 
-/// A scene in the cells of the file, and what was assumed and left out. Noise, class 0, is kept as others.
-fn as_it_is(source: &ImportFile<'_>) -> Result<(Scene, BTreeMap<String, usize>), String> {
-    let (table, kind) = table(source.bytes)?;
-    let rig = SensorRig::default();
-    let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
-    let map = DataMap::new(&kind.lattice, &ego_from_lidar(lidar), lidar)?;
-    let mut grid = VoxelGrid::over(map.extent());
-    let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
+/// Cells and labels of the rows. What is left out or assumed is counted.
+fn cells(
+    table: &NpyMatrix<'_>,
+    kind: &SparseDataset,
+    skipped: &mut BTreeMap<String, usize>,
+) -> Vec<([usize; 3], u16)> {
     let mut count = |what: &str| *skipped.entry(what.to_owned()).or_default() += 1;
+    let indices = |row: usize| [0, 1, 2].map(|column| table.get(row, column) as usize);
+    let mut out = Vec::with_capacity(table.rows);
     for row in 0..table.rows {
-        if !is_finite(&table, row) {
+        if !is_finite(table, row) {
             count("rows that are not finite");
             continue;
         }
         let label = table.get(row, table.columns - 1);
-        let class = match label {
-            v if v == f64::from(Class::FREE) => {
+        if !(0.0..=f64::from(u16::MAX)).contains(&label) || label.fract() != 0.0 {
+            count("classes that are no whole numbers, taken as others");
+            out.push((kind.cell(indices(row)), NUSCENES.label(Class::Others)));
+            continue;
+        }
+        let label = label as u16;
+        match NUSCENES.class(label) {
+            Some(Class::Free) => {
                 count("rows of class 17, free");
                 continue;
             }
-            255.0 => {
-                count("rows of class 255, noise");
-                continue;
-            }
-            v if (0.0..f64::from(Class::FREE)).contains(&v) && v.fract() == 0.0 => v as u8,
-            _ => {
-                count("classes above 17, taken as others");
-                Class::Others.id()
-            }
-        };
-        let cell = kind.cell([0, 1, 2].map(|column| table.get(row, column) as usize));
-        let [x, y, z] = map.voxel(cell);
-        grid.set(x, y, z, class);
+            Some(_) => {}
+            None => count("classes above 17, taken as others"),
+        }
+        out.push((kind.cell(indices(row)), label));
     }
-    if table.columns == 7 {
-        skipped.insert("velocities of voxels".to_owned(), table.rows);
-    }
-    skipped.insert(kind.assumed.to_owned(), table.rows);
-    Ok((on_data_map(source.name, grid), skipped))
+    out
 }
 
-/// The labels that a file holds, and what was assumed and left out.
-fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> {
-    let (table, kind) = table(bytes)?;
-    let (rows, columns) = (table.rows, table.columns);
-    let not_finite = |row: usize| !is_finite(&table, row);
+/// A scene in the cells of the file. Noise is kept as others.
+fn as_it_is(name: &str, cells: &[([usize; 3], u16)], kind: &SparseDataset) -> Result<Scene, String> {
+    let rig = SensorRig::default();
+    let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
+    let map = DataMap::new(&kind.lattice, &ego_from_lidar(lidar))?;
+    Ok(on_data_map(name, &map, cells, &NUSCENES))
+}
+
+/// Labels of cells in the voxels of Occ3D.
+fn on_window(
+    cells: &[([usize; 3], u16)],
+    kind: &SparseDataset,
+    skipped: &mut BTreeMap<String, usize>,
+) -> Result<VoxelGrid, String> {
     let rig = SensorRig::default();
     let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
     let pose = ego_from_lidar(lidar);
-    let mut cells = VoxelVotes::new(&kind.lattice, &pose)?;
-    let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
+    let mut votes = VoxelVotes::new(&kind.lattice, &pose)?;
     let mut count = |what: &str, n: usize| {
         if n > 0 {
             *skipped.entry(what.to_owned()).or_default() += n;
         }
     };
-    for row in 0..rows {
-        if not_finite(row) {
-            count("rows that are not finite", 1);
-            continue;
-        }
-        let cell = kind.cell([0, 1, 2].map(|column| table.get(row, column) as usize));
-        let label = table.get(row, columns - 1);
-        if IGNORED.contains(&label) {
-            count("rows of class 0 or 255, noise", 1);
-            continue;
-        }
-        let known = (1.0..f64::from(Class::FREE)).contains(&label) && label.fract() == 0.0;
-        match known {
-            true => cells.add(cell, label as u8),
-            false if label == f64::from(Class::FREE) => count("rows of class 17, free", 1),
-            false => {
-                count("classes above 17, taken as others", 1);
-                cells.add(cell, Class::Others.id());
-            }
+    for (cell, label) in cells {
+        match IGNORED.contains(label) {
+            true => count("rows of class 0 or 255, noise", 1),
+            false => votes.add(*cell, NUSCENES.shown(*label).id()),
         }
     }
-    let (voxels, elsewhere) = cells.voxels();
+    let (voxels, elsewhere) = votes.voxels();
     if voxels.iter_set().next().is_none() {
         return Err(format!(
-            "none of {rows} rows is a voxel of the map, expected some from -1 to 6.2 m of the ego frame"
+            "none of {} rows is a voxel of the map, expected some from -1 to 6.2 m of the ego frame",
+            cells.len()
         ));
     }
     count("cells above or below the map", elsewhere);
-    if columns == 7 {
-        count("velocities of voxels", rows);
-    }
-    count(kind.assumed, rows);
     let labels = match voxels.is_lowered() {
         true => {
             count("ground below -0.6 m, taken as Occ3D has it", 1);
@@ -157,7 +151,15 @@ fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> 
         }
         false => voxels.lowered(),
     };
-    Ok((labels, skipped))
+    Ok(labels)
+}
+
+/// Labels of a file in the voxels of Occ3D.
+#[cfg(test)]
+fn labels(bytes: &[u8]) -> Result<VoxelGrid, String> {
+    let (table, kind) = table(bytes)?;
+    let mut skipped = BTreeMap::new();
+    on_window(&cells(&table, &kind, &mut skipped), &kind, &mut skipped)
 }
 
 /// Which data set a table is of. Errors if its first three columns are no indices of any of them.

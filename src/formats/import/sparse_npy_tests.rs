@@ -15,6 +15,11 @@ pub(super) fn sample() -> Vec<u8> {
     write(&openoccupancy::EXPORTER, &scene())
 }
 
+const RESAMPLED: super::super::ImportOptions = super::super::ImportOptions {
+    lift_m: None,
+    resample: true,
+};
+
 fn write(exporter: &crate::export::Exporter, scene: &Scene) -> Vec<u8> {
     (exporter.write)(scene, &mut Small)
         .expect("written")
@@ -32,7 +37,7 @@ fn loaded(bytes: &[u8]) -> ImportedScene {
         bytes,
         name: "list",
         path: None,
-        options: Default::default(),
+        options: RESAMPLED,
     };
     match read(&source).expect("read") {
         Content::Scene(loaded) => *loaded,
@@ -45,7 +50,7 @@ fn refusal(bytes: &[u8]) -> String {
         bytes,
         name: "list",
         path: None,
-        options: Default::default(),
+        options: RESAMPLED,
     };
     read(&source).expect_err("refused")
 }
@@ -99,7 +104,7 @@ fn openoccupancy_brings_back_all_but_what_is_told() {
     let mut same = 0;
     for seed in 0..100 {
         let scene = random_scene(seed);
-        let (back, _) = labels(&write(&openoccupancy::EXPORTER, &scene)).expect("read");
+        let back = labels(&write(&openoccupancy::EXPORTER, &scene)).expect("read");
         let physical = without_others(&scene);
         let expected = physical.lowered();
         assert_eq!(back.extent(), Extent::WINDOW, "seed {seed}");
@@ -122,7 +127,7 @@ fn surroundocc_brings_back_the_most_frequent_class_of_each_cell() {
     let lattice = SURROUND_OCC.lattice;
     for seed in 0..100 {
         let scene = random_scene(seed);
-        let (back, _) = labels(&write(&surroundocc::EXPORTER, &scene)).expect("read");
+        let back = labels(&write(&surroundocc::EXPORTER, &scene)).expect("read");
         let physical = without_others(&scene);
         // Others take part in the vote, as the file's noise.
         let voters = Physical::raised(&scene.frame().occupancy);

@@ -71,6 +71,11 @@ fn frame_problem(frame: &Frame) -> Option<String> {
             .unobserved
             .as_ref()
             .is_none_or(|u| u.extent() == extent)
+        && frame
+            .inferred
+            .data_labels
+            .as_ref()
+            .is_none_or(|labels| labels.extent() == extent)
         && relief(&frame.layout.relief)
         && relief(&frame.source.layout.relief);
     if !agree {

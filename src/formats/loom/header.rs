@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use scene::{
-    Arranged, BoxId, Clip, Conditions, Extent, Frame, Lattice, Motion, Polyline, Pose, Recorded, RoadNetwork,
-    Scene, SceneBox, SensorRig, Thing, Track, Waiver,
+    Arranged, BoxId, Clip, Conditions, DataLabels, Extent, Frame, Lattice, Motion, Polyline, Pose, Recorded,
+    RoadNetwork, Scene, SceneBox, SensorRig, Thing, Track, Waiver,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -152,6 +152,9 @@ impl LatticeHeader {
     }
 }
 
+/// Entry of the labels of a data set.
+pub(super) const DATA_LABELS: &str = "data_labels.u32";
+
 /// Entry of the unobserved voxels of a map, and bytes of a column's word.
 pub(super) fn unobserved_entry(extent: Extent) -> (&'static str, usize) {
     match extent.nz() {
@@ -187,14 +190,39 @@ pub(super) struct InferredHeader {
     pub(super) background: bool,
     /// Whether `unobserved.u16` is there.
     pub(super) unobserved: bool,
+    /// Labels of the data set, if `data_labels.u32` is there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) data_labels: Option<DataLabelsHeader>,
     #[serde(skip_serializing_if = "Recorded::is_empty")]
     pub(super) recorded: Recorded,
+}
+
+/// What the entry of labels of a data set does not say.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DataLabelsHeader {
+    /// Id of the label set.
+    pub(super) set: String,
+    /// Label of free voxels.
+    pub(super) free: u16,
+    /// Labels in the entry: the number of a voxel `[x][y][z]` and its label each.
+    pub(super) special: usize,
+}
+
+impl DataLabelsHeader {
+    fn from_labels(labels: &DataLabels) -> Self {
+        Self {
+            set: labels.set().id.to_owned(),
+            free: labels.free(),
+            special: labels.special().len(),
+        }
+    }
 }
 
 impl InferredHeader {
     fn is_empty(&self) -> bool {
         let none_inferred = !self.layout && self.boxes.is_empty() && !self.background && !self.unobserved;
-        none_inferred && self.recorded.is_empty()
+        none_inferred && self.recorded.is_empty() && self.data_labels.is_none()
     }
 }
 
@@ -281,6 +309,11 @@ fn frame_header(frame: &Frame) -> FrameHeader {
             boxes: frame.inferred.boxes.clone(),
             background: frame.inferred.background,
             unobserved: frame.inferred.unobserved.is_some(),
+            data_labels: frame
+                .inferred
+                .data_labels
+                .as_ref()
+                .map(DataLabelsHeader::from_labels),
             recorded: (*frame.inferred.recorded).clone(),
         },
         waivers: frame.waivers.to_vec(),

@@ -9,6 +9,7 @@
 //! | `canvas/occupancy.u8` | class labels, `[x][y][z]`, a byte per voxel |
 //! | `canvas/painted.u8` | painted voxels, 255 where none; only if there are any |
 //! | `canvas/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says; `unobserved.u64` with more than 16 bins |
+//! | `canvas/data_labels.u32` | labels of a data set that say more than the class: number of a voxel `[x][y][z]` and label each; only of a scene from a data set |
 //! | `canvas/source_layout.u32`, `source_relief.f32`, `source_occupancy.u8` | of the source, only where it differs from the canvas |
 //! | `tracks/0000000007.u8` | class labels of a moving object, where it was made, `[x][y][z]`, a byte per voxel |
 //! | `kept.json`, `versions/0007.loom` | versions with their names and stars, and what was typed; only if there are any |

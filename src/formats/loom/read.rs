@@ -6,15 +6,20 @@ use std::sync::Arc;
 
 use scene::clip::ObjectVoxels;
 use scene::grid::NOT_PAINTED;
+use scene::label_sets;
+use scene::message::quoted;
 use scene::{
-    Background, BoxId, Clip, Extent, Frame, Inferred, Lattice, ProjectHistory, Relief, Scene, SceneBox,
-    SourceFrame, Track, Unobserved, VoxelGrid, VoxelPaint,
+    Background, BoxId, Clip, DataLabels, Extent, Frame, Inferred, Lattice, ProjectHistory, Relief, Scene,
+    SceneBox, SourceFrame, Track, Unobserved, VoxelGrid, VoxelPaint,
 };
 
 use super::archive::{MAX_JSON, Reader, parse, within, wrong_voxels};
 use super::beside;
 use super::check::check;
-use super::header::{ClipHeader, FrameHeader, SceneHeader, entry_name, track_entry, unobserved_entry};
+use super::header::{
+    ClipHeader, DATA_LABELS, DataLabelsHeader, FrameHeader, SceneHeader, entry_name, track_entry,
+    unobserved_entry,
+};
 use super::manifest::{AnyManifest, Manifest};
 use super::migrate::{Migration, Old};
 use super::{MANIFEST, ProjectError, SCENE};
@@ -163,6 +168,10 @@ fn read_canvas<R: Read + Seek>(file: &mut Reader<R>, header: FrameHeader) -> Res
         }
         false => None,
     };
+    let data_labels = header.inferred.data_labels.as_ref();
+    let data_labels = data_labels
+        .map(|told| read_data_labels(file, told, extent))
+        .transpose()?;
     let boxes = unique(header.boxes)?;
     if let Some(id) = header.inferred.boxes.iter().find(|id| !boxes.contains_key(id)) {
         return Err(ProjectError::Unsound(format!(
@@ -207,6 +216,7 @@ fn read_canvas<R: Read + Seek>(file: &mut Reader<R>, header: FrameHeader) -> Res
             boxes: header.inferred.boxes,
             background: header.inferred.background,
             unobserved,
+            data_labels,
             recorded: Arc::new(header.inferred.recorded),
         },
         waivers: Arc::new(header.waivers),
@@ -215,6 +225,48 @@ fn read_canvas<R: Read + Seek>(file: &mut Reader<R>, header: FrameHeader) -> Res
         own_shapes: Arc::default(),
     })
 }
+
+/// Labels of a data set on a map. Errors on a set that is not known, and on voxels beyond the map.
+fn read_data_labels<R: Read + Seek>(
+    file: &mut Reader<R>,
+    told: &DataLabelsHeader,
+    extent: Extent,
+) -> Result<DataLabels, ProjectError> {
+    let unsound = |what: String| ProjectError::Unsound(format!("scene.json: canvas: data_labels: {what}"));
+    let set = label_sets::from_id(&told.set).ok_or_else(|| {
+        let known: Vec<&str> = label_sets::ALL.iter().map(|set| set.id).collect();
+        unsound(format!(
+            "set {}, expected one of {}",
+            quoted(&told.set, 40),
+            known.join(", ")
+        ))
+    })?;
+    let most = extent.voxels().min(MOST_LABELS);
+    if told.special > most {
+        return Err(unsound(format!(
+            "{} labels, expected at most {most}",
+            told.special
+        )));
+    }
+    let bytes = file.exactly(&entry_name(DATA_LABELS), told.special, 8, "labels")?;
+    let words = bytes
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .map(|word| u32::from_le_bytes(*word));
+    let words: Vec<u32> = words.collect();
+    let rows = words.as_chunks::<2>().0.iter();
+    let rows: Option<Vec<(u32, u16)>> = rows
+        .map(|[at, label]| Some((*at, u16::try_from(*label).ok()?)))
+        .collect();
+    let labels = rows.and_then(|rows| DataLabels::from_numbered(set, extent, told.free, rows));
+    labels.ok_or_else(|| {
+        unsound("labels that do not ascend by voxel, lie beyond the map or say no more than a class".into())
+    })
+}
+
+/// Most labels of a data set that are read.
+const MOST_LABELS: usize = 1 << 26;
 
 fn unique(list: Vec<SceneBox>) -> Result<BTreeMap<BoxId, SceneBox>, ProjectError> {
     let mut boxes = BTreeMap::new();

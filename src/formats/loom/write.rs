@@ -5,7 +5,7 @@ use scene::{BevLayout, Scene};
 use super::archive::Writer;
 use super::beside;
 use super::check::check;
-use super::header::{SceneHeader, entry_name, track_entry, unobserved_entry};
+use super::header::{DATA_LABELS, SceneHeader, entry_name, track_entry, unobserved_entry};
 use super::manifest::Manifest;
 use super::{ProjectError, SCENE};
 
@@ -43,6 +43,13 @@ fn written(scene: &Scene) -> Result<Writer, ProjectError> {
             .flat_map(|w| w.to_le_bytes().into_iter().take(width))
             .collect();
         out.put(&entry_name(entry), &bytes)?;
+    }
+    if let Some(labels) = &frame.inferred.data_labels {
+        let rows = labels.numbered().iter();
+        let bytes = rows
+            .flat_map(|(number, label)| [*number, (*label).into()])
+            .flat_map(u32::to_le_bytes);
+        out.put(&entry_name(DATA_LABELS), &bytes.collect::<Vec<u8>>())?;
     }
     if header.source.layout {
         out.put(

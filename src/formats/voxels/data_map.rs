@@ -1,12 +1,12 @@
 //! Cells of a data set as a map of their own lattice: the map stands still around the LiDAR, its columns are the cells'.
 
 use glam::DVec3;
-use scene::{Extent, Lattice, LidarPattern, Pose};
+use scene::{Extent, Lattice, Pose};
 
 use super::DataCells;
 
 /// A map whose voxels are the cells of a data set, turned by quarters so that x is ahead. The origin is on the ground below
-/// the LiDAR.
+/// that of the data set's frame, usually the LiDAR.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DataMap {
     cells: DataCells,
@@ -16,12 +16,12 @@ pub(crate) struct DataMap {
 }
 
 impl DataMap {
-    /// The map of cells in a frame that is turned as `ego_from_cells` says, around the place of a LiDAR. Errors in one line on
+    /// The map of cells in a frame that is turned and as high above the ground as `ego_from_cells` says. Errors in one line on
     /// cells that are no lattice.
-    pub fn new(cells: &DataCells, ego_from_cells: &Pose, lidar: &LidarPattern) -> Result<Self, String> {
+    pub fn new(cells: &DataCells, ego_from_cells: &Pose) -> Result<Self, String> {
         let ahead = ego_from_cells.rotation * DVec3::X;
         let quarters = (ahead.truncate().to_angle() / std::f64::consts::FRAC_PI_2).round();
-        let z_m = lidar.translation_m[2];
+        let z_m = ego_from_cells.translation_m.z;
         let lattice = Lattice::new(cells.cell_m, cells.size[2], cells.min_m[2] + z_m)?;
         let mut out = Self {
             cells: *cells,
@@ -39,6 +39,17 @@ impl DataMap {
     /// Columns and lattice of the map.
     pub fn extent(&self) -> Extent {
         self.extent
+    }
+
+    /// True for a map of the same voxels that holds all cells: this one, or one that was made larger.
+    pub fn lies_in(&self, map: Extent) -> bool {
+        let [nx, ny, _] = map.shape();
+        let [own_nx, own_ny, _] = self.extent.shape();
+        let holds = |axis: usize, n: usize, own_n: usize| {
+            let (low, own_low) = (map.from()[axis], self.extent.from()[axis]);
+            low <= own_low && own_low + own_n as i32 <= low + n as i32
+        };
+        map.lattice() == self.extent.lattice() && holds(0, nx, own_nx) && holds(1, ny, own_ny)
     }
 
     /// The voxel of a cell.
@@ -104,7 +115,7 @@ mod tests {
                     rotation: DQuat::from_rotation_z(turn + 0.01),
                     translation_m: lidar.translation_m.into(),
                 };
-                let map = DataMap::new(&cells, &pose, lidar).expect("sound");
+                let map = DataMap::new(&cells, &pose).expect("sound");
                 for index in 0..cells.cells() {
                     let cell = cells.cell(index);
                     let voxel = map.voxel(cell);

@@ -72,6 +72,7 @@ impl Physical {
     }
 
     /// A column, lowest bin first.
+    #[cfg(test)]
     pub fn column(&self, x: usize, y: usize) -> &[u8; Self::NZ] {
         &self.columns[self.extent.index(x, y)]
     }

@@ -11,7 +11,7 @@ use super::{large, scenery_around};
 use formats::import::{self, Content};
 use formats::opendrive::RoadNetwork;
 use formats::{atomic, input, loom};
-use scene::{Extent, Frame, Scene, SensorRig, Window, draft};
+use scene::{Extent, Frame, Lattice, Scene, SensorRig, Window, draft};
 use world::scenery::{self, RoadsideKind, RoadsideStyle, Style};
 use world::terrain::Terrain;
 use world::voxelize::{Vertical, complete};
@@ -84,10 +84,10 @@ pub fn file(path: &Path) -> anyhow::Result<OpenedScene> {
     }
 }
 
-/// A scene from Occ3D labels: their voxels as they are, layout, boxes and background inferred.
+/// A scene from Occ3D labels: their voxels, in those of the networks, layout, boxes and background inferred.
 pub fn labels(path: &Path) -> anyhow::Result<Scene> {
     match import::read_as(&import::occ3d::IMPORTER, path)? {
-        Content::Scene(loaded) => Ok(loaded.scene),
+        Content::Scene(loaded) => Ok(loaded.scene.in_lattice(Lattice::OCC3D).into_owned()),
         _ => bail!("{}: roads or words, expected labels", path.display()),
     }
 }

@@ -1,6 +1,6 @@
 //! `new`: a scene from a procedural world.
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +8,7 @@ use super::names;
 use crate::call::Operation;
 use crate::desk::{Desk, Done};
 use authoring::open;
+use scene::{Lattice, drawn};
 use world::scenery::RoadsideKind;
 use world::template::TEMPLATES;
 use world::terrain::Terrain;
@@ -28,6 +29,12 @@ pub struct New {
     /// The lie of the land.
     #[serde(default)]
     terrain: Terrain,
+    /// Edge of the voxels, m: 0.05 to 2; 0.4, as the networks have it, if left out.
+    #[serde(default)]
+    voxel_m: Option<f64>,
+    /// Voxels above one another, from about 1 m below the road up, at most 64; up to 5.4 m above it if left out.
+    #[serde(default)]
+    bins: Option<usize>,
 }
 
 /// Receipt of `new`.
@@ -59,6 +66,9 @@ impl Operation for New {
         let from = desk.scene()?.content();
         let scene = open::from_template_on(&self.template, self.seed, self.setting, self.terrain)
             .context("no such template")?;
+        let voxel_m = self.voxel_m.unwrap_or(Lattice::OCC3D.voxel_m());
+        let lattice = drawn::new_lattice(voxel_m, self.bins).map_err(|e| anyhow!("voxel_m, bins: {e}"))?;
+        let scene = scene.drawn_in(lattice);
         let (frame, name) = (scene.frame().clone(), scene.name.to_string());
         let things = scene.background.len();
         let done = desk.put(format!("New {}", self.template), from, scene)?;

@@ -32,10 +32,9 @@ pub struct OpenCall {
     /// beside the map is lifted onto it, and `notes` says by how much.
     #[serde(default)]
     lift_m: Option<f64>,
-    /// For voxels of OpenOccupancy, SurroundOcc, UniScene or SemanticKITTI: true to keep their size and heights, in place of
-    /// those of the networks.
+    /// For voxels of a data set: true to take them to those of the networks, 0.4 m and 16 bins, in place of their own.
     #[serde(default)]
-    as_it_is: bool,
+    resample: bool,
 }
 
 /// Receipt of `open`.
@@ -82,11 +81,11 @@ impl Operation for OpenCall {
         let mut notes = Vec::new();
         let options = ImportOptions {
             lift_m: self.lift_m,
-            as_it_is: self.as_it_is,
+            resample: self.resample,
         };
         let (scene, format) = match &self.file {
             None if options != ImportOptions::default() => {
-                bail!("lift_m and as_it_is are for files, expected one")
+                bail!("lift_m and resample are for files, expected one")
             }
             None => (open::bundled()?, "loom"),
             Some(file) => {

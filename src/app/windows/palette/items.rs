@@ -129,7 +129,7 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
         add(
             titled("New scene: {name}", name),
             "file",
-            Command::File(FileCommand::NewFrom(name)),
+            Command::File(FileCommand::NewFrom(name, scene::Lattice::OCC3D)),
         );
     }
     for b in scene.frame().boxes.values().take(MOST_OBJECTS) {
