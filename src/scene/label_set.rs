@@ -150,7 +150,7 @@ impl DataLabels {
             .special
             .iter()
             .all(|(_, label)| out.usual(set.shown(*label)) != *label);
-        (ascend && inside && say_more && set.class(free) != None).then_some(out)
+        (ascend && inside && say_more && set.class(free).is_some()).then_some(out)
     }
 
     /// Labels that say more than the class, by the numbers of their voxels `[x][y][z]`, ascending.
