@@ -196,24 +196,31 @@ class Calls:
         self,
         *,
         template: Literal['straight', 'curve', 't-junction', 'intersection', 'roundabout', 'highway', 'parking', 'suburb'],
+        bins: int | None = None,
         seed: int | None = None,
         setting: types.RoadsideKind | None = None,
         terrain: types.Terrain | None = None,
+        voxel_m: float | None = None,
     ) -> types.NewSceneReceipt:
         """Replaces the scene by a new one from a procedural world: road, traffic, buildings, trees and voxels
         on a map of 80 x 80 m around the ego vehicle. It can be undone.
 
         template: Kind of street.
+        bins: Voxels above one another, from about 1 m below the road up, at most 64; up to 5.4 m above it
+            if left out.
         seed: Fixes every random draw: the same seed gives the same scene.
         setting: Kind of place; one that suits the road if left out.
         terrain: The lie of the land.
+        voxel_m: Edge of the voxels, m: 0.05 to 2; 0.4, as the networks have it, if left out.
         """
         args = _given(
             {
                 'template': template,
+                'bins': bins,
                 'seed': seed,
                 'setting': setting,
                 'terrain': terrain,
+                'voxel_m': voxel_m,
             },
             ['template'],
         )
@@ -223,19 +230,17 @@ class Calls:
     def open(
         self,
         *,
-        as_it_is: bool | None = None,
         at_m: Sequence[float] | None = None,
         file: str | None = None,
         heading_deg: float | None = None,
         lift_m: float | None = None,
+        resample: bool | None = None,
         size_m: Sequence[float] | None = None,
     ) -> types.OpenReceipt:
         """Replaces the scene by one from a file: a project (.loom), roads (.xodr), occupancy labels (.npz), a
         picture that this program made (.png), or another format that is read. It can be undone. list_files
         tells what is there.
 
-        as_it_is: For voxels of OpenOccupancy, SurroundOcc, UniScene or SemanticKITTI: true to keep their
-            size and heights, in place of those of the networks.
         at_m: For a road file: position of the ego vehicle in the file's frame, m; a good place on a lane if
             left out.
         file: File in the folder of this session, such as `a.loom`, `road.xodr` or `labels.npz`; without it
@@ -244,15 +249,17 @@ class Calls:
             the lane if left out.
         lift_m: For a point cloud: height by which it is lifted, m, 0 for not at all; if left out, a sweep
             whose ground lies beside the map is lifted onto it, and `notes` says by how much.
+        resample: For voxels of a data set: true to take them to those of the networks, 0.4 m and 16 bins,
+            in place of their own.
         size_m: For a road file: length and width of the map, m; 80 x 80 if left out.
         """
         args = _given(
             {
-                'as_it_is': as_it_is,
                 'at_m': at_m,
                 'file': file,
                 'heading_deg': heading_deg,
                 'lift_m': lift_m,
+                'resample': resample,
                 'size_m': size_m,
             },
             [],

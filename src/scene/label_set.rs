@@ -146,11 +146,13 @@ impl DataLabels {
             .special
             .last()
             .is_none_or(|(at, _)| (*at as usize) < extent.voxels());
+        // (a set that writes nothing for free voxels has no such row)
+        let is_free = set.class(free).is_none_or(|class| class == Class::Free);
         let say_more = out
             .special
             .iter()
             .all(|(_, label)| out.usual(set.shown(*label)) != *label);
-        (ascend && inside && say_more && set.class(free).is_some()).then_some(out)
+        (ascend && inside && say_more && is_free).then_some(out)
     }
 
     /// Labels that say more than the class, by the numbers of their voxels `[x][y][z]`, ascending.
@@ -254,7 +256,7 @@ fn place(extent: Extent, number: u32) -> [usize; 3] {
 mod tests {
     use super::*;
     use crate::Lattice;
-    use crate::label_sets::SEMANTIC_KITTI;
+    use crate::label_sets::{NUPLAN_OCC, SEMANTIC_KITTI};
 
     fn extent() -> Extent {
         let lattice = Lattice::new(0.2, 32, -0.4).expect("sound");
@@ -296,6 +298,19 @@ mod tests {
             [trunk, 10, moving, 0]
         );
         assert_eq!(dense.iter().filter(|label| **label != 0).count(), 3);
+    }
+
+    #[test]
+    fn numbered_labels_are_checked() {
+        let read = |set, free, of: &[(u32, u16)]| DataLabels::from_numbered(set, extent(), free, of.to_vec());
+        let last = extent().voxels() as u32 - 1;
+        assert!(read(&SEMANTIC_KITTI, 0, &[(3, 51), (last, 71)]).is_some());
+        assert!(read(&NUPLAN_OCC, 8, &[(3, 5)]).is_some());
+        for of in [[(3, 51), (3, 71)], [(4, 51), (3, 71)], [(3, 51), (last + 1, 71)]] {
+            assert_eq!(read(&SEMANTIC_KITTI, 0, &of), None, "{of:?}");
+        }
+        assert_eq!(read(&SEMANTIC_KITTI, 0, &[(3, 10)]), None, "no more than a car");
+        assert_eq!(read(&SEMANTIC_KITTI, 10, &[]), None, "free is no car");
     }
 
     #[test]
