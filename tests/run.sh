@@ -28,6 +28,8 @@ fi
 # One profile throughout, so that libraries build once: optimised as a release, with the overflow and debug assertions of the rooms.
 cargo fmt --all --check
 cargo clippy --profile checked --workspace --all-targets --quiet -- -D warnings
+# The plain program, without the parts that are features, compiles too.
+cargo check --profile checked --quiet
 RUSTDOCFLAGS="-D warnings" cargo doc --profile checked --workspace --no-deps --document-private-items --quiet
 # No comment holds an example to run, so doc tests, which would read every room again, are left out.
 cargo test --profile checked --workspace --tests

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use scene::{Camera, Extent, Lens, Optics, Pose};
+use scene::{Camera, Extent, Lattice, Lens, Optics, Pose};
 
 /// A viewpoint that orbits a target; perspective or orthographic.
 ///
@@ -133,7 +133,8 @@ impl ViewCamera {
         }
     }
 
-    /// A standard viewpoint over a map: the one from above shows all of it, the others look where the ego vehicle is.
+    /// A standard viewpoint over a map: the one from above shows all of it, the others look where the ego vehicle is. That of the
+    /// driver is as high above the ground in every lattice.
     pub fn preset_over(preset: ViewPreset, extent: Extent) -> Self {
         let mut camera = Self::preset(preset);
         if preset == ViewPreset::Top {
@@ -141,6 +142,11 @@ impl ViewCamera {
             camera.target_m = ((low + high) / 2.0).with_z(0.0);
             let side_m = (high - low).truncate().max_element();
             camera.distance_m *= side_m * 1.05 / camera.height_at_target_m();
+        }
+        if preset == ViewPreset::Ego {
+            // Above the bonnet, wherever labels have the ground and so the vehicle stands.
+            let down_m = |lattice: Lattice| lattice.lowered() as f64 * lattice.voxel_m();
+            camera.target_m.z += down_m(Lattice::OCC3D) - down_m(extent.lattice());
         }
         camera.sane()
     }

@@ -195,3 +195,12 @@ fn looks_through_the_rig() {
         assert!(view.axes()[2].dot(ahead) > 0.9999);
     }
 }
+
+#[test]
+fn the_driver_sits_as_high_above_the_ground_in_every_lattice() {
+    let eye_m = |extent: Extent| ViewCamera::preset_over(ViewPreset::Ego, extent).eye_m().z;
+    let fine = Lattice::new(0.2, 32, -1.0).expect("sound");
+    // Labels of Occ3D have the ground 0.8 m lower.
+    let raised_m = eye_m(Extent::WINDOW.in_lattice(fine)) - eye_m(Extent::WINDOW);
+    assert!((raised_m - 0.8).abs() < 1e-9, "{raised_m}");
+}
