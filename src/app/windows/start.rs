@@ -109,7 +109,7 @@ fn voxels_of(ui: &mut Ui) -> Lattice {
     });
     ui.data_mut(|d| d.insert_temp(id, is_fine));
     match is_fine {
-        true => drawn::new_lattice(0.2, Some(36)).unwrap_or(Lattice::OCC3D),
+        true => drawn::new_lattice(0.2, None).unwrap_or(Lattice::OCC3D),
         false => Lattice::OCC3D,
     }
 }
