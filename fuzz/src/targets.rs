@@ -205,7 +205,7 @@ pub fn rig_file(bytes: &[u8]) {
 
 /// Settings with keys and panes.
 pub fn settings_file(bytes: &[u8]) {
-    let settings: Settings = match serde_json::from_slice(bytes) {
+    let settings = match Settings::read(&String::from_utf8_lossy(bytes)) {
         Err(error) => return one_line(error),
         Ok(settings) => settings,
     };

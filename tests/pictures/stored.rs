@@ -1,7 +1,10 @@
 //! Pictures in `tests/pictures/stored`, at half of their size, and the comparison with them.
 
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
+use image::codecs::png::{CompressionType, FilterType as PngFilter, PngEncoder};
 use image::imageops::{FilterType, resize};
 use image::{RgbImage, RgbaImage};
 
@@ -52,7 +55,9 @@ impl Stored {
             false => Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}_{name}.png", self.variant)),
         };
         std::fs::create_dir_all(into.parent().expect("a folder")).expect("made");
-        half.save(&into).expect("written");
+        let file = BufWriter::new(File::create(&into).expect("made"));
+        let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, PngFilter::Adaptive);
+        half.write_with_encoder(encoder).expect("written");
         self.different.push(match share {
             Some(share) => format!(
                 "{}/{name}: {:.2} % of the pixels differ, see {}",

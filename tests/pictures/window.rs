@@ -12,7 +12,7 @@ use formats::loom;
 use image::RgbaImage;
 use job::{GenError, GenParams, GenResult, Job, JobCtx, Pipeline, RegionMode};
 use scene::{Edit, Scene};
-use widgets::theme::Theme;
+use widgets::theme::{self, Theme};
 
 /// Longest wait for sensors.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -118,8 +118,16 @@ impl TestWindow {
         // Off everything, so that nothing is hovered.
         self.harness.hover_at(egui::pos2(1399.0, 450.0));
         self.harness.run_steps(STEPS);
-        self.harness
-            .render()
-            .expect("a driver, Mesa's software one at least")
+        let rendered = self.harness.render();
+        let mut picture = rendered.expect("a driver, Mesa's software one at least");
+        // What no panel covers has the colour that the window is cleared with.
+        let behind = theme::panel().to_array();
+        for pixel in picture.pixels_mut() {
+            let through = 255 - u16::from(pixel.0[3]);
+            for (channel, behind) in pixel.0.iter_mut().zip(behind) {
+                *channel = channel.saturating_add((through * u16::from(behind) / 255) as u8);
+            }
+        }
+        picture
     }
 }

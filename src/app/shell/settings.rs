@@ -15,6 +15,7 @@ use crate::panes::id::PaneId;
 use editor::Document;
 use editor::tools::saved::SavedBrush;
 use scene::classes::Palette;
+use scene::message::one_line;
 use widgets::theme::Theme;
 
 /// Most recent files that are kept.
@@ -98,6 +99,11 @@ impl Settings {
         Some(super::folders::settings()?.join("settings.json"))
     }
 
+    /// Settings as a file holds them. Errors in one line.
+    pub fn read(text: &str) -> Result<Self, String> {
+        serde_json::from_str(text).map_err(|e| one_line(&e))
+    }
+
     /// Reads settings; default settings if there is no file. Errors in one line if the file cannot be read; it is then
     /// left as it is, and the default settings are used.
     pub fn load(path: &Path) -> anyhow::Result<Self> {
@@ -106,8 +112,8 @@ impl Settings {
             Err(error) if error.is_not_found() => return Ok(Self::default()),
             Err(error) => return Err(error).context("settings"),
         };
-        let mut read: Self =
-            serde_json::from_str(&text).with_context(|| format!("settings {}", path.display()))?;
+        let read = Self::read(&text).map_err(anyhow::Error::msg);
+        let mut read = read.with_context(|| format!("settings {}", path.display()))?;
         let scale = read.ui_scale;
         read.ui_scale = if scale.is_finite() {
             scale.clamp(0.5, 3.0)
@@ -183,5 +189,12 @@ mod tests {
         std::fs::write(&path, "{ \"ui_scale\": ").expect("written");
         let error = format!("{:#}", Settings::load(&path).err().expect("cut off"));
         assert!(error.contains("settings.json"), "{error}");
+        let quoted = Settings::read("{\"theme\": \"da\\nrk\"}")
+            .err()
+            .expect("no theme");
+        assert!(
+            quoted.contains("unknown variant") && !quoted.contains('\n'),
+            "{quoted:?}"
+        );
     }
 }

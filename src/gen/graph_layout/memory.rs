@@ -15,6 +15,7 @@ use nets::text::{TextEncoder, cosine};
 use nn::ops::OpsError;
 use nn::weights::WeightsError;
 use scene::graph::SceneGraph;
+use scene::message::one_line;
 use scene::road_map::RoadMap;
 use scene::{BevLayout, BoxId, BoxLabel, Class, SceneBox};
 use world::draw::{Draw, hash};
@@ -176,7 +177,7 @@ pub struct Bank {
 impl Bank {
     /// Reads a file's text.
     pub fn parse(text: &str) -> Result<Self, MemoryError> {
-        let bank: Self = serde_json::from_str(text).map_err(|e| MemoryError::Malformed(e.to_string()))?;
+        let bank: Self = serde_json::from_str(text).map_err(|e| MemoryError::Malformed(one_line(&e)))?;
         if bank.version != VERSION {
             let found = bank.version;
             return Err(MemoryError::Malformed(format!(
