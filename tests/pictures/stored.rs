@@ -42,7 +42,11 @@ impl Stored {
             picture.height() / 2,
             FilterType::Triangle,
         );
-        let half = image::DynamicImage::ImageRgba8(half).into_rgb8();
+        let mut half = image::DynamicImage::ImageRgba8(half).into_rgb8();
+        // (32 levels of each channel: files of half the size)
+        half.pixels_mut()
+            .flat_map(|p| &mut p.0)
+            .for_each(|v| *v = *v / 8 * 8 + 4);
         let path = self.folder.join(format!("{name}.png"));
         let share = image::open(&path)
             .ok()

@@ -70,6 +70,10 @@ impl TestWindow {
         let harness = Harness::builder()
             .with_size(egui::vec2(1400.0, 900.0))
             .with_step_dt(1.0 / 30.0)
+            .with_theme(match theme {
+                Theme::Dark => egui::Theme::Dark,
+                Theme::Light => egui::Theme::Light,
+            })
             .build_eframe(|cc| SceneloomApp::new(config, None, &cc.egui_ctx).expect("threads"));
         let mut window = Self {
             harness,
