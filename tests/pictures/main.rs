@@ -32,9 +32,13 @@ fn dialogs() -> Vec<(&'static str, Command)> {
 /// Panes whose content depends on how fast the machine is, or needs a graphics card's device.
 const LEFT_OUT: [&str; 2] = ["trade", "view3d"];
 
-/// All workspaces, or the two with the most words.
+/// All workspaces but the one of measured times, or the two with the most words.
 fn workspaces(window: &mut TestWindow, stored: &mut Stored, all: bool) {
-    let shown = |of: Workspace| all || matches!(of, Workspace::Edit | Workspace::Clip);
+    let shown = |of: Workspace| match of {
+        Workspace::Edit | Workspace::Clip => true,
+        Workspace::Trade => false,
+        _ => all,
+    };
     for (workspace, name) in Workspace::ALL.into_iter().filter(|(of, _)| shown(*of)) {
         window.execute(Command::View(ViewCommand::Workspace(workspace)));
         stored.compare(&format!("workspace_{}", name.to_lowercase()), &window.picture());
