@@ -1,5 +1,5 @@
 //! Stored pictures of workspaces, panes and dialogs, drawn by the software driver and compared, in two themes and four languages.
-//! `UPDATE=1 cargo test --profile checked --test pictures` renews those that differ. A program of its own, since themes and
+//! `UPDATE=1 cargo test --profile checked --workspace --test pictures` renews those that differ. A program of its own, since themes and
 //! languages are the process's.
 
 mod stored;
