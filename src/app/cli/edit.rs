@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use serde_json::json;
 
 use super::document;
@@ -17,6 +17,7 @@ use formats::input;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use metrics::agreement::layout_agreement;
+use scene::{Frame, Lattice};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -48,6 +49,15 @@ pub fn read_edits(path: &std::path::Path) -> anyhow::Result<Vec<Edit>> {
     serde_json::from_str(&text).with_context(|| name.to_string())
 }
 
+/// Voxels that differ from what was last generated or read, those aside that were painted: the next generation draws them.
+fn pending(frame: &Frame) -> usize {
+    let differ = frame.occupancy.count_different(&frame.source.occupancy);
+    let source = &frame.source.occupancy;
+    let painted = frame.painted.iter_set();
+    let kept = painted.filter(|(x, y, z, class)| source.get(*x, *y, *z) != *class);
+    differ.saturating_sub(kept.count())
+}
+
 impl EditCommand {
     pub(super) fn run(self) -> CommandResult {
         let scene = open::scene(&self.scene)?;
@@ -57,7 +67,21 @@ impl EditCommand {
         let seed = scene.conditions.seed;
         let mut document = document::opened(scene);
         let before = document.scene().clone();
-        let said = editor::remarks(&before, &edits);
+        let lattice = before.frame().extent().lattice();
+        if self.verify && lattice != Lattice::OCC3D {
+            return Err(anyhow!(
+                "--verify compares maps of voxels of {} m, and this one is of {lattice}",
+                Lattice::OCC3D.voxel_m()
+            )
+            .into());
+        }
+        let mut said = editor::remarks(&before, &edits);
+        let pending = pending(before.canvas());
+        if pending > 0 {
+            said.push(format!(
+                "{pending} voxels that were changed before and not generated since are drawn anew, too"
+            ));
+        }
         document
             .apply_all("Edit", &with_scenery(&before, with_conditions(&edits, seed)))
             .with_context(|| self.edits.display().to_string())?;

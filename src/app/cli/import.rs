@@ -227,7 +227,7 @@ impl Import {
             };
             let skipped = match loaded.skipped.is_empty() {
                 true => String::new(),
-                false => format!("; left out: {}", listed(&loaded.skipped)),
+                false => format!("; left out or assumed: {}", listed(&loaded.skipped)),
             };
             let notes: String = loaded.notes.iter().map(|note| format!("; {note}")).collect();
             format!(

@@ -189,9 +189,7 @@ mod tests {
         std::fs::write(&path, "{ \"ui_scale\": ").expect("written");
         let error = format!("{:#}", Settings::load(&path).err().expect("cut off"));
         assert!(error.contains("settings.json"), "{error}");
-        let quoted = Settings::read("{\"theme\": \"da\\nrk\"}")
-            .err()
-            .expect("no theme");
+        let quoted = Settings::read("{\"look\": \"da\\nrk\"}").err().expect("no theme");
         assert!(
             quoted.contains("unknown variant") && !quoted.contains('\n'),
             "{quoted:?}"

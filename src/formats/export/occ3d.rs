@@ -48,6 +48,12 @@ fn labelled_frame(frame: &Frame, products: &mut dyn Products) -> Result<Occ3dFra
     voxels::check(frame)?;
     let ObservationMasks { lidar, camera } = products.observed()?;
     let known = known(frame);
+    let [mut lidar, camera] = [lidar, camera];
+    if frame.inferred.unobserved.is_some() {
+        // What the data set observed stays observed, whatever rays reach it now.
+        let words = lidar.iter_mut().zip(&camera).zip(&known);
+        words.for_each(|((lidar, camera), known)| *lidar |= known & !camera);
+    }
     let [lidar_observed, camera_observed] = [lidar, camera].map(|words| Some(mask(&words, &known)));
     Ok(Occ3dFrame {
         labels: frame.occupancy.crop(Extent::WINDOW),
@@ -141,6 +147,7 @@ mod tests {
             scene.change_canvas(|frame| {
                 frame.occupancy = found.frame.labels.clone();
                 frame.inferred.data_labels = found.data_labels.clone();
+                frame.inferred.unobserved = Unobserved::from_observed(&[true; Window::VOXELS]);
                 frame.occupancy.set(0, 0, 3, Class::Vegetation.id()); // was a sign
             });
             labels[at(0, 0, 3)] = 11;
@@ -149,6 +156,12 @@ mod tests {
                 .remove(0);
             let back = npz::entry(&written.bytes, "voxel_label", 1 << 24).expect("an array");
             assert!(back.ends_with(&labels), "free is {free}");
+            let masks = occ3d::read(&written.bytes).expect("read");
+            let [lidar, camera] = [masks.lidar_observed, masks.camera_observed].map(|m| m.expect("a mask"));
+            assert!(
+                lidar.iter().zip(&camera).all(|(a, b)| *a || *b),
+                "all was observed"
+            );
         }
     }
 
