@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Write};
 use std::path::Path;
 
+use super::cli::{Folder, json, refused, sceneloom};
 use app::export::{ExportOptions, ExportProgress, export_all};
 use editor::Document;
 use formats::import::{self, Content};
@@ -392,4 +393,41 @@ fn labels_of_a_set_that_is_not_known_are_refused_in_one_line() {
         let line = loom::from_bytes(&damaged).expect_err("refused").to_string();
         assert!(line.contains(says) && !line.contains('\n'), "{line}");
     }
+}
+
+/// What an earlier command changed without generating is drawn by the next edit, which says so; --verify is for maps of 0.4 m.
+#[test]
+fn an_edit_tells_what_else_it_draws() {
+    let folder = Folder::new();
+    let scene = folder.scene();
+    let paint = r#"[{"paint_voxels": {"cells": [[100, 90, 3]], "class": "barrier"}}]"#;
+    let edits = folder.write("paint.json", paint);
+    let out = folder.path("out.loom");
+    let notes = |from: &str| {
+        let report = json(&sceneloom(&[
+            "edit", from, "--edits", &edits, "-o", &out, "--json",
+        ]));
+        report["notes"].to_string()
+    };
+    assert!(!notes(&scene).contains("changed before"));
+    let asked = folder.path("asked.loom");
+    let words = ["prompt", "remove the nearest car", "--base", &scene, "-o", &asked];
+    assert!(sceneloom(&words).status.success());
+    let told = notes(&asked);
+    assert!(
+        told.contains("voxels that were changed before and not generated since"),
+        "{told}"
+    );
+
+    let fine = folder.path("fine.loom");
+    let new = ["new", "--template", "straight", "--voxel", "0.2", "-o", &fine];
+    assert!(sceneloom(&new).status.success());
+    refused(
+        &["edit", &fine, "--edits", &edits, "--verify", "-o", &out],
+        &["--verify", "0.2 m"],
+    );
+    refused(
+        &["new", "--template", "straight", "--bins", "3", "-o", &fine],
+        &["--bins", "3 bins"],
+    );
 }
