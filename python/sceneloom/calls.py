@@ -344,7 +344,7 @@ class Calls:
     def render(
         self,
         *,
-        what: Sequence[Literal['semantic', 'depth', 'appearance', 'learned', 'perceived', 'mpi', 'perspective', 'normals', 'truth', 'lidar', 'bev', 'view']],
+        what: Sequence[Literal['semantic', 'depth', 'appearance', 'learned', 'perceived', 'mpi', 'perspective', 'normals', 'truth', 'lidar', 'radar', 'bev', 'view']],
         cameras: Sequence[str] | None = None,
         folder: str | None = None,
         learned_lidar: bool | None = None,
@@ -355,14 +355,14 @@ class Calls:
         time: types.TimeOfDay | None = None,
         weather: types.Weather | None = None,
     ) -> types.RenderReceipt:
-        """Renders what cameras and LiDAR of the ego vehicle see at the moment that is shown, or the map from
-        above, and writes PNG pictures and data into a folder. Over MCP the first picture comes with the
-        answer, at most 640 pixels wide. Look at bev to see where things are. Files that are there are
-        written over only with replace: call again with it, or name another folder.
+        """Renders what cameras, LiDAR and radars of the ego vehicle see at the moment that is shown, or the
+        map from above, and writes PNG pictures and data into a folder. Over MCP the first picture comes
+        with the answer, at most 640 pixels wide. Look at bev to see where things are. Files that are there
+        are written over only with replace: call again with it, or name another folder.
 
         what: Kinds of output: `bev` is the map and the voxels from above, `view` the 3D view (needs a
-            graphics driver), `lidar` the points of a sweep; the others are what cameras see, `appearance`
-            as a photograph.
+            graphics driver), `lidar` the points of a sweep, `radar` the returns of all radars; the others
+            are what cameras see, `appearance` as a photograph.
         cameras: Names of cameras, as `state` lists them; all of them if left out.
         folder: Folder in the folder of this session that the files go to.
         learned_lidar: The LiDAR network instead of exact rays.

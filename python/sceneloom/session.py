@@ -158,6 +158,12 @@ class Session(Calls):
             self.render(what=["lidar"], learned_lidar=learned, folder=name, replace=True)
             return ply(path / "lidar.ply")
 
+    def radar(self) -> dict[str, Array]:
+        """The returns of all radars at the moment that is shown, one array per property: radar (its number in the rig), position_m in the ego frame, range_m, azimuth_rad, elevation_rad (NaN where no heights are measured), speed_mps (grows with distance), speed_over_ground_mps, rcs_dbsm, snr_db, class."""
+        with self._written() as (name, path):
+            self.render(what=["radar"], folder=name, replace=True)
+            return npz(path / "radar.npz")
+
     def close(self) -> int:
         """Ends the session; the exit code of the program. Nothing is saved."""
         if self._process.stdin is not None and not self._process.stdin.closed:

@@ -1537,6 +1537,53 @@ Question = TypedDict(
     },
 )
 
+# A part of a radar's field of view, and how finely it tells targets apart there.
+RadarField = TypedDict(
+    'RadarField',
+    {
+        # Difference of azimuth at which two targets are two, degrees.
+        'azimuth_step_deg': 'float',
+        # Largest azimuth to either side, degrees.
+        'half_azimuth_deg': 'float',
+        # Farthest return, m.
+        'max_range_m': 'float',
+        # Difference of range at which two targets are two, m.
+        'range_step_m': 'float',
+    },
+)
+
+# How a radar looks around, and where it is mounted. The frame of the sensor has x ahead, y left, z up.
+RadarPattern = TypedDict(
+    'RadarPattern',
+    {
+        # Distance at which a target of 10 m² is found in one of two scans, m.
+        'car_range_m': 'float',
+        # Difference of elevation at which two targets are two, degrees; 0 for a radar that measures no heights.
+        'elevation_step_deg': 'NotRequired[float]',
+        # Parts of the field of view; where several hold a target, the first counts.
+        'fields': 'Sequence[RadarField]',
+        # Elevation at which the antenna's gain has fallen to a half, degrees.
+        'half_elevation_deg': 'float',
+        # Nearest return, m.
+        'min_range_m': 'float',
+        # Most returns of a scan; the strongest are kept.
+        'most_returns': 'int',
+        # Name, as in the data set: `RADAR_FRONT`.
+        'name': 'str',
+        # Sensor frame to ego: quaternion w, x, y, z.
+        'rotation_wxyz': 'Sequence[float]',
+        # Scans per second.
+        'scan_hz': 'float',
+        # Difference of radial speed at which two targets are two, m/s.
+        'speed_step_mps': 'float',
+        # Lowest and highest radial speed that is measured without doubt, m/s; others come back a whole span
+        # away.
+        'speeds_mps': 'Sequence[float]',
+        # Origin in the ego frame, m.
+        'translation_m': 'Sequence[float]',
+    },
+)
+
 # In which order a rolling shutter reads the picture.
 ReadOut: TypeAlias = "Literal['top_to_bottom', 'bottom_to_top', 'left_to_right', 'right_to_left']"
 
@@ -1548,6 +1595,8 @@ RenderReceipt = TypedDict(
         'files': 'Sequence[FileEntry]',
         # Rays of the LiDAR and points that came back, if it was asked for.
         'lidar': 'Sequence[int] | None',
+        # Returns of all radars, if they were asked for.
+        'radar': 'int | None',
         # Number of the state that they show.
         'revision': 'int',
         # The moment that they show, s.
@@ -1963,12 +2012,14 @@ SensorRig = TypedDict(
         'ego_center_m': 'Sequence[float]',
         # Length, width, height of the ego vehicle, m; its rear axle is the origin.
         'ego_size_m': 'Sequence[float]',
-        # Forward speed while a LiDAR spins, m/s; it matters only where `spin_hz` is set.
+        # Forward speed while a LiDAR spins and a radar measures, m/s.
         'ego_speed_mps': 'NotRequired[float]',
         # LiDARs; the first one is the default.
         'lidars': 'Sequence[LidarPattern]',
         # Name of the rig.
         'name': 'str',
+        # Radars, in any order.
+        'radars': 'NotRequired[Sequence[RadarPattern]]',
     },
 )
 

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use egui::ColorImage;
+use egui::{Color32, ColorImage};
 
 use language::t;
-use scene::Scene;
+use scene::{RadarReturn, Scene};
 use sensors::cameras::{self, CameraInput, CameraSource, Detail, SourceId, ViewId};
 use sensors::march::MarchScene;
 use sensors::painter::PaintInput;
@@ -163,6 +163,85 @@ impl Default for LidarShown {
     }
 }
 
+/// Colour of radar returns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RadarColors {
+    /// By the speed over the ground along the ray.
+    #[default]
+    Speed,
+    /// By the cross-section.
+    Strength,
+    /// By the class.
+    Class,
+}
+
+/// Settings of the radar scans.
+#[derive(Clone, Debug)]
+pub struct RadarShown {
+    /// Colour of the returns.
+    pub colors: RadarColors,
+    /// Distance from the middle of the picture to its nearest edge, m.
+    pub reach_m: f64,
+    /// Frames for which the pane still counts as drawn; 0: it is not on screen, and no scan is made.
+    pub drawn: u8,
+}
+
+impl RadarShown {
+    /// Frames for which a pane counts as drawn after it was.
+    pub const DRAWN: u8 = 3;
+
+    /// Notes the end of a frame.
+    pub fn frame_ended(&mut self) {
+        self.drawn = self.drawn.saturating_sub(1);
+    }
+}
+
+impl Default for RadarShown {
+    fn default() -> Self {
+        Self {
+            colors: RadarColors::default(),
+            reach_m: 60.0,
+            drawn: 0,
+        }
+    }
+}
+
+/// Speed over the ground from which a radar's target counts as moving, and of the strongest colour, m/s.
+pub const MOVES_MPS: f32 = 0.3;
+/// See [`MOVES_MPS`].
+pub const FAST_MPS: f32 = 15.0;
+/// Cross-sections of the first and the last colour, dB above 1 m².
+pub const RCS_DBSM: [f32; 2] = [-10.0, 25.0];
+
+/// Colour of a radar return. Speed: blue comes towards the vehicle, red goes away, grey stands. Strength: dark to bright.
+pub fn radar_color(one: &RadarReturn, colors: RadarColors) -> Color32 {
+    let rgb = |from: [f32; 3], to: [f32; 3], share: f32| {
+        let [r, g, b] = [0, 1, 2].map(|i| (from[i] + (to[i] - from[i]) * share) as u8);
+        Color32::from_rgb(r, g, b)
+    };
+    match colors {
+        RadarColors::Class => {
+            let [r, g, b] = one.class.color();
+            Color32::from_rgb(r, g, b)
+        }
+        RadarColors::Strength => {
+            let [low, high] = RCS_DBSM;
+            let share = ((one.rcs_dbsm - low) / (high - low)).clamp(0.0, 1.0);
+            rgb([70.0, 60.0, 130.0], [255.0, 225.0, 110.0], share)
+        }
+        RadarColors::Speed => {
+            let grey = [158.0, 164.0, 172.0];
+            let speed = one.speed_over_ground_mps;
+            let share = (speed.abs() / FAST_MPS).sqrt().min(1.0);
+            match speed {
+                v if v.abs() < MOVES_MPS => rgb(grey, grey, 0.0),
+                v if v < 0.0 => rgb(grey, [60.0, 140.0, 255.0], share),
+                _ => rgb(grey, [255.0, 80.0, 60.0], share),
+            }
+        }
+    }
+}
+
 /// Request to the sensors, besides the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
@@ -176,6 +255,8 @@ pub struct Wanted {
     pub lidar: LidarModel,
     /// True if the learned sweep keeps echoes that a real sensor would probably lose.
     pub lost_echoes: bool,
+    /// True if the radars scan.
+    pub radar: bool,
     /// Sources that panes of single cameras show besides the strip's.
     pub others: Others,
 }
@@ -208,13 +289,19 @@ pub type PicturesKey = (SourceId, u32);
 
 impl Wanted {
     /// The request for the settings of the window, in a rig of `count` cameras.
-    pub fn from_settings(cameras: &CamerasShown, lidar: &LidarShown, count: usize) -> Self {
+    pub fn from_settings(
+        cameras: &CamerasShown,
+        lidar: &LidarShown,
+        radar: &RadarShown,
+        count: usize,
+    ) -> Self {
         Self {
             source: cameras.shown_source().id(),
             hidden: cameras.hidden & !cameras.in_panes(count),
             large: cameras.large(count),
             lidar: lidar.model,
             lost_echoes: lidar.colors == LidarColorMode::Drop,
+            radar: radar.drawn > 0,
             others: cameras.others(count),
         }
     }
@@ -335,7 +422,7 @@ mod tests {
         shown.own.insert(2, own(Some(ViewId::DEPTH), 0, true));
         shown.own.insert(3, own(Some(pictures::VIEW.id), 0, false));
         assert_eq!(shown.of_pane(4, 6), (1, pictures::VIEW.id));
-        let wanted = Wanted::from_settings(&shown, &LidarShown::default(), 6);
+        let wanted = Wanted::from_settings(&shown, &LidarShown::default(), &RadarShown::default(), 6);
         // Depth comes with the classes of the strip; a pane that is not drawn requests no picture.
         let others: Vec<_> = wanted.others.iter().collect();
         assert_eq!(
@@ -356,7 +443,9 @@ mod tests {
             ..OwnCamera::default()
         };
         shown.own.insert(1, large);
-        let wanted = |shown: &CamerasShown| Wanted::from_settings(shown, &LidarShown::default(), 6);
+        let wanted = |shown: &CamerasShown| {
+            Wanted::from_settings(shown, &LidarShown::default(), &RadarShown::default(), 6)
+        };
         let source = cameras::source_of(pictures::VIEW.id, shown.source).id();
         assert_eq!(wanted(&shown).large, Some((source, 3)));
         assert_eq!(wanted(&shown).large_of(source), Some(3));

@@ -333,7 +333,7 @@ impl BevCanvas {
         if state.windows.sensors {
             let chosen = match state.windows.sensor {
                 SensorChoice::Camera(i) => Some(i),
-                SensorChoice::Lidar(_) => None,
+                SensorChoice::Lidar(_) | SensorChoice::Radar(_) => None,
             };
             draw_fields_of_view(ui, map, &scene.rig, pose, chosen);
         }

@@ -19,7 +19,7 @@ use formats::FormatError;
 use formats::export::{BoxVisibility, ExportPicture, ExportSpan, Exporter, ObservationMasks, Products};
 use formats::recipe::Recipe;
 use nets::lidar::LidarNet;
-use scene::{CameraMaps, CameraTruth, GaussianScene, Lattice, LidarSweep, Pose, Scene};
+use scene::{CameraMaps, CameraTruth, GaussianScene, Lattice, LidarSweep, Pose, RadarScan, Scene};
 use sensors::appearance::Quality;
 use sensors::bake::{self, BakeOptions};
 use sensors::cameras::{
@@ -28,6 +28,7 @@ use sensors::cameras::{
 };
 use sensors::learned::Drops;
 use sensors::observed;
+use sensors::radar;
 use sensors::rolling;
 use viewport::{ViewCamera, ViewPreset};
 
@@ -271,6 +272,14 @@ impl Products for Making<'_> {
         let mut sweep = self.swept().map_err(FormatError::new)?;
         sweep.place(&self.scene.rig.vehicle.inverse());
         Ok(sweep)
+    }
+
+    fn radars(&mut self) -> Result<Vec<RadarScan>, FormatError> {
+        self.progress.go_on().map_err(FormatError::new)?;
+        let mut scans = radar::scans(&self.scene);
+        let ego_from_world = self.scene.rig.vehicle.inverse();
+        scans.iter_mut().for_each(|scan| scan.place(&ego_from_world));
+        Ok(scans)
     }
 
     fn camera_maps(

@@ -2,8 +2,11 @@
 
 use anyhow::bail;
 
+use crate::camera_views::{RadarColors, radar_color};
 use scene::raster::box_cells;
-use scene::{BevLayer, Class, Extent, Frame, LidarSweep, MultiPlaneImage, Scene, SceneBox, VoxelGrid};
+use scene::{
+    BevLayer, Class, Extent, Frame, LidarSweep, MultiPlaneImage, RadarScan, Scene, SceneBox, VoxelGrid,
+};
 use sensors::cameras::bounds;
 use sensors::{color, rolling};
 use viewport::{
@@ -169,6 +172,29 @@ pub fn lidar_top(extent: Extent, sweep: &LidarSweep, scale: usize) -> RgbaPictur
             let bright = color::ramp(0.35 + 0.65 * (1.0 - (p.range_m / 45.0).min(1.0)));
             for i in 0..4 {
                 out.set(px as usize + i % 2, py as usize + i / 2, bright);
+            }
+        }
+    }
+    out
+}
+
+/// Radar returns above the map layers, dimmed, in the colours of their speeds as in the pane; larger where the echo is stronger.
+pub fn radar_top(frame: &Frame, scans: &[RadarScan], scale: usize) -> RgbaPicture {
+    let mut out = layout_top(frame, scale);
+    for channel in out.rgba.chunks_exact_mut(4).flat_map(|pixel| &mut pixel[..3]) {
+        *channel /= 3;
+    }
+    let extent = frame.extent();
+    for one in scans.iter().flat_map(|scan| &scan.returns) {
+        let [x, y, _] = one.position_m.map(f64::from);
+        let u = extent.to_voxel_units(glam::DVec3::new(x, y, 0.0)) * scale as f64;
+        let (px, py) = (out.width as f64 - u.y, out.height as f64 - u.x);
+        let [r, g, b, _] = radar_color(one, RadarColors::Speed).to_array();
+        let radius = if one.rcs_dbsm < 5.0 { 1 } else { 2 };
+        for (i, j) in (-radius..=radius).flat_map(|i| (-radius..=radius).map(move |j| (i, j))) {
+            let (px, py) = (px + f64::from(i), py + f64::from(j));
+            if px >= 0.0 && py >= 0.0 {
+                out.set(px as usize, py as usize, [r, g, b]);
             }
         }
     }

@@ -60,8 +60,8 @@ impl Default for Playback {
 
 /// Longest time by which one tick advances the clip, s. Longer pauses, for example of a hidden window, are cut to it.
 const LONGEST_TICK_S: f64 = 0.5;
-/// Time between two updates of the sensors while it plays, s.
-const SENSORS_EVERY_S: f64 = 0.5;
+/// Time between two updates of the sensors while it plays, s: at least, and at most if the ones before are not done.
+const SENSORS_EVERY_S: [f64; 2] = [0.03, 0.5];
 
 impl Playback {
     /// Speeds to choose from.
@@ -75,11 +75,13 @@ impl Playback {
         }
     }
 
-    /// True if the sensors should be updated now: always while paused, and seldom while playing, to leave time for the
-    /// views.
-    pub fn sensors_are_due(&mut self, now_s: f64) -> bool {
+    /// True if the sensors should be updated now: always while paused; while playing once they are `done` with the moment
+    /// before, or after a while.
+    pub fn sensors_are_due(&mut self, now_s: f64, done: bool) -> bool {
         let waited_s = self.sensed_s.map_or(f64::INFINITY, |last_s| now_s - last_s);
-        let due = !self.playing || waited_s.is_nan() || waited_s >= SENSORS_EVERY_S;
+        let [least_s, most_s] = SENSORS_EVERY_S;
+        let pause_s = if done { least_s } else { most_s };
+        let due = !self.playing || waited_s.is_nan() || waited_s >= pause_s;
         if due {
             self.sensed_s = self.playing.then_some(now_s);
         }
@@ -126,18 +128,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sensors_look_always_at_rest_and_seldom_while_it_plays() {
+    fn sensors_look_always_at_rest_and_when_they_are_done_while_it_plays() {
+        let looks = |done: bool, playing: bool| {
+            let mut playback = Playback {
+                playing,
+                ..Playback::default()
+            };
+            let times = (0..100).map(|i| f64::from(i) * 0.1);
+            times.filter(|t| playback.sensors_are_due(*t, done)).count()
+        };
+        assert_eq!([looks(false, false), looks(true, false)], [100, 100]);
+        assert_eq!([looks(false, true), looks(true, true)], [20, 100]);
         let mut playback = Playback::default();
-        assert!(
-            [0.0, 0.1, f64::NAN, 0.2]
-                .iter()
-                .all(|t| playback.sensors_are_due(*t))
-        );
         playback.playing = true;
-        let looks = (0..100).filter(|i| playback.sensors_are_due(f64::from(*i) * 0.1));
-        assert_eq!(looks.count(), 20);
-        playback.playing = false;
-        assert!(playback.sensors_are_due(10.0));
+        assert!(playback.sensors_are_due(f64::NAN, false));
     }
 
     #[test]

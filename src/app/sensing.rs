@@ -1,7 +1,9 @@
 //! The thread that keeps LiDAR sweep and camera maps up to date with the scene shown. The newest scene wins; results on
 //! screen stay until newer ones come.
 
+mod others;
 mod painting;
+mod playing;
 #[cfg(test)]
 mod tests;
 mod views;
@@ -9,23 +11,25 @@ mod views;
 use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::camera_views::LidarModel;
 use super::camera_views::{CameraView, PicturesKey, Wanted};
 use super::graphics::Graphics;
 use super::painting::PaintWish;
+use job::JobId;
 use job::guard::Panicked;
 use job::product::{Ctx, Product, Wake, Worker};
 use language::tf;
 use nets::lidar::LidarNet;
 use scene::resample::shared_in;
-use scene::{Lattice, LidarSweep, Scene, SceneRev, SensorRig};
+use scene::{Lattice, LidarSweep, Pose, RadarScan, Scene, SceneRev, SensorRig};
 use sensors::cameras::{SourceId, learned};
 use sensors::caster::Caster;
 use sensors::learned::Drops;
 use sensors::learned_caster::{LearnedCaster, Sampled};
 use sensors::lidar::EgoBox;
+use sensors::radar;
 use sensors::rolling;
 use sensors::shaped::onto_shapes;
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
@@ -37,17 +41,32 @@ use views::Views;
 /// Most rays whose samples are shown; more would cover the map.
 const SHOWN_RAYS: usize = 400;
 
+/// Least time between two sweeps, and between two scans of radars, while a clip plays, s.
+const SWEEPS_EVERY_S: f64 = 0.4;
+
+/// How much time there is for a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Haste {
+    /// The scene rests: full pictures, after coarse ones where they are slow.
+    Rest,
+    /// The scene is about to change: small pictures.
+    Preview,
+    /// A clip plays: small pictures, of as many cameras as there is time for.
+    Play,
+}
+
 /// A request to sense a scene.
 #[derive(Clone)]
 struct SensingRequest {
     scene: Arc<Scene>,
     wanted: Wanted,
-    preview: bool,
+    haste: Haste,
 }
 
 /// News from the thread.
 enum SensingEvent {
-    Lidar(SceneRev, LidarSweep, Option<Sampled>),
+    Lidar(SceneRev, Pose, LidarSweep, Option<Sampled>),
+    Radar(SceneRev, Vec<RadarScan>),
     Cameras(SceneRev, Wanted, Vec<CameraView>),
     /// Pictures of another source than the strip's.
     Other(SceneRev, SourceId, Vec<CameraView>),
@@ -59,8 +78,13 @@ enum SensingEvent {
 /// The newest results of the sensors, and the threads that make them.
 pub struct Sensing {
     worker: Worker<SensingRequest, SensingEvent>,
-    asked: Option<(SceneRev, Wanted, bool)>,
+    asked: Option<(SceneRev, Wanted, Haste)>,
+    /// The last job that ended.
+    ended: JobId,
     lidar: Option<(SceneRev, Arc<LidarSweep>)>,
+    /// Pose of the vehicle at the moment of the sweep.
+    swept_at: Pose,
+    radar: Option<(SceneRev, Arc<Vec<RadarScan>>)>,
     sampled: Option<Sampled>,
     cameras: Option<(SceneRev, Wanted, Arc<Vec<CameraView>>)>,
     others: Vec<(SceneRev, SourceId, Arc<Vec<CameraView>>)>,
@@ -99,7 +123,10 @@ impl Sensing {
             painting: Worker::start("painting", move || Painting::new(stops), wake.clone())?,
             worker: Worker::start("sensing", senses, wake)?,
             asked: None,
+            ended: JobId(0),
             lidar: None,
+            swept_at: Pose::IDENTITY,
+            radar: None,
             sampled: None,
             cameras: None,
             others: Vec::new(),
@@ -133,7 +160,7 @@ impl Sensing {
         self.worker.cancel();
         self.painting.cancel();
         self.forgotten = [self.worker.newest().0, self.painting.newest().0];
-        (self.asked, self.lidar, self.sampled) = (None, None, None);
+        (self.asked, self.lidar, self.radar, self.sampled) = (None, None, None, None);
         (self.cameras, self.painted, self.stage) = (None, None, None);
         self.others.clear();
         self.version += 1;
@@ -169,28 +196,29 @@ impl Sensing {
         self.asked = None;
     }
 
-    /// Requests the sensors of a scene, unless the same was requested already. A preview has smaller pictures.
-    pub fn ask(&mut self, scene: &Arc<Scene>, wanted: Wanted, preview: bool) {
-        let known = |(rev, was, was_preview): (SceneRev, Wanted, bool)| {
-            rev == scene.rev && was == wanted && (!was_preview || preview)
+    /// True if nothing is being sensed.
+    pub fn is_idle(&self) -> bool {
+        self.ended == self.worker.newest()
+    }
+
+    /// Requests the sensors of a scene, unless the same was requested already.
+    pub fn ask(&mut self, scene: &Arc<Scene>, wanted: Wanted, haste: Haste) {
+        let known = |(rev, was, before): (SceneRev, Wanted, Haste)| {
+            rev == scene.rev && was == wanted && (before == Haste::Rest || haste != Haste::Rest)
         };
         if self.asked.is_some_and(known) {
             return;
         }
-        self.asked = Some((scene.rev, wanted, preview));
+        self.asked = Some((scene.rev, wanted, haste));
         let scene = match scene.with_rig_in_world() {
             Cow::Borrowed(_) => scene.clone(),
             Cow::Owned(placed) => Arc::new(placed),
         };
         let mut sources = wanted.others.iter().map(|(source, _)| source);
         if wanted.source == learned::ID || sources.any(|source| source == learned::ID) {
-            self.paint(scene.clone(), wanted, preview);
+            self.paint(scene.clone(), wanted, haste != Haste::Rest);
         }
-        self.worker.submit(SensingRequest {
-            scene,
-            wanted,
-            preview,
-        });
+        self.worker.submit(SensingRequest { scene, wanted, haste });
     }
 
     /// Takes in the news of the threads.
@@ -198,15 +226,25 @@ impl Sensing {
         self.drain_painting();
         let events: Vec<_> = self.worker.updates().try_iter().collect();
         let forgotten = self.forgotten[0];
+        for event in &events {
+            if matches!(event.update, SensingEvent::Ended | SensingEvent::Failed(_)) {
+                self.ended = event.id;
+            }
+        }
         for news in events
             .into_iter()
             .filter(|e| e.id.0 > forgotten)
             .map(|e| e.update)
         {
             match news {
-                SensingEvent::Lidar(rev, sweep, sampled) => {
+                SensingEvent::Lidar(rev, pose, sweep, sampled) => {
                     self.lidar = Some((rev, Arc::new(sweep)));
+                    self.swept_at = pose;
                     self.sampled = sampled;
+                    self.version += 1;
+                }
+                SensingEvent::Radar(rev, scans) => {
+                    self.radar = Some((rev, Arc::new(scans)));
                     self.version += 1;
                 }
                 // Another source was requested since.
@@ -238,6 +276,21 @@ impl Sensing {
     /// The newest sweep.
     pub fn lidar(&self) -> Option<&Arc<LidarSweep>> {
         self.lidar.as_ref().map(|(_, sweep)| sweep)
+    }
+
+    /// Pose of the vehicle, world frame, at the moment of the newest sweep: while a clip plays, sweeps are older than the scene.
+    pub fn swept_at(&self) -> &Pose {
+        &self.swept_at
+    }
+
+    /// The newest radar scans.
+    pub fn radar(&self) -> Option<&Arc<Vec<RadarScan>>> {
+        self.radar.as_ref().map(|(_, scans)| scans)
+    }
+
+    /// True if the radar scans are not those of this state.
+    pub fn radar_stale(&self, rev: SceneRev) -> bool {
+        self.radar.as_ref().is_none_or(|(of, _)| *of != rev)
     }
 
     /// The places where rays of the newest sweep were sampled after the last change; `None` if the sweep is not
@@ -305,7 +358,7 @@ impl Product for Senses {
     type Update = SensingEvent;
 
     fn make(&mut self, request: &SensingRequest, ctx: &Ctx<'_, SensingEvent>) -> SensingEvent {
-        if !std::mem::replace(&mut self.rested, false) {
+        if request.haste != Haste::Play && !std::mem::replace(&mut self.rested, false) {
             std::thread::sleep(self.grace);
             if ctx.should_stop() {
                 self.rested = true;
@@ -349,9 +402,17 @@ struct SensorCache {
     net: Option<Arc<LidarNet>>,
     learned: Option<(Arc<SensorRig>, LearnedCaster)>,
     views: Option<((SceneRev, PicturesKey), Vec<CameraView>)>,
+    /// State of the last full pictures, whatever moment they show.
+    rested: Option<SceneRev>,
     /// Pictures of other sources: state, source, bit per camera, pictures.
     others: Vec<(SceneRev, SourceId, u32, Vec<CameraView>)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
+    /// State of the last radar scans.
+    scanned: Option<SceneRev>,
+    /// Time of the last sweep or scan.
+    ranged: Option<Instant>,
+    /// The pictures of a clip that plays, with its state, and the number of the camera that comes next.
+    playing: Option<(SceneRev, PicturesKey, Vec<CameraView>, usize)>,
     /// The graphics card, looked for when a source that can use it is requested; `None` inside if there is none.
     graphics: Option<Option<Graphics>>,
 }
@@ -424,32 +485,47 @@ fn drops(shown: bool) -> Drops {
 }
 
 fn sense(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, SensingEvent>) {
-    let SensingRequest { scene, wanted, .. } = request;
+    let SensingRequest { scene, wanted, haste } = request;
     let swept = (scene.rev, wanted.lidar, wanted.lost_echoes);
-    if kept.swept != Some(swept) {
+    let lately = |at: Instant| at.elapsed().as_secs_f64() < SWEEPS_EVERY_S;
+    let ranges = *haste != Haste::Play || !kept.ranged.is_some_and(lately);
+    if ranges {
+        kept.ranged = Some(Instant::now());
+    }
+    if ranges && kept.swept != Some(swept) {
         let sweep = kept.sweep(scene, wanted);
         let learned = kept
             .learned
             .as_ref()
             .filter(|_| wanted.lidar == LidarModel::Learned);
         let sampled = learned.map(|(_, caster)| caster.sampled(SHOWN_RAYS));
-        ctx.tell(SensingEvent::Lidar(scene.rev, sweep, sampled));
+        let pose = scene.frame().world_from_ego;
+        ctx.tell(SensingEvent::Lidar(scene.rev, pose, sweep, sampled));
         kept.swept = Some(swept);
+    }
+    if ranges && wanted.radar && kept.scanned != Some(scene.rev) {
+        ctx.tell(SensingEvent::Radar(scene.rev, radar::scans(scene)));
+        kept.scanned = Some(scene.rev);
     }
     // Learned pictures are painted on a thread of their own.
     let painted = wanted.camera_source().id() == learned::ID;
-    if painted || strip(request, kept, ctx) {
-        other_sources(request, kept, ctx);
+    let goes_on = match haste {
+        _ if painted => true,
+        Haste::Play => {
+            playing::play(request, kept, ctx);
+            true
+        }
+        _ => strip(request, kept, ctx),
+    };
+    if goes_on {
+        others::other_sources(request, kept, ctx);
     }
 }
 
 /// Renders the pictures of the strip; false if the work should stop.
 fn strip(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, SensingEvent>) -> bool {
-    let SensingRequest {
-        scene,
-        wanted,
-        preview,
-    } = request;
+    let SensingRequest { scene, wanted, haste } = request;
+    let preview = *haste != Haste::Rest;
     let rig = &scene.rig;
     let key = (scene.rev, wanted.pictures());
     let source = wanted.camera_source();
@@ -474,16 +550,17 @@ fn strip(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
         Some(views) => views,
         None => {
             // Camera pictures are slow, so a coarse one comes first.
-            if (*preview || source.about().previews)
+            if (preview || source.about().previews)
                 && let Some(views) = render(true)
             {
                 ctx.tell(SensingEvent::Cameras(scene.rev, *wanted, views));
             }
-            if *preview {
+            if preview {
                 return true;
             }
             let Some(views) = render(false) else { return false };
             kept.views = Some((key, views.clone()));
+            kept.rested = Some(scene.content());
             views
         }
     };
@@ -494,53 +571,4 @@ fn strip(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
         ctx.tell(SensingEvent::Cameras(scene.rev, *wanted, views));
     }
     true
-}
-
-/// Renders the other sources that panes of single cameras show.
-fn other_sources(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, SensingEvent>) {
-    let SensingRequest {
-        scene,
-        wanted,
-        preview,
-    } = request;
-    for (id, mask) in wanted.others.iter().filter(|(id, _)| *id != learned::ID) {
-        let source = sensors::cameras::source(id).unwrap_or(&sensors::cameras::shapes::ShapeMaps);
-        let mut of_scene = Views::new(source, scene, &mut kept.graphics);
-        let is_known = |o: &&(SceneRev, SourceId, u32, _)| (o.0, o.1, o.2) == (scene.rev, id, mask);
-        let known = kept.others.iter().find(is_known).map(|(.., views)| views.clone());
-        let mut render = |quick: bool| -> Option<Vec<CameraView>> {
-            let size = if quick { PREVIEW_SIZE } else { VIEW_SIZE };
-            let mut views = Vec::new();
-            for i in (0..scene.rig.cameras.len().min(32)).filter(|i| mask >> i & 1 == 1) {
-                if !quick && ctx.should_stop() {
-                    return None;
-                }
-                views.push(of_scene.view(i, size, quick)?);
-            }
-            Some(views)
-        };
-        let views = match known {
-            Some(views) => views,
-            None => {
-                if (*preview || source.about().previews)
-                    && let Some(views) = render(true)
-                {
-                    ctx.tell(SensingEvent::Other(scene.rev, id, views));
-                }
-                if *preview {
-                    continue;
-                }
-                let Some(views) = render(false) else { return };
-                kept.others.retain(|(_, of, ..)| *of != id);
-                kept.others.push((scene.rev, id, mask, views.clone()));
-                views
-            }
-        };
-        ctx.tell(SensingEvent::Other(scene.rev, id, views.clone()));
-        if let Some(camera) = wanted.large_of(id)
-            && let Some(views) = of_scene.with_large(&views, camera, ctx)
-        {
-            ctx.tell(SensingEvent::Other(scene.rev, id, views));
-        }
-    }
 }

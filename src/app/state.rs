@@ -10,7 +10,7 @@ use job::ChosenDensities;
 use language::{t, tf};
 use scene::SceneBox;
 
-use super::camera_views::{CamerasShown, LidarShown};
+use super::camera_views::{CamerasShown, LidarShown, RadarShown};
 use super::panes::comparing::CompareSettings;
 use super::panes::pointed::Pointed;
 use super::playback::Playback;
@@ -40,6 +40,8 @@ pub struct UiState {
     pub cameras: CamerasShown,
     /// Settings of the LiDAR sweep.
     pub lidar: LidarShown,
+    /// Settings of the radar scans.
+    pub radar: RadarShown,
     /// How the present state is compared with another version.
     pub compare: CompareSettings,
     /// Settings and state of the playback.

@@ -4,8 +4,8 @@ use egui::{Align2, RichText, Ui, Vec2, vec2};
 use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, PlotUi, Points, Text, VLine};
 
 use crate::picture::RgbaPicture;
-use judge::presets::figures::{percent, seconds};
-use judge::presets::plan::TradeoffPoint;
+use calibration::figures::{percent, seconds};
+use calibration::plan::TradeoffPoint;
 use language::t;
 use widgets::theme;
 

@@ -6,7 +6,7 @@
 
 use serde_json::{Value, json};
 
-use scene::{Camera, LidarPattern, Pose, Scene};
+use scene::{Camera, LidarPattern, Pose, RadarPattern, Scene};
 
 const FORMAT: &str = "sceneloom_calibration";
 const VERSION: u32 = 1;
@@ -37,10 +37,12 @@ pub fn of(scene: &Scene, world_from_ego: &Pose, size: Option<[u32; 2]>) -> Value
             "ego": "x forward, y left, z up, m; origin on the ground below the rear axle",
             "camera": "x right, y down, z forward, m; pixel i has its middle at i + 1/2",
             "lidar": "as the sensor's mount says, m",
+            "radar": "x ahead, y left, z up, m",
         },
         "ego_pose": pose(world_from_ego),
         "cameras": scene.rig.cameras.iter().map(|c| camera(&sized(c))).collect::<Vec<_>>(),
         "lidars": scene.rig.lidars.iter().map(lidar).collect::<Vec<_>>(),
+        "radars": scene.rig.radars.iter().map(radar).collect::<Vec<_>>(),
     })
 }
 
@@ -82,6 +84,16 @@ fn lidar(l: &LidarPattern) -> Value {
         "clockwise": l.clockwise,
         "spin_hz": l.spin_hz,
         "ego_from_lidar": pose(&l.ego_from_sensor()),
+    })
+}
+
+fn radar(r: &RadarPattern) -> Value {
+    json!({
+        "name": r.name,
+        "fields": r.fields,
+        "speeds_mps": r.speeds_mps,
+        "scan_hz": r.scan_hz,
+        "ego_from_radar": pose(&r.ego_from_sensor()),
     })
 }
 

@@ -189,6 +189,14 @@ impl Products for Plain {
         })
     }
 
+    fn radars(&mut self) -> Result<Vec<scene::RadarScan>, FormatError> {
+        let scan = |radar: &scene::RadarPattern| scene::RadarScan {
+            radar: radar.name.clone(),
+            returns: vec![crate::table_tests::radar_return(radar, 12.0, -2.0)],
+        };
+        Ok(self.scene.rig.radars.iter().map(scan).collect())
+    }
+
     fn camera_maps(
         &mut self,
         _take: &mut dyn FnMut(CameraMaps) -> Result<(), FormatError>,

@@ -26,6 +26,7 @@ mod npy;
 pub mod npz;
 mod nuplan_occ;
 pub mod nuscenes;
+mod nuscenes_radar;
 pub mod occ3d;
 pub mod opendrive;
 pub mod openscenario;

@@ -30,6 +30,10 @@ impl Products for OneSweep {
         Ok(self.0.clone())
     }
 
+    fn radars(&mut self) -> Result<Vec<scene::RadarScan>, FormatError> {
+        absent()
+    }
+
     fn camera_maps(
         &mut self,
         _take: &mut dyn FnMut(CameraMaps) -> Result<(), FormatError>,

@@ -13,6 +13,13 @@ pub fn cameras(rig: &SensorRig) -> Vec<String> {
     none_twice(rig.cameras.iter().map(|c| tidy(&c.name, "CAM")), &[LIDAR])
 }
 
+/// Names of the rig's radars in its order, by the same rules.
+pub fn radars(rig: &SensorRig) -> Vec<String> {
+    let others = cameras(rig);
+    let taken: Vec<&str> = others.iter().map(String::as_str).chain([LIDAR]).collect();
+    none_twice(rig.radars.iter().map(|r| tidy(&r.name, "RADAR")), &taken)
+}
+
 /// Beginning of the names of a camera's files: the camera's name in letters and digits of any language, `-`, `_` and
 /// `.`. It gets a number if a camera before it in the rig has the same name.
 pub fn of_file(rig: &SensorRig, camera: &str) -> String {

@@ -117,6 +117,22 @@ pub(crate) fn two_gaussians() -> GaussianScene {
     }
 }
 
+/// A return of a car straight ahead of a radar, of 10 dBsm, that moves away from it at a speed; the own vehicle stands.
+pub(crate) fn radar_return(radar: &scene::RadarPattern, range_m: f64, speed_mps: f32) -> scene::RadarReturn {
+    let at = radar.ego_from_sensor().apply(glam::DVec3::X * range_m);
+    scene::RadarReturn {
+        position_m: at.as_vec3().to_array(),
+        range_m: range_m as f32,
+        azimuth_rad: 0.0,
+        elevation_rad: None,
+        speed_mps,
+        speed_over_ground_mps: speed_mps,
+        rcs_dbsm: 10.0,
+        snr_db: 20.0,
+        class: Class::Car,
+    }
+}
+
 /// Products of two cameras of four pixels and a sweep of one point. Observed are: by the LiDAR the lower half of the columns
 /// ahead, by the cameras all but the lowest voxel of the columns to the left.
 pub(crate) struct Small;
@@ -158,6 +174,15 @@ impl Products for Small {
             rays: 2,
             physical: true,
         })
+    }
+
+    fn radars(&mut self) -> Result<Vec<scene::RadarScan>, FormatError> {
+        let rig = SensorRig::default();
+        let scan = |radar: &scene::RadarPattern| scene::RadarScan {
+            radar: radar.name.clone(),
+            returns: vec![radar_return(radar, 15.0, 3.0)],
+        };
+        Ok(rig.radars.iter().map(scan).collect())
     }
 
     fn camera_maps(

@@ -5,6 +5,15 @@ use glam::{Vec2, Vec3};
 
 use super::{Extent, Lattice};
 
+/// Edge of the voxels that pictures are drawn of, m, and number of them in a metre.
+pub const VOXEL_M: f32 = Lattice::OCC3D.voxel_m() as f32;
+/// See [`VOXEL_M`].
+pub const PER_M: f32 = Lattice::OCC3D.per_m() as f32;
+/// Heights of the bottom of the lowest of them and of the top of the highest, m.
+pub const BOTTOM_M: f32 = Lattice::OCC3D.bottom_m() as f32;
+/// See [`BOTTOM_M`].
+pub const TOP_M: f32 = Lattice::OCC3D.top_m() as f32;
+
 /// Voxels of the field along z, with room above the grid.
 pub const NZ: usize = 46;
 /// Columns and rows of cells in a block.

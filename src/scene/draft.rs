@@ -2,10 +2,12 @@
 //! shows at once, and a condition of the diffusion transformer. Weights were trained with exactly this rule: changing
 //! it requires new training.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::raster::box_cells;
-use super::{BevLayer, BevLayout, Class, Extent, SceneBox, VoxelGrid};
+use super::{BevLayer, BevLayout, Class, Extent, Lattice, SceneBox, VoxelGrid};
 
 /// Class of the ground under a layout cell (bits of [`BevLayer`]): road and car park are driveable
 /// surface, sidewalk and crossings beside the road are sidewalk, all else is terrain.
@@ -22,7 +24,7 @@ pub fn ground_class(cell: u32) -> Class {
 
 /// Columns of a map and heights that a box occupies by the rough profile of its class, as
 /// (x, y, number of voxels from bin 0 upward; at least 1), in the vertical convention of the labels:
-/// objects reach down to the bin of the ground, their tops stay where they are.
+/// objects reach down to the ground ([`box_bins`]), their tops stay where they are.
 pub fn box_columns(extent: Extent, b: &SceneBox) -> Vec<(usize, usize, usize)> {
     let bottom_z = b.center_m.z - b.size_m.z / 2.0;
     let mut out = Vec::new();
@@ -50,12 +52,25 @@ pub fn box_columns(extent: Extent, b: &SceneBox) -> Vec<(usize, usize, usize)> {
     out
 }
 
+/// Bins of a column that a box fills which stands on ground in a bin and reaches up to a number of layers
+/// ([`box_columns`]); at least one.
+pub fn box_bins(lattice: Lattice, ground: usize, layers: usize) -> Range<usize> {
+    match lattice.lowered() {
+        0 => {
+            let foot = lattice.foot_bin(ground);
+            foot..layers.max(foot + 1)
+        }
+        _ => ground.min(layers - 1)..layers,
+    }
+}
+
 /// Draws the draft of a box into a grid, from the ground under it up.
 pub fn stamp_box(grid: &mut VoxelGrid, b: &SceneBox) {
     let bottom_m = b.center_m.z - b.size_m.z / 2.0;
-    let ground = grid.extent().lattice().ground_bin(bottom_m);
-    for (x, y, layers) in box_columns(grid.extent(), b) {
-        grid.column_mut(x, y)[ground.min(layers - 1)..layers].fill(b.class.id());
+    let (extent, lattice) = (grid.extent(), grid.extent().lattice());
+    let ground = lattice.ground_bin(bottom_m);
+    for (x, y, layers) in box_columns(extent, b) {
+        grid.column_mut(x, y)[box_bins(lattice, ground, layers)].fill(b.class.id());
     }
 }
 
@@ -65,8 +80,8 @@ pub fn ground_bin(layout: &BevLayout, x: usize, y: usize) -> usize {
     layout.extent().lattice().ground_bin(layout.relief.column_m(x, y))
 }
 
-/// The draft of a whole frame: ground in the bin of its height in every column, objects in place of
-/// the ground.
+/// The draft of a whole frame: ground in the bin of its height in every column, objects on it, or in its place where
+/// labels let the ground down.
 pub fn draft<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox>) -> VoxelGrid {
     let extent = layout.extent();
     let mut grid = VoxelGrid::over(extent);
@@ -75,8 +90,8 @@ pub fn draft<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox>) 
     }
     for b in boxes {
         for (x, y, layers) in box_columns(extent, b) {
-            let ground = ground_bin(layout, x, y).min(layers - 1);
-            grid.column_mut(x, y)[ground..layers].fill(b.class.id());
+            let bins = box_bins(extent.lattice(), ground_bin(layout, x, y), layers);
+            grid.column_mut(x, y)[bins].fill(b.class.id());
         }
     }
     grid
@@ -112,5 +127,32 @@ mod tests {
         assert_eq!(tallest, Some(7)); // top at 1.7 m: bin 6 is filled to 0.3 m
         assert_eq!(grid.get(125, 100, 6), Class::Car.id());
         assert_eq!(grid.get(125, 100, 7), Class::FREE);
+    }
+
+    #[test]
+    fn boxes_stand_on_ground_where_labels_are_where_things_are() {
+        let lattice = Lattice::new(0.2, 40, -3.2).expect("sound");
+        let extent = Extent::over(lattice, [-50, -50], [100, 100]).expect("sound");
+        let layout = BevLayout::over(extent);
+        let cone = SceneBox {
+            id: BoxId(1),
+            class: Class::TrafficCone,
+            center_m: DVec3::new(2.1, 0.1, 0.4),
+            size_m: DVec3::new(0.4, 0.4, 0.8),
+            yaw_rad: 0.0,
+            velocity_mps: DVec2::ZERO,
+            label: Default::default(),
+        };
+        let grid = draft(&layout, [&cone].into_iter());
+        let [x, y] = extent.column_at(2.1, 0.1).expect("on the map");
+        let classes: Vec<u8> = (15..21).map(|z| grid.get(x, y, z)).collect();
+        let (ground, cone_id) = (Class::Terrain.id(), Class::TrafficCone.id());
+        assert_eq!(
+            classes,
+            [Class::FREE, ground, cone_id, cone_id, cone_id, Class::FREE]
+        );
+        // One that is lower than the ground's voxel still shows one.
+        assert_eq!(box_bins(lattice, 16, 1), 17..18);
+        assert_eq!(box_bins(Lattice::OCC3D, 0, 5), 0..5);
     }
 }

@@ -90,7 +90,7 @@ impl Scene {
 
 impl Scene {
     /// Turn rate of the ego vehicle to the left at the moment that is shown, rad/s; 0 if it does not move.
-    fn yaw_rate_rps(&self) -> f64 {
+    pub fn yaw_rate_rps(&self) -> f64 {
         const STEP_S: f64 = 0.05;
         let at = |time_s: f64| self.clip().ego_moving(time_s).map(|m| m.yaw_rad);
         let (now, length) = (self.time_s(), self.clip().length_s);

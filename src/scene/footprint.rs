@@ -61,7 +61,8 @@ fn texts(texts: &[String]) -> usize {
 }
 
 fn rig(rig: &SensorRig) -> usize {
-    size_of::<SensorRig>() + size_of_val(&rig.cameras[..]) + size_of_val(&rig.lidars[..])
+    let sensors = size_of_val(&rig.cameras[..]) + size_of_val(&rig.lidars[..]);
+    size_of::<SensorRig>() + sensors + size_of_val(&rig.radars[..])
 }
 
 fn things(background: &Background) -> usize {

@@ -127,6 +127,11 @@ impl DataLabels {
         out
     }
 
+    /// The labels with other ones for some voxels; the last one counts where a voxel has two.
+    pub fn with(&self, labels: impl IntoIterator<Item = ([usize; 3], u16)>) -> Self {
+        Self::new(self.set, self.extent, self.free, self.special().chain(labels))
+    }
+
     /// Labels by the numbers of voxels `[x][y][z]`, as [`numbered`](Self::numbered) gives them; `None` unless they ascend, are of
     /// the map and say more than the class.
     pub fn from_numbered(

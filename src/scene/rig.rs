@@ -1,10 +1,10 @@
-//! Sensors as data: cameras with intrinsics and mount, LiDARs as lists of elevations.
+//! Sensors as data: cameras with intrinsics and mount, LiDARs as lists of elevations; radars are in `radar.rs`.
 
 use glam::{DQuat, DVec3, EulerRot};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Lens, Optics, Pose, Shutter};
+use super::{Lens, Optics, Pose, RadarPattern, Shutter};
 
 /// A camera; optical axes x right, y down, z forward.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -299,11 +299,14 @@ pub struct SensorRig {
     pub cameras: Vec<Camera>,
     /// LiDARs; the first one is the default.
     pub lidars: Vec<LidarPattern>,
+    /// Radars, in any order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub radars: Vec<RadarPattern>,
     /// Length, width, height of the ego vehicle, m; its rear axle is the origin.
     pub ego_size_m: [f64; 3],
     /// From the rear axle to the middle of the ego vehicle, m.
     pub ego_center_m: [f64; 3],
-    /// Forward speed while a LiDAR spins, m/s; it matters only where `spin_hz` is set.
+    /// Forward speed while a LiDAR spins and a radar measures, m/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub ego_speed_mps: f64,
     /// Where the vehicle is in the frame that the sensors' poses are given in: the ego frame itself, unless the rig was
@@ -335,6 +338,9 @@ impl SensorRig {
         for lidar in &mut out.lidars {
             place(&mut lidar.rotation_wxyz, &mut lidar.translation_m);
         }
+        for radar in &mut out.radars {
+            place(&mut radar.rotation_wxyz, &mut radar.translation_m);
+        }
         out.vehicle = *vehicle;
         out
     }
@@ -361,7 +367,7 @@ impl SensorRig {
         }
     }
 
-    /// Most cameras, and most LiDARs.
+    /// Most cameras, most LiDARs and most radars.
     pub const MOST_SENSORS: usize = 64;
     /// Most rays of a LiDAR: several times as many as the densest model has.
     pub const MOST_RAYS: usize = 4 << 20;
@@ -369,11 +375,11 @@ impl SensorRig {
     /// The first problem with this rig (names, finite numbers, sizes, focal lengths, angles, numbers of sensors and
     /// rays); `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
-        if self.cameras.len().max(self.lidars.len()) > Self::MOST_SENSORS {
+        let counts = [self.cameras.len(), self.lidars.len(), self.radars.len()];
+        if counts.iter().any(|count| *count > Self::MOST_SENSORS) {
+            let [cameras, lidars, radars] = counts;
             return Some(format!(
-                "{} cameras and {} lidars, expected at most {} each",
-                self.cameras.len(),
-                self.lidars.len(),
+                "{cameras} cameras, {lidars} lidars and {radars} radars, expected at most {} each",
                 Self::MOST_SENSORS
             ));
         }
@@ -455,6 +461,9 @@ impl SensorRig {
                 ));
             }
         }
+        if let Some(problem) = self.radars.iter().find_map(RadarPattern::problem) {
+            return Some(problem);
+        }
         let ego = [&self.ego_size_m[..], &self.ego_center_m, &[self.ego_speed_mps]].concat();
         if ego.iter().any(|v| !v.is_finite()) || self.ego_speed_mps.abs() > 200.0 {
             return Some(
@@ -472,7 +481,7 @@ fn is_rotation(q: &[f64; 4]) -> bool {
 }
 
 impl Default for SensorRig {
-    /// The nuScenes vehicle: six cameras and a 32-beam LiDAR (published calibration).
+    /// The nuScenes vehicle: six cameras and a 32-beam LiDAR (published calibration), five radars about where they are there.
     fn default() -> Self {
         serde_json::from_str(assets::rigs::NUSCENES).expect("the bundled rig is checked by a test")
     }

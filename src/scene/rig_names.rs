@@ -11,7 +11,7 @@ impl SensorRig {
     pub const LONGEST_NAME: usize = 200;
 
     /// The first problem with the names of the rig and its sensors; `None` if they are sound. Sensors have plain names
-    /// (see [`crate::plain_name`]), and no two cameras have the same one, ignoring case.
+    /// (see [`crate::plain_name`]), and no two cameras and no two radars have the same one, ignoring case.
     pub(crate) fn names_problem(&self) -> Option<String> {
         if self.name.len() > Self::LONGEST_NAME || self.name.contains(is_hidden) {
             return Some(format!(
@@ -22,22 +22,30 @@ impl SensorRig {
         }
         let cameras = self.cameras.iter().map(|c| ("camera", &c.name)).enumerate();
         let lidars = self.lidars.iter().map(|l| ("lidar", &l.name)).enumerate();
-        for (i, (kind, name)) in cameras.chain(lidars) {
+        let radars = self.radars.iter().map(|r| ("radar", &r.name)).enumerate();
+        for (i, (kind, name)) in cameras.chain(lidars).chain(radars) {
             if let Err(problem) = check(name) {
                 return Some(format!("{kind} {i}: {problem}"));
             }
         }
-        let mut known = BTreeMap::new();
-        for (i, camera) in self.cameras.iter().enumerate() {
-            if let Some(first) = known.insert(folded(&camera.name), i) {
-                let [a, b] = [first, i].map(|i| quoted(&self.cameras[i].name, 60));
-                return Some(format!(
-                    "cameras {first} and {i} are called {a:?} and {b:?}, expected names that differ in more than the case of letters"
-                ));
-            }
-        }
-        None
+        let cameras = self.cameras.iter().map(|c| c.name.as_str());
+        let radars = self.radars.iter().map(|r| r.name.as_str());
+        alike("cameras", cameras).or_else(|| alike("radars", radars))
     }
+}
+
+/// The first two sensors of a kind with the same name but for case, in one line.
+fn alike<'a>(kind: &str, names: impl Iterator<Item = &'a str>) -> Option<String> {
+    let mut known = BTreeMap::new();
+    for (i, name) in names.enumerate() {
+        if let Some((first, other)) = known.insert(folded(name), (i, name)) {
+            let [a, b] = [other, name].map(|name| quoted(name, 60));
+            return Some(format!(
+                "{kind} {first} and {i} are called {a:?} and {b:?}, expected names that differ in more than the case of letters"
+            ));
+        }
+    }
+    None
 }
 
 #[cfg(test)]

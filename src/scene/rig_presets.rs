@@ -1,7 +1,7 @@
-//! Sensors to begin with: LiDARs by their published beam patterns, camera rigs of common vehicles.
+//! Sensors to begin with: LiDARs and radars by their published patterns, camera rigs of common vehicles.
 
 use super::rig::Aim;
-use super::{Camera, LidarPattern, SensorRig};
+use super::{Camera, LidarPattern, RadarField, RadarPattern, SensorRig};
 
 /// A LiDAR model by its name.
 pub struct LidarPreset {
@@ -46,6 +46,92 @@ pub const LIDARS: [LidarPreset; 5] = [
     },
 ];
 
+/// A radar model by its name.
+pub struct RadarPreset {
+    /// Name that its maker or the field uses.
+    pub name: &'static str,
+    /// Builds the pattern, mounted at the front of the default vehicle, level.
+    pub build: fn() -> RadarPattern,
+}
+
+/// Patterns from data sheets; the last two are of their kind, not of one maker.
+pub const RADARS: [RadarPreset; 3] = [
+    RadarPreset {
+        name: "ARS 408-21 (nuScenes)",
+        build: || {
+            // Continental's data sheet: a near scan that is finer, a far one ahead; leaving at up to 400 km/h, approaching at up to 200.
+            let near = |half_azimuth_deg, max_range_m, azimuth_step_deg| {
+                field(half_azimuth_deg, max_range_m, 0.39, azimuth_step_deg)
+            };
+            RadarPattern {
+                fields: vec![
+                    near(45.0, 70.0, 3.2),
+                    near(60.0, 20.0, 4.5),
+                    field(4.0, 250.0, 1.79, 1.6),
+                    field(9.0, 150.0, 1.79, 1.6),
+                ],
+                half_elevation_deg: 9.0,
+                speed_step_mps: 0.12,
+                speeds_mps: [-55.6, 111.1],
+                car_range_m: 200.0,
+                most_returns: 125,
+                scan_hz: 13.0,
+                ..radar()
+            }
+        },
+    },
+    RadarPreset {
+        name: "Corner radar, 77 GHz, 80 m",
+        build: || RadarPattern {
+            fields: vec![field(75.0, 80.0, 0.3, 4.0)],
+            half_elevation_deg: 8.0,
+            car_range_m: 75.0,
+            most_returns: 128,
+            scan_hz: 20.0,
+            ..radar()
+        },
+    },
+    RadarPreset {
+        name: "Imaging radar, 77 GHz, with heights",
+        build: || RadarPattern {
+            fields: vec![field(60.0, 300.0, 0.4, 1.0)],
+            half_elevation_deg: 12.0,
+            elevation_step_deg: 2.0,
+            car_range_m: 280.0,
+            most_returns: 2000,
+            scan_hz: 15.0,
+            ..radar()
+        },
+    },
+];
+
+fn field(half_azimuth_deg: f64, max_range_m: f64, range_step_m: f64, azimuth_step_deg: f64) -> RadarField {
+    RadarField {
+        half_azimuth_deg,
+        max_range_m,
+        range_step_m,
+        azimuth_step_deg,
+    }
+}
+
+/// What radars of cars have in common.
+fn radar() -> RadarPattern {
+    RadarPattern {
+        name: "RADAR_FRONT".into(),
+        fields: Vec::new(),
+        half_elevation_deg: 10.0,
+        elevation_step_deg: 0.0,
+        min_range_m: 0.2,
+        speed_step_mps: 0.1,
+        speeds_mps: [-60.0, 60.0],
+        car_range_m: 100.0,
+        most_returns: 128,
+        scan_hz: 15.0,
+        rotation_wxyz: [1.0, 0.0, 0.0, 0.0],
+        translation_m: [3.4, 0.0, 0.5],
+    }
+}
+
 fn even(low_deg: f64, high_deg: f64, beams: u32) -> Vec<f64> {
     let step = (high_deg - low_deg) / f64::from(beams - 1);
     (0..beams).map(|i| low_deg + step * f64::from(i)).collect()
@@ -87,7 +173,7 @@ pub struct RigPreset {
 /// Sensors of whole vehicles.
 pub const RIGS: [RigPreset; 4] = [
     RigPreset {
-        name: "nuScenes: six cameras, HDL-32E",
+        name: "nuScenes: six cameras, HDL-32E, five radars",
         build: SensorRig::default,
     },
     RigPreset {
@@ -139,6 +225,7 @@ fn rig(name: &str, cameras: &[(&str, f64, f64)], lidar: usize) -> SensorRig {
         name: name.into(),
         cameras: cameras.iter().map(of).collect(),
         lidars: vec![(LIDARS[lidar].build)()],
+        radars: Vec::new(),
         ..SensorRig::default()
     }
 }
@@ -162,5 +249,15 @@ mod tests {
             assert!(lidar.elevations_deg.is_sorted(), "{}", preset.name);
         }
         assert_eq!((LIDARS[2].build)().elevations_deg.len(), 64);
+        for preset in &RADARS {
+            assert_eq!((preset.build)().problem(), None, "{}", preset.name);
+        }
+        let model = (RADARS[0].build)();
+        for radar in &SensorRig::default().radars {
+            assert_eq!(
+                (&radar.fields, radar.car_range_m),
+                (&model.fields, model.car_range_m)
+            );
+        }
     }
 }

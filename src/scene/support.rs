@@ -1,14 +1,15 @@
 //! Groups of voxels that touch each other, and the part of the occupancy that stands on the ground.
 
-use crate::{Class, Extent, Unobserved, VoxelGrid};
+use crate::{Class, Extent, Lattice, Unobserved, VoxelGrid};
 
 /// Area of connected ground voxels above the ground's bins from which on they carry objects, m².
 const WIDE_GROUND_M2: f64 = 16.0;
 
-/// Bins in which the ground of a flat map may lie: up to its true height, which is bin 2 in Occ3D; in its labels it is in
-/// bin 0.
+/// Bins in which what stands on a flat map may begin: up to the true height of the ground, which is bin 2 in Occ3D; in its labels
+/// it is in bin 0.
 fn ground_bins(extent: Extent) -> u64 {
-    u64::MAX >> (63 - extent.lattice().bin(0.0))
+    let lattice = extent.lattice();
+    u64::MAX >> (63 - lattice.foot_bin(lattice.bin(0.0)))
 }
 
 /// One word per column `[x][y]`, one bit per bin that is not free.
@@ -45,10 +46,28 @@ pub fn ground(extent: Extent, by_class: &[Vec<u64>]) -> Vec<u64> {
 /// Number of voxels from which on a floating group of vegetation counts as the crown of a tree.
 pub const CROWN: usize = 8;
 
+/// Bins up to the one on the ground of most columns that have any, where labels are where things are: data sets leave ground out
+/// under what stands on it. None where labels let the ground down.
+fn usual_ground_bins(extent: Extent, ground: &[u64]) -> u64 {
+    if extent.lattice().lowered() > 0 {
+        return 0;
+    }
+    let mut counts = [0usize; Lattice::MAX_BINS];
+    for word in ground.iter().filter(|word| **word != 0) {
+        counts[word.trailing_zeros() as usize] += 1;
+    }
+    let usual = (0..counts.len()).max_by_key(|bin| (counts[*bin], usize::MAX - bin));
+    match usual.filter(|bin| counts[*bin] > 0) {
+        Some(bin) => u64::MAX >> (63 - extent.lattice().foot_bin(bin)),
+        None => 0,
+    }
+}
+
 /// The part of `occupied` that stands: voxels connected to the ground bins, or to wide ground that lies higher, through
 /// voxels that touch by a face, an edge or a corner.
 pub fn supported(extent: Extent, occupied: &[u64], ground: &[u64]) -> Vec<u64> {
-    let out = reached(extent, occupied, |_| 0);
+    let usual = usual_ground_bins(extent, ground);
+    let out = reached(extent, occupied, |_| usual);
     // A hill that does not reach the lowest bins is ground too.
     let mut high = Vec::new();
     for (c, (ground, out)) in ground.iter().zip(&out).enumerate() {
@@ -271,5 +290,20 @@ mod tests {
             ]
         );
         assert!(groups(Extent::WINDOW, Vec::new()).is_empty());
+    }
+
+    #[test]
+    fn walls_without_ground_under_them_stand_where_data_leave_it_out() {
+        let lattice = Lattice::new(0.2, 32, -0.16).expect("sound");
+        let extent = Extent::over(lattice, [0, 0], [40, 40]).expect("sound");
+        let mut grid = VoxelGrid::over(extent);
+        for x in 0..40 {
+            grid.set(x, 5, 1, Class::DriveableSurface.id());
+            (2..9).for_each(|z| grid.set(x, 20, z, Class::Manmade.id()));
+        }
+        grid.set(30, 30, 6, Class::Manmade.id());
+        let stands = supported(extent, &occupied(&grid), &ground(extent, &by_class(&grid)));
+        assert_eq!(stands[extent.index(10, 20)], 0b1_1111_1100);
+        assert_eq!(stands[extent.index(30, 30)], 0);
     }
 }

@@ -389,3 +389,36 @@ fn pictures_agree() {
         "latents of pictures",
     );
 }
+
+/// An edit from its inversion to the labels that are shown, on candle as on the processor's kernels: nearly every voxel alike.
+#[test]
+fn an_edit_is_generated_end_to_end_on_candle() {
+    let scene = app::open::from_template("straight", 3).expect("a template");
+    let mut document = editor::Document::new(scene);
+    let id = *document.scene().frame().boxes.keys().next().expect("a box");
+    document
+        .apply("Remove", &editor::Edit::RemoveBox { id })
+        .expect("sound");
+    let job = job::Job {
+        scene: document.scene().clone(),
+        params: job::GenParams {
+            steps: 3,
+            fine_steps: 1,
+            ..job::GenParams::default()
+        },
+    };
+    let generated = |mut pipeline: Box<dyn job::Pipeline>| {
+        pipeline.run(&job, &job::JobCtx::detached()).expect("a result")
+    };
+    let ours = generated(Box::new(job::pipeline::OccPipeline::new(
+        OccModels::bundled().expect("weights"),
+    )));
+    let theirs = generated(Box::new(job::pipeline::OccPipeline::new(Arc::new(
+        OccModels::on(candle()).expect("weights"),
+    ))));
+    let differ = ours.occupancy.count_different(&theirs.occupancy);
+    let changed = ours.report.voxels_changed;
+    println!("{differ} voxels differ, {changed} were changed");
+    assert!(changed > 10 && differ * 50 <= changed, "{differ} of {changed}");
+    assert_eq!(ours.report.network_calls, theirs.report.network_calls);
+}

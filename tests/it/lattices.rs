@@ -261,10 +261,17 @@ fn sensors_and_networks_work_on_it_and_leave_the_rest() {
     let source = &document.scene().frame().source.occupancy;
     assert_eq!(result.occupancy.extent(), source.extent());
     assert!(result.report.voxels_changed > 0);
+    // Objects and ground are the draft's, voxel by voxel; what is coarse is told.
+    let draft = &document.scene().frame().occupancy;
+    let is_exact = |label: u8| Class::from_id(label).is_some_and(|c| c.is_object() || c.is_ground());
+    let exact = |grid: &scene::VoxelGrid| -> Vec<_> { grid.iter_set().filter(|v| is_exact(v.3)).collect() };
+    assert_eq!(exact(&result.occupancy), exact(draft));
     let notes = result.report.notes.join(" ");
-    assert!(
-        notes.contains("voxels of 0.4 m on this map of 40 bins of 0.2 m"),
-        "{notes}"
+    let coarse = draft.count_different(&result.occupancy);
+    assert_eq!(
+        notes.contains("as coarse as theirs of 0.4 m"),
+        coarse > 0,
+        "{coarse}: {notes}"
     );
     // Far from the car nothing differs.
     let far = |x: usize, y: usize| {

@@ -11,11 +11,15 @@ import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
+import descartes.patch
 from nuscenes.map_expansion.map_api import NuScenesMap
 from nuscenes.nuscenes import NuScenes
-from nuscenes.utils.data_classes import LidarPointCloud
+from nuscenes.utils.data_classes import LidarPointCloud, RadarPointCloud
 from nuscenes.utils.geometry_utils import BoxVisibility, points_in_box
 from PIL import Image
+
+# descartes, which the devkit draws maps with, does not know rings of shapely 2.
+descartes.patch.asarray = lambda ring: np.asarray(getattr(ring, "coords", ring))
 
 
 def expect(holds, what):
@@ -50,6 +54,13 @@ def check_lidar(nusc, token, read):
             read["ground_z_m"] = round(float(np.median(ground)), 3)
 
 
+def check_radar(nusc, token, read):
+    path, _, _ = nusc.get_sample_data(token, box_vis_level=BoxVisibility.NONE)
+    cloud = RadarPointCloud.from_file(path)
+    expect(np.isfinite(cloud.points).all(), f"{path}: a number is not finite")
+    read["radar_returns"] += cloud.nbr_points()
+
+
 def check_sample(nusc, sample, read):
     read["samples"] += 1
     for channel, token in sample["data"].items():
@@ -60,6 +71,8 @@ def check_sample(nusc, sample, read):
                 data = nusc.get("sample_data", data["prev"])
                 check_lidar(nusc, data["token"], read)
                 read["sweeps"] += 1
+        elif data["sensor_modality"] == "radar":
+            check_radar(nusc, token, read)
         else:
             path, boxes, intrinsic = nusc.get_sample_data(token)
             with Image.open(path) as image:
@@ -126,7 +139,7 @@ def check_map(nusc, read):
 def main():
     root = sys.argv[1]
     nusc = NuScenes(version="v1.0-mini", dataroot=root, verbose=False)
-    read = dict.fromkeys(["samples", "sweeps", "points", "points_in_boxes", "pictures", "boxes", "boxes_in_pictures", "moving", "fastest_mps"], 0)
+    read = dict.fromkeys(["samples", "sweeps", "points", "points_in_boxes", "radar_returns", "pictures", "boxes", "boxes_in_pictures", "moving", "fastest_mps"], 0)
     read["lidarseg"] = []
     for scene in nusc.scene:
         samples = list(walk(nusc, scene))

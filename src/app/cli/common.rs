@@ -172,7 +172,7 @@ pub(super) type CommandResult = Result<(), Stop>;
 #[derive(clap::Args)]
 pub struct Moment {
     /// Moment of a scene that lasts, s; the one that the file shows if left out.
-    #[arg(long = "at", value_name = "S")]
+    #[arg(long = "at", value_name = "S", allow_negative_numbers = true)]
     at_s: Option<f64>,
 }
 

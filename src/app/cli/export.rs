@@ -116,21 +116,22 @@ impl Export {
             });
             return Ok(());
         }
-        let formats = match (self.format.as_str(), formats::export::from_id(&self.format)) {
-            ("all", _) => formats::export::usual(),
-            (_, Some(format)) => vec![format],
-            (unknown, None) => {
-                return Err(
-                    anyhow!("--format is {unknown:?}, expected one of {}, all, list", names()).into(),
-                );
-            }
-        };
+        let one = formats::export::from_id(&self.format);
+        if one.is_none() && self.format != "all" {
+            return Err(anyhow!(
+                "--format is {:?}, expected one of {}, all, list",
+                self.format,
+                names()
+            )
+            .into());
+        }
         let path = self
             .output
             .context("-o PATH is missing: where should the files go?")?;
         let scene = self
             .moment
             .apply_to(open::scene(&self.scene.context("the scene to read is missing")?)?)?;
+        let formats = one.map_or_else(|| formats::export::usual(&scene.rig), |format| vec![format]);
         let options = ExportOptions {
             camera_size: self.size,
             source: self.source,

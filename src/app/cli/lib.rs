@@ -15,6 +15,7 @@ mod doctor;
 mod document;
 mod edit;
 mod endpoint;
+#[cfg_attr(not(feature = "eval"), path = "eval_absent.rs")]
 mod eval;
 mod export;
 pub(crate) mod generate;

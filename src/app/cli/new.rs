@@ -29,7 +29,7 @@ pub struct New {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Edge of the voxels, m: 0.4 as the networks have it, or 0.05 to 2.
-    #[arg(long, value_name = "M", default_value_t = Lattice::OCC3D.voxel_m())]
+    #[arg(long, value_name = "M", default_value_t = Lattice::OCC3D.voxel_m(), allow_negative_numbers = true)]
     voxel: f64,
     /// Voxels above one another, from about 1 m below the road up, at most 64; up to 5.4 m above it if left out.
     #[arg(long, value_name = "N")]

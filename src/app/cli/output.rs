@@ -7,8 +7,8 @@ use anyhow::Context;
 use serde_json::Value;
 
 use super::Common;
+pub use calibration::machine::peak_rss_mb;
 use formats::{atomic, png};
-pub use judge::machine::peak_rss_mb;
 use scene::message;
 
 /// Prints the report: as JSON if asked, else the given text; of that, names of a file may move no cursor and set no title.

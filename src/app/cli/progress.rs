@@ -13,7 +13,7 @@ pub struct ProgressLine {
     state: Mutex<(String, Instant)>,
 }
 
-impl judge::MeasurementProgress for ProgressLine {
+impl calibration::MeasurementProgress for ProgressLine {
     fn at(&self, stage: &str, step: usize, steps: usize) {
         Self::at(self, stage, step, steps);
     }

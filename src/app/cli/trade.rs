@@ -8,11 +8,11 @@ use serde_json::json;
 use super::progress::ProgressLine;
 use super::{CommandResult, Common, Stop, Weights, output};
 use app::trade_plot;
-use judge::held_out::TEST_SEED;
-use judge::machine::{Load, machine};
-use judge::presets::measure::{Raw, add_times};
-use judge::presets::plan::{TradeoffPlan, write_presets};
-use judge::presets::report::table;
+use calibration::held_out::TEST_SEED;
+use calibration::machine::{Load, machine};
+use calibration::measure::{Raw, add_times};
+use calibration::plan::{TradeoffPlan, write_presets};
+use calibration::report::table;
 use nets::OccModels;
 
 /// Arguments.

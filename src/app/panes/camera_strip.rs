@@ -357,7 +357,9 @@ impl CameraStrip {
             painter.image(texture.id(), left, uv, Color32::WHITE);
             painter.vline(left.right(), rect.y_range(), Stroke::new(1.5, Color32::WHITE));
         }
-        box_outlines::draw(&painter, rect, camera, scene, state);
+        if !state.playback.playing {
+            box_outlines::draw(&painter, rect, camera, scene, state);
+        }
         if let Some(place_m) = place_marks::elsewhere(state, PaneId::CAMERAS)
             && let Some(at) = place_in(camera, place_m, drop_m(&state.cameras))
         {
@@ -428,7 +430,9 @@ impl CameraStrip {
             let (rect, response) = ui.allocate_exact_size(size, Sense::click());
             response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("Enlarged camera")));
             ui.painter().image(texture.id(), rect, unit(), Color32::WHITE);
-            box_outlines::draw(ui.painter(), rect, camera, input.scene, state);
+            if !state.playback.playing {
+                box_outlines::draw(ui.painter(), rect, camera, input.scene, state);
+            }
             if let (true, Some(p)) = (response.clicked(), response.interact_pointer_pos()) {
                 let part = (p - rect.min) / rect.size();
                 let hit = self.hit(input.scene, camera, part).and_then(|hit| hit.box_id);

@@ -14,7 +14,7 @@ use crate::bev_image::from_above;
 use crate::camera_views::Wanted;
 use crate::canvas::BevCanvas;
 use crate::painting::PaintWish;
-use crate::sensing::Sensing;
+use crate::sensing::{Haste, Sensing};
 use crate::view3d::View3d;
 use language::{t, tf};
 use viewport::MarkedVoxels;
@@ -151,7 +151,7 @@ impl Compare {
                 sensing.forget();
             }
             sensing.paint_with(painting);
-            sensing.ask(scene, wanted, false);
+            sensing.ask(scene, wanted, Haste::Rest);
             sensing.drain();
         }
     }

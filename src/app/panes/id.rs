@@ -25,6 +25,8 @@ impl PaneId {
     pub const CAMERAS: Self = Self::named("cameras");
     /// The newest sweep, unrolled: azimuth by beam.
     pub const LIDAR: Self = Self::named("lidar");
+    /// The newest radar scans from above.
+    pub const RADAR: Self = Self::named("radar");
     /// The scene as 3-D Gaussians.
     pub const SPLATS: Self = Self::named("splats");
     /// The chosen box from above, from its side and from behind.

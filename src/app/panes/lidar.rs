@@ -84,23 +84,29 @@ impl Pane for Lidar {
         let scene = cx.scene;
         let mode = cx.compare.mode(&cx.state.compare);
         let reference = cx.compare.reference.clone();
+        let other_at = cx
+            .compare
+            .sensing
+            .as_ref()
+            .map(|s| *s.swept_at())
+            .unwrap_or_default();
         let other = cx.compare.sensing.as_ref().and_then(|s| s.lidar()).cloned();
+        let before = other.as_ref().map(|sweep| (sweep, &other_at));
         if let (true, Some(reference)) = (cx.state.compare.holding_reference, &reference) {
             let sweep = &mut cx.compare.sweep;
-            sweep.show(ui, reference, other.as_ref(), cx.state, commands);
+            sweep.show(ui, reference, before, cx.state, commands);
             return;
         }
         let (top, bottom) = upper_and_lower(area);
         let rect = if mode == CompareMode::Side { bottom } else { area };
         in_rect(ui, rect, |ui| {
-            self.sweep.show(ui, scene, cx.sensing.lidar(), cx.state, commands);
+            let now = cx.sensing.lidar().map(|sweep| (sweep, cx.sensing.swept_at()));
+            self.sweep.show(ui, scene, now, cx.state, commands);
         });
         let Some(reference) = reference else { return };
         match mode {
             CompareMode::Side => in_rect(ui, top, |ui| {
-                cx.compare
-                    .sweep
-                    .show(ui, &reference, other.as_ref(), cx.state, commands);
+                cx.compare.sweep.show(ui, &reference, before, cx.state, commands);
             }),
             CompareMode::Difference => {
                 if let (Some(now), Some(other)) = (cx.sensing.lidar(), &other) {
@@ -111,9 +117,7 @@ impl Pane for Lidar {
                 let part = left_part(area, cx.state.compare.wipe_at);
                 clipped(ui, part, |ui| {
                     in_rect(ui, area, |ui| {
-                        cx.compare
-                            .sweep
-                            .show(ui, &reference, other.as_ref(), cx.state, commands);
+                        cx.compare.sweep.show(ui, &reference, before, cx.state, commands);
                     });
                 });
                 wipe_line(ui, area, &mut cx.state.compare);
@@ -135,7 +139,7 @@ impl SweepDifference {
             return;
         };
         let rings = lidar.elevations_deg.len().max(1);
-        let mount = Mount::from_scene(scene, lidar);
+        let mount = Mount::new(&scene.frame().world_from_ego, lidar);
         let known =
             |(a, b, _): &(Arc<LidarSweep>, Arc<LidarSweep>, _)| Arc::ptr_eq(a, now) && Arc::ptr_eq(b, before);
         if !self.texture.as_ref().is_some_and(known) {

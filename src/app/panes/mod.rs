@@ -29,6 +29,7 @@ pub mod pane;
 mod perception;
 pub mod pointed;
 pub mod prompt;
+mod radar;
 mod saved_brushes;
 mod splats;
 mod statistics;
@@ -55,6 +56,7 @@ pub fn all() -> Vec<Box<dyn Pane>> {
         Box::new(view3d::View3dPane),
         Box::new(cameras::Cameras),
         Box::new(lidar::Lidar::default()),
+        Box::new(radar::Radar),
         Box::new(splats::Splats::default()),
         Box::new(box_views::BoxViews::default()),
         Box::new(prompt::PromptPane),

@@ -34,10 +34,10 @@ pub struct Mount {
 }
 
 impl Mount {
-    /// The mount of a sensor on the scene's vehicle.
-    pub fn from_scene(scene: &Scene, lidar: &LidarPattern) -> Self {
+    /// The mount of a sensor on a vehicle at a pose.
+    pub fn new(world_from_ego: &Pose, lidar: &LidarPattern) -> Self {
         Self {
-            ego_from_world: scene.frame().world_from_ego.inverse(),
+            ego_from_world: world_from_ego.inverse(),
             at_m: DVec3::from_array(lidar.translation_m),
         }
     }
@@ -92,12 +92,12 @@ fn same(a: &OutlinesOf, b: &OutlinesOf) -> bool {
 }
 
 impl SweepPicture {
-    /// Draws the sweep into all the available space, and answers the pointer.
+    /// Draws the sweep, made where the vehicle was at a pose, into all the available space, and answers the pointer.
     pub fn show(
         &mut self,
         ui: &mut Ui,
         scene: &Scene,
-        sweep: Option<&Arc<LidarSweep>>,
+        sweep: Option<(&Arc<LidarSweep>, &Pose)>,
         state: &mut UiState,
         commands: &mut Vec<Command>,
     ) {
@@ -105,7 +105,7 @@ impl SweepPicture {
         let response = ui.allocate_rect(rect, Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("LiDAR sweep")));
         ui.painter().rect_filled(rect, 0.0, theme::well());
-        let (Some(sweep), Some(lidar)) = (sweep, scene.rig.lidars.first()) else {
+        let (Some((sweep, swept_at)), Some(lidar)) = (sweep, scene.rig.lidars.first()) else {
             let text = match scene.rig.lidars.is_empty() {
                 true => t("This vehicle has no LiDAR. Sensors… adds one."),
                 false => t("rendering…"),
@@ -121,7 +121,7 @@ impl SweepPicture {
             );
             return;
         };
-        let (rings, mount) = (lidar.elevations_deg.len().max(1), Mount::from_scene(scene, lidar));
+        let (rings, mount) = (lidar.elevations_deg.len().max(1), Mount::new(swept_at, lidar));
         let mode = state.lidar.colors;
         let known = |(of, m, n, _): &(Arc<LidarSweep>, LidarColorMode, usize, _)| {
             Arc::ptr_eq(of, sweep) && *m == mode && *n == rings

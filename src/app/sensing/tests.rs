@@ -16,7 +16,7 @@ fn the_newest_scene_is_sensed_in_the_end() {
     let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
     for _ in 0..20 {
         scene.rev = SceneRev::fresh();
-        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
+        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), Haste::Preview);
     }
     let start = Instant::now();
     while sensing.cameras_stale(scene.rev) || sensing.lidar_stale(scene.rev) {
@@ -28,7 +28,7 @@ fn the_newest_scene_is_sensed_in_the_end() {
     assert!(sensing.lidar().is_some_and(|l| l.points.len() > 1000));
     // The same request again brings no news.
     let version = sensing.version();
-    sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
+    sensing.ask(&Arc::new(scene.clone()), Wanted::default(), Haste::Preview);
     std::thread::sleep(Duration::from_millis(50));
     sensing.drain();
     assert_eq!(sensing.version(), version);
@@ -40,8 +40,11 @@ fn the_newest_scene_is_sensed_in_the_end() {
             ..Wanted::default()
         };
         // No picture is painted while the user drags.
-        let preview = source.id() != learned::ID;
-        sensing.ask(&Arc::new(scene.clone()), wanted, preview);
+        let haste = match source.id() {
+            learned::ID => Haste::Rest,
+            _ => Haste::Preview,
+        };
+        sensing.ask(&Arc::new(scene.clone()), wanted, haste);
         assert!(sensing.cameras_stale(scene.rev));
         while sensing.cameras_stale(scene.rev) {
             assert!(
@@ -78,7 +81,7 @@ fn a_panic_is_told_once_and_the_next_scene_is_sensed() {
     let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
     let patience = |start: Instant| assert!(start.elapsed() < Duration::from_secs(120), "no news");
     job::guard::panic_next("sensing");
-    sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
+    sensing.ask(&Arc::new(scene.clone()), Wanted::default(), Haste::Preview);
     let start = Instant::now();
     let problem = loop {
         patience(start);
@@ -94,7 +97,7 @@ fn a_panic_is_told_once_and_the_next_scene_is_sensed() {
     );
     assert_eq!((sensing.take_problem(), sensing.version()), (None, 0));
     scene.rev = SceneRev::fresh();
-    sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
+    sensing.ask(&Arc::new(scene.clone()), Wanted::default(), Haste::Preview);
     while sensing.cameras_stale(scene.rev) || sensing.lidar_stale(scene.rev) {
         patience(start);
         std::thread::sleep(Duration::from_millis(5));
@@ -123,7 +126,7 @@ fn a_painting_is_told_step_by_step_and_can_be_stopped() {
         let start = Instant::now();
         while !until(sensing) {
             assert!(start.elapsed() < Duration::from_secs(120), "no news");
-            sensing.ask(&scene, wanted, false);
+            sensing.ask(&scene, wanted, Haste::Rest);
             std::thread::sleep(Duration::from_millis(2));
             sensing.drain();
         }
@@ -149,7 +152,7 @@ fn a_painting_is_told_step_by_step_and_can_be_stopped() {
         weights: Some("nowhere".into()),
         ..PaintWish::default()
     });
-    sensing.ask(&scene, wanted, false);
+    sensing.ask(&scene, wanted, Haste::Rest);
     // Pictures painted with other weights are stale.
     assert!(sensing.cameras_stale(scene.rev));
     wait(&mut sensing, &|s| s.is_stopped());
@@ -159,4 +162,37 @@ fn a_painting_is_told_step_by_step_and_can_be_stopped() {
         problem.starts_with("No learned pictures: nowhere") && problem.lines().count() == 1,
         "{problem}"
     );
+}
+
+#[test]
+fn while_a_clip_plays_all_cameras_come_in_turns_and_none_of_another_scene() {
+    let scene_of = |seed| {
+        let world = World::random(seed);
+        let occupancy = draft::draft(&world.layout, world.boxes.values());
+        let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
+        Scene::single("test", frame, Arc::default(), seed)
+    };
+    let (mut first, second) = (scene_of(3), scene_of(4));
+    let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
+    let start = Instant::now();
+    let sense = |sensing: &mut Sensing, scene: &Scene| {
+        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), Haste::Play);
+        while !sensing.is_idle() {
+            assert!(start.elapsed() < Duration::from_secs(120), "no news");
+            std::thread::sleep(Duration::from_millis(2));
+            sensing.drain();
+        }
+        sensing.cameras().expect("pictures").clone()
+    };
+    // Each moment has a new revision; after as many as there are cameras all were shown.
+    let mut shown = sense(&mut sensing, &first);
+    for _ in 0..6 {
+        first.rev = SceneRev::fresh();
+        shown = sense(&mut sensing, &first);
+    }
+    let cameras: Vec<usize> = shown.iter().map(|v| v.camera).collect();
+    assert_eq!(cameras, [0, 1, 2, 3, 4, 5]);
+    let others = sense(&mut sensing, &second);
+    let from_before = |view: &CameraView| shown.iter().any(|v| Arc::ptr_eq(&v.picture, &view.picture));
+    assert!(!others.is_empty() && !others.iter().any(from_before));
 }

@@ -78,9 +78,9 @@ impl Dock {
                 let rows: Vec<TileId> = [[0, 1, 2], [5, 4, 3]] // order of the rig: front row, then back
                     .map(|cameras| row(&mut t, Horizontal, &cameras.map(|c| (PaneId::of_camera(c), 1.0))))
                     .to_vec();
-                let sweep = t.insert_pane(PaneId::LIDAR);
+                let rays = row(&mut t, Horizontal, &[(PaneId::LIDAR, 2.0), (PaneId::RADAR, 1.0)]);
                 let views = row(&mut t, Vertical, &[(PaneId::BEV, 1.0), (PaneId::VIEW3D, 1.0)]);
-                let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (sweep, 0.8)]);
+                let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (rays, 1.0)]);
                 join(&mut t, Horizontal, &[(cameras, 2.0), (views, 1.0)])
             }
             Workspace::Clip => {

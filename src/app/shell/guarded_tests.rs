@@ -10,12 +10,13 @@ use crate::command::ViewCommand;
 use crate::export::ExportOptions;
 use crate::panes::id::PaneId;
 use crate::scenery::{SceneryMethod, SceneryWish};
+use crate::sensing::Haste;
 use crate::shell::workspace::Workspace;
 use crate::{AppConfig, SceneloomApp, open};
+use calibration::calibrate::{CalibrationEvent, Measurement, MeasurementTask};
 use editor::Edit;
 use job::guard::panic_next;
 use job::{GenError, GenParams};
-use judge::presets::calibrate::{CalibrationEvent, Measurement, MeasurementTask};
 
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -113,7 +114,8 @@ fn scenery() {
 #[test]
 fn checks_and_sensors() {
     let mut app = app();
-    let wanted = crate::camera_views::Wanted::from_settings(&app.state.cameras, &app.state.lidar, 6);
+    let wanted =
+        crate::camera_views::Wanted::from_settings(&app.state.cameras, &app.state.lidar, &app.state.radar, 6);
     panic_next("checks");
     wait_for(
         &mut app,
@@ -121,7 +123,9 @@ fn checks_and_sensors() {
     );
     assert!(app.threads.checking.findings().is_none());
     panic_next("sensing");
-    app.threads.sensing.ask(app.document.scene(), wanted, true);
+    app.threads
+        .sensing
+        .ask(app.document.scene(), wanted, Haste::Preview);
     wait_for(
         &mut app,
         "The sensors show an older scene: sensing panicked: asked for by a test",
@@ -129,7 +133,9 @@ fn checks_and_sensors() {
     let prompt = "another state".to_owned();
     app.apply("Prompt", &[Edit::SetPrompt { prompt }]);
     let rev = app.document.settled_scene().content();
-    app.threads.sensing.ask(app.document.scene(), wanted, true);
+    app.threads
+        .sensing
+        .ask(app.document.scene(), wanted, Haste::Preview);
     let start = Instant::now();
     while app.threads.checking.is_stale(rev) || app.threads.sensing.lidar_stale(rev) {
         assert!(start.elapsed() < PATIENCE, "no findings");

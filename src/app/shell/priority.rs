@@ -40,7 +40,7 @@ pub fn give_way() -> bool {
 /// Environment variable for the number of threads, as usual with rayon.
 const ASKED_BY: &str = "RAYON_NUM_THREADS";
 
-/// Starts the threads that share the heavy work; in the window they run at a lower priority. To be called before they
+/// Starts the threads that share the heavy work; a panic on one of them is logged, and the thread goes on; in the window they run at a lower priority. To be called before they
 /// are used; later it has no effect. A number of threads from the environment is limited to a useful one. Returns a
 /// line that says so if it was limited.
 pub fn start_workers(give_way_to_window: bool) -> Option<String> {
@@ -52,7 +52,9 @@ pub fn start_workers(give_way_to_window: bool) -> Option<String> {
             if give_way_to_window {
                 give_way();
             }
-        });
+        })
+        // The hook has logged it (`logging.rs`); without a handler, a panic in work that nobody waits for ends the program.
+        .panic_handler(|_| {});
     // Fails if the pool exists already; the work is done all the same.
     let _ = pool.build_global();
     line

@@ -5,13 +5,13 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use calibration::calibrate::{CalibrationEvent, Measurement, MeasurementTask, Refine, build};
+use calibration::figures::{percent, seconds};
+use calibration::machine::machine;
 use formats::input;
 use job::inpaint;
 use job::region::Region;
 use job::{GenParams, GenReport, GenResult};
-use judge::machine::machine;
-use judge::presets::calibrate::{CalibrationEvent, Measurement, MeasurementTask, Refine, build};
-use judge::presets::figures::{percent, seconds};
 use language::{t, tf};
 use nets::{OccModels, tokens_of};
 use numeric::quantile::median;
@@ -263,7 +263,7 @@ impl Tuning {
         let Some(file) = &self.file else { return Ok(()) };
         let write = || -> anyhow::Result<()> {
             std::fs::create_dir_all(file.parent().unwrap_or(Path::new(".")))?;
-            judge::presets::plan::write_presets(file, &self.presets)
+            calibration::plan::write_presets(file, &self.presets)
         };
         write().map_err(|e| e.to_string())
     }

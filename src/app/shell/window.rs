@@ -225,6 +225,7 @@ impl SceneloomApp {
             Wanted::from_settings(
                 &self.state.cameras,
                 &self.state.lidar,
+                &Default::default(),
                 self.document.scene().rig.cameras.len(),
             ),
             senses,

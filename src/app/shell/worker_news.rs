@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::app::SceneloomApp;
 use crate::camera_views::Wanted;
 use crate::panes::camera_strip::thousands;
+use crate::sensing::Haste;
 use crate::shell::live::{Advice, Purpose, RunningJob};
 use crate::shell::staged::Again;
 use crate::shell::status::Receipt;
@@ -35,20 +36,24 @@ impl SceneloomApp {
             Advice::Submit(params) | Advice::WarmUp(params) => self.submit(scene, params),
         }
         // Small pictures while the scene changes: large ones take as long as the generation itself.
-        let for_a_moment = self.document.is_dragging()
-            || self.state.playback.playing
-            || self.generation.live.running.is_some();
-        if self.state.playback.sensors_are_due(now_s) {
+        let changes = self.document.is_dragging() || self.generation.live.running.is_some();
+        let haste = match self.state.playback.playing {
+            true => Haste::Play,
+            false if changes => Haste::Preview,
+            false => Haste::Rest,
+        };
+        let idle = self.threads.sensing.is_idle();
+        if self.state.playback.sensors_are_due(now_s, idle) {
             let count = self.document.scene().rig.cameras.len();
-            let wanted = Wanted::from_settings(&self.state.cameras, &self.state.lidar, count);
+            let state = &self.state;
+            let wanted = Wanted::from_settings(&state.cameras, &state.lidar, &state.radar, count);
             self.threads
                 .sensing
                 .paint_with(&self.preferences.settings.painting);
-            self.threads
-                .sensing
-                .ask(self.document.scene(), wanted, for_a_moment);
+            self.threads.sensing.ask(self.document.scene(), wanted, haste);
         }
         self.state.cameras.frame_ended();
+        self.state.radar.frame_ended();
     }
 
     pub(crate) fn submit(&mut self, scene: Arc<Scene>, params: GenParams) {

@@ -75,6 +75,8 @@ pub enum Icon {
     Map,
     /// Waves from a point.
     Sweep,
+    /// Dot and waves to the right.
+    Radar,
     /// Three small views.
     Sides,
     /// Speech bubble.
@@ -154,6 +156,7 @@ impl Icon {
             Icon::Lock => shapes::LOCK,
             Icon::Map => shapes::MAP,
             Icon::Sweep => shapes::SWEEP,
+            Icon::Radar => shapes::RADAR,
             Icon::Sides => shapes::SIDES,
             Icon::Words => shapes::WORDS,
             Icon::Stack => shapes::STACK,

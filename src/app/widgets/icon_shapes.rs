@@ -249,6 +249,12 @@ pub(crate) const SWEEP: &[IconStroke] = &[
     IconStroke::Arc((8.0, 12.6), 4.4, 205.0, 335.0),
     IconStroke::Arc((8.0, 12.6), 8.0, 210.0, 330.0),
 ];
+pub(crate) const RADAR: &[IconStroke] = &[
+    IconStroke::Closed(&[(2.0, 5.0), (4.5, 5.0), (4.5, 11.0), (2.0, 11.0)]),
+    IconStroke::Arc((3.6, 8.0), 4.0, -42.0, 42.0),
+    IconStroke::Arc((3.6, 8.0), 7.2, -38.0, 38.0),
+    IconStroke::Arc((3.6, 8.0), 10.4, -34.0, 34.0),
+];
 pub(crate) const SIDES: &[IconStroke] = &[
     IconStroke::Closed(&[(2.0, 2.5), (7.0, 2.5), (7.0, 7.0), (2.0, 7.0)]),
     IconStroke::Closed(&[(9.0, 2.5), (14.0, 2.5), (14.0, 7.0), (9.0, 7.0)]),

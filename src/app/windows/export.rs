@@ -8,6 +8,7 @@ use crate::camera_views::LidarModel;
 use crate::export::{ExportOptions, ExportProgress, Format};
 use formats::export::{ExportSpan, Product};
 use language::{t, tf};
+use scene::SensorRig;
 use sensors::cameras::{self, ViewId};
 use widgets::{icons, theme};
 
@@ -22,6 +23,8 @@ pub struct ExportInput<'a> {
     pub browse: bool,
     /// Number of findings of severity error.
     pub errors: usize,
+    /// Sensors of the scene.
+    pub rig: &'a SensorRig,
 }
 
 /// Request of the user.
@@ -147,7 +150,9 @@ pub fn export_window(
                 let enabled = sound && input.busy.is_none() && !dialog.path.trim().is_empty();
                 let button = egui::Button::new(t("Export files")).fill(ui.visuals().selection.bg_fill);
                 if ui.add_enabled(enabled, button).clicked() {
-                    let formats = dialog.format.map_or_else(formats::export::usual, |f| vec![f]);
+                    let formats = dialog
+                        .format
+                        .map_or_else(|| formats::export::usual(input.rig), |f| vec![f]);
                     asked = Some(ExportAction::Write(formats));
                 }
                 if let Some(progress) = input.busy {
@@ -340,6 +345,7 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
                     );
                 });
             }
+            Product::Radar => {}
             Product::View => {
                 size(ui, &mut options.shot.size);
                 ui.horizontal(|ui| {

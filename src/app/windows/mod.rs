@@ -9,6 +9,7 @@ pub mod open;
 pub mod palette;
 pub mod performance;
 pub mod place_picker;
+mod radar;
 pub mod recovery;
 pub mod repairs;
 pub mod row;

@@ -10,6 +10,8 @@ pub enum SensorChoice {
     Camera(usize),
     /// A LiDAR, by index.
     Lidar(usize),
+    /// A radar, by index.
+    Radar(usize),
 }
 
 impl Default for SensorChoice {

@@ -12,14 +12,17 @@ use crate::fields::{caption, field, number, numbers};
 use editor::Edit;
 use language::{t, tf};
 use scene::rig::Aim;
-use scene::rig_presets::{LIDARS, RIGS};
-use scene::{Camera, LidarPattern, SensorRig};
+use scene::rig_presets::{LIDARS, RADARS, RIGS};
+use scene::{Camera, LidarPattern, RadarPattern, SensorRig};
 use widgets::icons::{self, Icon, section};
 use widgets::theme;
 
 /// Most sensors of a kind in a rig; a strip of more cameras would be too small to read.
 const MAX_CAMERAS: usize = 12;
 const MAX_LIDARS: usize = 8;
+const MAX_RADARS: usize = 12;
+/// Height that the window leaves to its own header and to the bars around it, points.
+const AROUND_POINTS: f32 = 130.0;
 
 /// Draws the window.
 pub fn sensors_ui(
@@ -40,28 +43,40 @@ pub fn sensors_ui(
         .collapsible(true)
         .show(ui.ctx(), |ui| {
             ui.set_width(330.0);
-            presets(ui, commands);
-            ui.add_space(4.0);
-            lists(ui, rig, (&mut windows.sensor, cameras), commands);
-            ui.add_space(theme::GAP);
-            match windows.sensor {
-                SensorChoice::Camera(i) => {
-                    if let Some(camera) = rig.cameras.get(i) {
-                        camera_fields(ui, rig, i, camera, commands);
+            let most = (ui.ctx().content_rect().height() - AROUND_POINTS).max(200.0);
+            let scrolled = egui::ScrollArea::vertical()
+                .max_height(most)
+                .min_scrolled_height(most)
+                .auto_shrink([false, true]);
+            scrolled.show(ui, |ui| {
+                presets(ui, commands);
+                ui.add_space(4.0);
+                lists(ui, rig, (&mut windows.sensor, cameras), commands);
+                ui.add_space(theme::GAP);
+                match windows.sensor {
+                    SensorChoice::Camera(i) => {
+                        if let Some(camera) = rig.cameras.get(i) {
+                            camera_fields(ui, rig, i, camera, commands);
+                        }
+                    }
+                    SensorChoice::Lidar(i) => {
+                        if let Some(lidar) = rig.lidars.get(i) {
+                            lidar_fields(ui, rig, i, lidar, commands);
+                        }
+                    }
+                    SensorChoice::Radar(i) => {
+                        if let Some(radar) = rig.radars.get(i) {
+                            super::radar::fields(ui, rig, i, radar, commands);
+                        }
                     }
                 }
-                SensorChoice::Lidar(i) => {
-                    if let Some(lidar) = rig.lidars.get(i) {
-                        lidar_fields(ui, rig, i, lidar, commands);
-                    }
-                }
-            }
+            });
         });
     windows.sensors = open;
 }
 
 /// The edit that sets the rig after a change.
-fn changed(rig: &SensorRig, change: impl FnOnce(&mut SensorRig)) -> Edit {
+pub(super) fn changed(rig: &SensorRig, change: impl FnOnce(&mut SensorRig)) -> Edit {
     let mut rig = Box::new(rig.clone());
     change(&mut rig);
     Edit::SetRig { rig }
@@ -137,6 +152,15 @@ fn lists(
             *choice = SensorChoice::Lidar(i);
         }
     }
+    section(ui, t("Radars"));
+    for (i, radar) in rig.radars.iter().enumerate() {
+        let right = tf!("{range} m", range = format!("{:.0}", radar.max_range_m()));
+        let chosen = *choice == SensorChoice::Radar(i);
+        let label = tf!("Radar {name}", name = radar.name);
+        if icons::row(ui, theme::text(), &radar.name, &right, chosen, &label).clicked() {
+            *choice = SensorChoice::Radar(i);
+        }
+    }
     ui.horizontal(|ui| {
         if ui
             .add_enabled(
@@ -169,10 +193,29 @@ fn lists(
                 }
             });
         });
+    });
+    ui.horizontal(|ui| {
+        ui.add_enabled_ui(rig.radars.len() < MAX_RADARS, |ui| {
+            ui.menu_button(t("Add radar"), |ui| {
+                for preset in &RADARS {
+                    if ui.button(t(preset.name)).clicked() {
+                        let mut radar = (preset.build)();
+                        radar.name = free_name("RADAR", rig);
+                        *choice = SensorChoice::Radar(rig.radars.len());
+                        commands.push(Command::Apply(
+                            "Add radar",
+                            vec![changed(rig, |r| r.radars.push(radar))],
+                        ));
+                        ui.close();
+                    }
+                }
+            });
+        });
         let what = *choice;
         let exists = match what {
             SensorChoice::Camera(i) => i < rig.cameras.len(),
             SensorChoice::Lidar(i) => i < rig.lidars.len(),
+            SensorChoice::Radar(i) => i < rig.radars.len(),
         };
         if icons::button(ui, Icon::Copy, t("Duplicate sensor"), "", false, exists).clicked() {
             let copy = changed(rig, |r| match what {
@@ -184,13 +227,23 @@ fn lists(
                     name: free_name("LIDAR", rig),
                     ..rig.lidars[i].clone()
                 }),
+                SensorChoice::Radar(i) => r.radars.push(RadarPattern {
+                    name: free_name("RADAR", rig),
+                    ..rig.radars[i].clone()
+                }),
             });
+            *choice = match what {
+                SensorChoice::Camera(_) => SensorChoice::Camera(rig.cameras.len()),
+                SensorChoice::Lidar(_) => SensorChoice::Lidar(rig.lidars.len()),
+                SensorChoice::Radar(_) => SensorChoice::Radar(rig.radars.len()),
+            };
             commands.push(Command::Apply("Duplicate sensor", vec![copy]));
         }
         if icons::button(ui, Icon::Trash, t("Remove sensor"), "", false, exists).clicked() {
             let rest = changed(rig, |r| match what {
                 SensorChoice::Camera(i) => drop(r.cameras.remove(i)),
                 SensorChoice::Lidar(i) => drop(r.lidars.remove(i)),
+                SensorChoice::Radar(i) => drop(r.radars.remove(i)),
             });
             if let SensorChoice::Camera(i) = what {
                 cameras.forget(i);
@@ -206,7 +259,8 @@ fn free_name(stem: &str, rig: &SensorRig) -> String {
         .cameras
         .iter()
         .map(|c| &c.name)
-        .chain(rig.lidars.iter().map(|l| &l.name));
+        .chain(rig.lidars.iter().map(|l| &l.name))
+        .chain(rig.radars.iter().map(|r| &r.name));
     let taken: Vec<&String> = names.collect();
     let mut numbered = (1..).map(|i| format!("{stem}_{i}"));
     numbered
@@ -352,6 +406,20 @@ fn lidar_fields(
             commands.push(Command::Apply(name, vec![set(new.clone())]));
         }
     }
+    speed_row(ui, rig, commands);
+    let low = lidar.elevations_deg.first().copied().unwrap_or(0.0);
+    let high = lidar.elevations_deg.last().copied().unwrap_or(0.0);
+    let text = tf!(
+        "{low}° to {high}°, {rays} rays a sweep",
+        low = format!("{low:.1}"),
+        high = format!("{high:.1}"),
+        rays = lidar.rays()
+    );
+    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+}
+
+/// A field for the speed of the vehicle.
+pub(super) fn speed_row(ui: &mut Ui, rig: &SensorRig, commands: &mut Vec<Command>) {
     let mut kmh = rig.ego_speed_mps * 3.6;
     let speed = number(
         ui,
@@ -364,19 +432,10 @@ fn lidar_fields(
     );
     let edit = changed(rig, |r| r.ego_speed_mps = kmh / 3.6);
     field(&speed, "Change speed", edit, commands);
-    let low = lidar.elevations_deg.first().copied().unwrap_or(0.0);
-    let high = lidar.elevations_deg.last().copied().unwrap_or(0.0);
-    let text = tf!(
-        "{low}° to {high}°, {rays} rays a sweep",
-        low = format!("{low:.1}"),
-        high = format!("{high:.1}"),
-        rays = lidar.rays()
-    );
-    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
 }
 
 /// A field for a name. Returns true when the focus leaves the field with a new name.
-fn name_row(ui: &mut Ui, name: &mut String) -> bool {
+pub(super) fn name_row(ui: &mut Ui, name: &mut String) -> bool {
     let memory = ui.scope_id().with("sensor name");
     let mut text = ui.data(|d| d.get_temp::<(String, String)>(memory));
     if text.as_ref().is_none_or(|(of, _)| of != name) {
@@ -397,7 +456,7 @@ fn name_row(ui: &mut Ui, name: &mut String) -> bool {
     done
 }
 
-fn mount(ui: &mut Ui, translation_m: &mut [f64; 3]) -> egui::Response {
+pub(super) fn mount(ui: &mut Ui, translation_m: &mut [f64; 3]) -> egui::Response {
     let mut p = DVec3::from(*translation_m);
     let response = numbers(
         ui,
@@ -411,7 +470,7 @@ fn mount(ui: &mut Ui, translation_m: &mut [f64; 3]) -> egui::Response {
     response
 }
 
-fn aim_rows(ui: &mut Ui, aim: &mut Aim) -> egui::Response {
+pub(super) fn aim_rows(ui: &mut Ui, aim: &mut Aim) -> egui::Response {
     let yaw = number(ui, t("Yaw"), t("Yaw"), &mut aim.yaw_deg, -180.0..=180.0, "°", 1);
     let pitch = number(
         ui,

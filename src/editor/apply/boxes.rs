@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use scene::{BoxId, BoxName, Edit, EditError, Frame, SceneBox};
 
-use crate::immediate;
+use crate::immediate::{self, CarriedVoxels};
 
 /// Applies an edit of one box; `false` if it is about something else.
 pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
@@ -132,12 +132,15 @@ fn take_box(frame: &mut Frame, id: BoxId) -> Result<SceneBox, EditError> {
 }
 
 fn put_box(frame: &mut Frame, new: SceneBox) -> Result<(), EditError> {
-    if let Some(problem) = new.problem() {
-        return Err(EditError::BadBox(problem));
-    }
+    check(&new)?;
     frame.boxes.insert(new.id, new);
     immediate::stamp_box(frame, &new);
     Ok(())
+}
+
+fn check(b: &SceneBox) -> Result<(), EditError> {
+    b.problem()
+        .map_or(Ok(()), |problem| Err(EditError::BadBox(problem)))
 }
 
 fn change_box(frame: &mut Frame, id: BoxId, change: impl FnOnce(&mut SceneBox)) -> Result<(), EditError> {
@@ -149,6 +152,13 @@ fn change_box(frame: &mut Frame, id: BoxId, change: impl FnOnce(&mut SceneBox)) 
     }
     // On an error this copy of the frame may be half changed; the scene keeps the old frame.
     take_box(frame, id)?;
+    let carried = CarriedVoxels::cut(frame, &old, &new);
     immediate::clear_box(frame, &old);
-    put_box(frame, new)
+    let Some(voxels) = carried else {
+        return put_box(frame, new);
+    };
+    check(&new)?;
+    frame.boxes.insert(id, new);
+    voxels.stamp(frame, &new);
+    Ok(())
 }

@@ -13,7 +13,8 @@ use crate::rows::CopyRows;
 use crate::transform::{Orientation, Snap, TransformKind};
 use crate::voxel_ops::{self, VoxelIndex};
 use scene::{
-    BevLayer, BevLayout, BoxId, BoxLabel, Class, Extent, Frame, Scene, SceneBox, SceneRev, ThingId, variants,
+    BevLayer, BevLayout, BoxId, BoxLabel, Class, Extent, Frame, Lattice, Scene, SceneBox, SceneRev, ThingId,
+    variants,
 };
 
 use super::ToolId;
@@ -162,7 +163,7 @@ impl Default for Hand {
             orientation: Orientation::default(),
             pivot: Pivot::default(),
             snap_grid: false,
-            grid_m: 0.4,
+            grid_m: Lattice::OCC3D.voxel_m(),
             snap_lane: false,
             snap_ground: false,
             mirror_keeps_direction: true,

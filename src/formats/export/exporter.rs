@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use scene::{BoxId, CameraMaps, CameraTruth, Extent, GaussianScene, LidarSweep, Pose, Scene};
+use scene::{BoxId, CameraMaps, CameraTruth, Extent, GaussianScene, LidarSweep, Pose, RadarScan, Scene};
 
 use crate::recipe::Recipe;
 use crate::{FormatError, Holds};
@@ -60,6 +60,8 @@ pub enum Product {
     Observed,
     /// A sweep of the first LiDAR.
     Sweep,
+    /// A scan of every radar.
+    Radar,
     /// Classes and depths of every camera.
     CameraMaps,
     /// A picture of every camera.
@@ -84,6 +86,8 @@ pub trait Products {
     fn observed(&mut self) -> Result<ObservationMasks, FormatError>;
     /// A sweep of the rig's first LiDAR.
     fn sweep(&mut self) -> Result<LidarSweep, FormatError>;
+    /// A scan of each of the rig's radars, in its order, in the ego frame; empty if it has none.
+    fn radars(&mut self) -> Result<Vec<RadarScan>, FormatError>;
     /// Classes and depths of every camera, in the order of the rig; each is taken before the next is made.
     fn camera_maps(
         &mut self,

@@ -177,8 +177,9 @@ impl GltfBuilder {
                 let [from_x, from_y] = voxels.from.map(f64::from);
                 // In the box's own frame, so that the node's transform moves them.
                 let place = |corner: DVec3| {
-                    let at = DVec3::new(from_x + corner.x, from_y + corner.y, corner.z) / 2.5;
-                    b.to_local(at + DVec3::Z * Window::MIN_M[2])
+                    let at =
+                        DVec3::new(from_x + corner.x, from_y + corner.y, corner.z) / voxels.lattice.per_m();
+                    b.to_local(at + DVec3::Z * voxels.lattice.bottom_m())
                 };
                 let column = |x, y| *voxels.column(x, y).first_chunk().expect("a column of the window");
                 meshes(voxels.size, column, place)

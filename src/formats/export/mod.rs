@@ -15,6 +15,7 @@ pub mod mcap;
 pub mod nuplan_occ;
 pub mod nuscenes;
 pub mod nuscenes_lidar;
+pub mod nuscenes_radar;
 pub mod occ3d;
 pub mod opendrive;
 pub mod openlabel;
@@ -31,7 +32,7 @@ pub mod view;
 pub mod vox;
 pub mod world_scenario;
 
-use scene::Scene;
+use scene::{Scene, SensorRig};
 
 use crate::sparse_npy;
 
@@ -51,6 +52,7 @@ const TABLE: &[&Exporter] = &[
     &boxes::EXPORTER,
     &glb::EXPORTER,
     &nuscenes_lidar::EXPORTER,
+    &nuscenes_radar::EXPORTER,
     &ply::EXPORTER,
     &pcd::EXPORTER,
     &las::EXPORTER,
@@ -91,13 +93,16 @@ pub fn keeps_lattice(format: &Exporter, scene: &Scene) -> bool {
     }
 }
 
-/// The formats that *all* writes: every format but Gaussians, which take a minute and more, and MP4 where the program lacks
-/// its encoder.
-pub fn usual() -> Vec<&'static Exporter> {
+/// The formats that *all* writes of a scene with these sensors: every format but Gaussians, which take a minute and more, MP4 where the program lacks
+/// its encoder, and radar scans where the rig has no radar.
+pub fn usual(rig: &SensorRig) -> Vec<&'static Exporter> {
+    let lacks = |f: &&'static Exporter| f.needs == [Product::Radar] && rig.radars.is_empty();
     let is_slow = |f: &&'static Exporter| f.needs.contains(&Product::Gaussians);
     let is_absent = |f: &&'static Exporter| !cfg!(feature = "video") && f.id == control_video::EXPORTER.id;
     let written = all().iter().copied();
-    written.filter(|f| !is_slow(f) && !is_absent(f)).collect()
+    written
+        .filter(|f| !is_slow(f) && !is_absent(f) && !lacks(f))
+        .collect()
 }
 
 /// The format of that name.

@@ -236,6 +236,9 @@ mod tests {
                     physical: false,
                 })
             }
+            fn radars(&mut self) -> Result<Vec<scene::RadarScan>, FormatError> {
+                Small.radars()
+            }
             fn camera_maps(
                 &mut self,
                 take: &mut dyn FnMut(scene::CameraMaps) -> Result<(), FormatError>,

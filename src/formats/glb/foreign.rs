@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use scene::{BoxId, Class, Extent, Frame, Inferred, Scene, SensorRig, VoxelGrid, Window, infer};
+use scene::{BoxId, Class, Extent, Frame, Inferred, Lattice, Scene, SensorRig, VoxelGrid, Window, infer};
 
 use super::class_words::{NameMeaning, paint_said, said};
 use super::columns::{Heights, Statics};
@@ -314,14 +314,14 @@ pub(super) fn each_triangle(
 /// part of it is at the height of the map.
 fn extent(all: &Bounds) -> (Extent, DVec3) {
     let middle = (all.low + all.high) / 2.0;
-    let columns = |m: f64| (m * 2.5).round();
+    let columns = |m: f64| (m * Lattice::OCC3D.per_m()).round();
     let is_around =
         all.low.truncate().cmple(DVec2::ZERO).all() && all.high.truncate().cmpge(DVec2::ZERO).all();
     let near = all.low.truncate().cmpge(DVec2::splat(-400.0)).all()
         && all.high.truncate().cmple(DVec2::splat(400.0)).all();
     let level = match is_around || near {
         true => DVec2::ZERO,
-        false => DVec2::new(-columns(middle.x), -columns(middle.y)) / 2.5,
+        false => DVec2::new(-columns(middle.x), -columns(middle.y)) / Lattice::OCC3D.per_m(),
     };
     let is_at_height = all.low.z < Window::MAX_M[2] && all.high.z > Window::MIN_M[2];
     let up = if is_at_height { 0.0 } else { -all.low.z };
@@ -330,8 +330,8 @@ fn extent(all: &Bounds) -> (Extent, DVec3) {
     let fits = low.cmpge(window.min_m().truncate()).all() && high.cmple(window.max_m().truncate()).all();
     let half = MOST_SIDE / 2;
     let side = |low: f64, high: f64| {
-        let from = ((low * 2.5).floor() as i32).clamp(-half, half - 1);
-        let to = ((high * 2.5).ceil() as i32).clamp(from + 1, half);
+        let from = ((low * Lattice::OCC3D.per_m()).floor() as i32).clamp(-half, half - 1);
+        let to = ((high * Lattice::OCC3D.per_m()).ceil() as i32).clamp(from + 1, half);
         (from, (to - from) as usize)
     };
     let ((x, nx), (y, ny)) = (side(low.x, high.x), side(low.y, high.y));

@@ -105,17 +105,17 @@ pub struct ImportedScene {
     pub notes: Vec<String>,
 }
 
-/// A scene from labels: the voxels are kept, layout, boxes and background are inferred. On a larger map they are
-/// inferred in the networks' window only.
+/// A scene from labels: the voxels are kept, layout, boxes and background are inferred. Things beside the road, and all on a
+/// larger map of Occ3D's voxels, are inferred in the networks' window only.
 pub(crate) fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobserved>) -> Scene {
-    // Boxes and things are looked for in the voxels that their rules are made for.
+    // Things are looked for in the voxels that their rules are made for.
     let known = voxels_in(&labels, labels.extent().in_lattice(Lattice::OCC3D));
     let window = known.crop(Extent::WINDOW);
-    let (layout, boxes) = (infer::layout(&window), infer::boxes(&window));
+    let layout = infer::layout(&window);
     let background = infer::background(&window, &layout);
-    let layout = match labels.extent().lattice() == Lattice::OCC3D {
-        true => layout.crop(labels.extent()),
-        false => infer::layout(&labels),
+    let (layout, boxes) = match labels.extent().lattice() == Lattice::OCC3D {
+        true => (layout.crop(labels.extent()), infer::boxes(&window)),
+        false => (infer::layout(&labels), infer::boxes(&labels)),
     };
     let inferred = Inferred {
         layout: true,
@@ -154,7 +154,8 @@ pub(crate) fn on_data_map(
     let [x_m, y_m, _] = rig.lidars.first().map_or([0.0; 3], |lidar| lidar.translation_m);
     let cameras = rig.cameras.iter_mut().map(|camera| &mut camera.translation_m);
     let lidars = rig.lidars.iter_mut().map(|lidar| &mut lidar.translation_m);
-    for at in cameras.chain(lidars).chain([&mut rig.ego_center_m]) {
+    let radars = rig.radars.iter_mut().map(|radar| &mut radar.translation_m);
+    for at in cameras.chain(lidars).chain(radars).chain([&mut rig.ego_center_m]) {
         at[0] -= x_m;
         at[1] -= y_m;
     }

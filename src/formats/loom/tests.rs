@@ -49,7 +49,12 @@ pub(super) fn sample(version: u32) -> Scene {
     frame.occupancy.set(1, 2, 3, Class::Manmade.id());
     frame.time_s = 1.0 / 3.0;
     let name = format!("version {version}");
-    let mut scene = Scene::single(&name, frame, Arc::new(SensorRig::default()), u64::MAX);
+    // The files are older than radars.
+    let rig = SensorRig {
+        radars: Vec::new(),
+        ..SensorRig::default()
+    };
+    let mut scene = Scene::single(&name, frame, Arc::new(rig), u64::MAX);
     scene.prompt = "night, rain".into();
     scene.words = Arc::new(vec!["a street at night".into()]);
     // Versions 1 and 2 had the prompt alone; version 3 says what it means, and more.

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use glam::DVec3;
-use scene::{Class, Extent, Pose, Window};
+use scene::{Class, Extent, Lattice, Pose, Window};
 
 use super::{DataCells, Physical};
 
@@ -127,7 +127,7 @@ impl<'a> VoxelVotes<'a> {
         let corners = lattice.corners_m().map(|corner| ego_from_lattice.apply(corner));
         let low = corners.iter().fold(corners[0], |low, c| low.min(*c));
         let high = corners.iter().fold(corners[0], |high, c| high.max(*c));
-        let columns = |v: f64| (v * 2.5).floor() as i32;
+        let columns = |v: f64| (v * Lattice::OCC3D.per_m()).floor() as i32;
         let from = [low.x, low.y].map(columns);
         let size = [high.x, high.y].map(columns);
         let size = [0, 1].map(|axis| (size[axis] - from[axis] + 1) as usize);

@@ -178,7 +178,7 @@ fn beside(line: &[DVec2], offset_m: f64) -> Vec<DVec2> {
 /// The mark on a lane's edge at a point, told by the layers around it.
 fn edge(layout: &BevLayout, at_m: DVec2) -> LaneEdgeMark {
     let extent = layout.extent();
-    let reach = (NEAR_M * 2.5).round() as i64;
+    let reach = (NEAR_M * extent.lattice().per_m()).round() as i64;
     let Some([x, y]) = extent.column_at(at_m.x, at_m.y) else {
         return LaneEdgeMark::Nothing;
     };

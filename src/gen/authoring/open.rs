@@ -133,7 +133,11 @@ impl Placement {
         let Some([length_m, width_m]) = self.size_m else {
             return Extent::WINDOW;
         };
-        let columns = |m: f64| (m * 2.5).round().clamp(1.0, Extent::MAX_SIDE as f64) as usize;
+        let columns = |m: f64| {
+            (m * Lattice::OCC3D.per_m())
+                .round()
+                .clamp(1.0, Extent::MAX_SIDE as f64) as usize
+        };
         let (nx, ny) = (columns(length_m), columns(width_m));
         let behind = columns((length_m / 2.0).min(BEHIND_M)) as i32;
         Extent::new([-behind, -(ny as i32 / 2)], [nx, ny]).unwrap_or(Extent::WINDOW)

@@ -8,6 +8,7 @@ use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
 use nets::pieces::pieces;
 use nets::refiner::{Refiner, Rough};
 use nets::{CHANNELS, CellRect, DecoderInput, OccModels};
+use nn::Ops;
 use numeric::philox::{Stream, normal};
 use scene::VoxelGrid;
 
@@ -17,8 +18,8 @@ const AROUND: usize = 2;
 
 /// Decodes some cells of a coarse latent (50x50x8) with `input` for the decoder, and refines them in `steps` steps.
 /// With 0 steps, or without a fine network, it only decodes. All other cells stay free.
-pub fn decode_refined(
-    models: &OccModels,
+pub fn decode_refined<B: Ops + Clone>(
+    models: &OccModels<B>,
     latent: &[f32],
     cells: &[bool],
     input: DecoderInput<'_>,
@@ -85,12 +86,12 @@ pub fn decode_refined(
 }
 
 /// The network as a sampler sees it.
-struct Refining<'a> {
-    net: &'a Refiner,
+struct Refining<'a, B: Ops> {
+    net: &'a Refiner<B>,
     rough: Rough<'a>,
 }
 
-impl Denoiser for Refining<'_> {
+impl<B: Ops + Clone> Denoiser for Refining<'_, B> {
     type Error = GenError;
 
     fn predict(&mut self, x: &[f64], t: f64, _: Branch) -> Result<Vec<f64>, GenError> {

@@ -1,14 +1,13 @@
 //! Runs all suites one after another and writes their figures as Markdown: `docs/figures.md` is made of it.
 
 use std::fmt::Write;
-use std::path::Path;
 use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use crate::MeasurementProgress;
 use crate::origin::Origin;
 use crate::suite::{Options, Suite, SuiteReport};
+use calibration::MeasurementProgress;
 
 /// A figure of a suite.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,16 +81,6 @@ fn rows(suite: &Suite, report: &SuiteReport) -> Vec<FigureRow> {
     shown.chain(bars).collect()
 }
 
-/// A path as reports show it: the file's name alone for an absolute path, since folders of this machine do not belong
-/// there.
-pub(crate) fn told(path: &Path) -> String {
-    let name = path.file_name().filter(|_| path.is_absolute());
-    name.map_or_else(
-        || path.display().to_string(),
-        |name| name.to_string_lossy().into_owned(),
-    )
-}
-
 /// The command line that runs a suite alone; names the options that differ from the defaults.
 fn command(suite: &Suite, options: &Options) -> String {
     let usual = Options::default();
@@ -118,7 +107,7 @@ fn command(suite: &Suite, options: &Options) -> String {
         ("weights", &options.weights),
     ] {
         if let Some(path) = path {
-            let _ = write!(out, " --{name} {}", told(path));
+            let _ = write!(out, " --{name} {}", calibration::machine::told(path));
         }
     }
     if !options.presets.is_empty() {

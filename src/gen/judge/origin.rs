@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::Serialize;
 
-use crate::machine;
+use calibration::machine;
 
 /// Heading of a list of figures.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 pub use crate::options::Options;
 
-use crate::MeasurementProgress;
-use crate::held_out::TEST_SEED;
+use calibration::MeasurementProgress;
+use calibration::held_out::TEST_SEED;
 use metrics::stats::mean_ci95;
 
 /// One bar: name, figure, the least it should be.

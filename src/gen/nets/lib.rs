@@ -43,6 +43,7 @@ pub use refiner::Refiner;
 pub use time_decoder::{TimeDecoder, TimeDecoderConfig};
 
 use nn::weights::{self, WeightFile, WeightsError};
+use nn::{Cpu, Ops};
 
 /// File names of the two networks.
 pub const FILES: [&str; 2] = ["occ_vae.safetensors", "occ_dit.safetensors"];
@@ -68,14 +69,15 @@ pub struct ModelCard {
     pub hashes: [u64; 3],
 }
 
-/// The two networks, which belong together: the DiT knows only this VAE's latents.
-pub struct OccModels {
+/// The two networks, which belong together: the DiT knows only this VAE's latents. Whoever makes them chooses the backend; the
+/// program computes on the processor.
+pub struct OccModels<B: Ops = Cpu> {
     /// Labels to latents and back.
-    pub vae: OccVae,
+    pub vae: OccVae<B>,
     /// Latents from noise and a layout.
-    pub dit: OccDit,
+    pub dit: OccDit<B>,
     /// The fine stage; a folder of weights may lack it.
-    pub refiner: Option<Arc<Refiner>>,
+    pub refiner: Option<Arc<Refiner<B>>>,
     /// Names and hashes of the weights.
     pub card: ModelCard,
 }
@@ -88,6 +90,7 @@ impl OccModels {
             return Ok(models.clone());
         }
         let models = Self::parse(
+            Cpu,
             assets::weights::OCC_VAE,
             assets::weights::OCC_DIT,
             Some(Refiner::bundled()?),
@@ -113,10 +116,24 @@ impl OccModels {
             }
             false => None,
         };
-        Ok(Arc::new(Self::parse(&vae?, &dit?, refiner)?))
+        Ok(Arc::new(Self::parse(Cpu, &vae?, &dit?, refiner)?))
+    }
+}
+
+impl<B: Ops + Clone> OccModels<B> {
+    /// The weights that ship with the program, loaded onto a backend; not kept.
+    pub fn on(ops: B) -> Result<Self, WeightsError> {
+        let file = WeightFile::parse(refiner::FILE, assets::weights::REFINER)?;
+        let refiner = Refiner::on(ops.clone(), file, fine_file()?)?;
+        Self::parse(
+            ops,
+            assets::weights::OCC_VAE,
+            assets::weights::OCC_DIT,
+            Some(Arc::new(refiner)),
+        )
     }
 
-    fn parse(vae: &[u8], dit: &[u8], refiner: Option<Arc<Refiner>>) -> Result<Self, WeightsError> {
+    fn parse(ops: B, vae: &[u8], dit: &[u8], refiner: Option<Arc<Refiner<B>>>) -> Result<Self, WeightsError> {
         let (vae, dit) = (
             WeightFile::parse(FILES[0], vae)?,
             WeightFile::parse(FILES[1], dit)?,
@@ -142,7 +159,7 @@ impl OccModels {
         }
         let expected = [SIDE, CHANNELS];
         let vae_name = vae.name().to_owned();
-        let vae = OccVae::new(vae)?;
+        let vae = OccVae::on(ops.clone(), vae)?;
         let found = [vae.config().side(), vae.config().latent];
         if found != expected {
             return Err(dit.config_error(
@@ -152,12 +169,14 @@ impl OccModels {
         }
         Ok(Self {
             vae,
-            dit: OccDit::new(dit)?,
+            dit: OccDit::on(ops, dit)?,
             refiner,
             card,
         })
     }
+}
 
+impl OccModels {
     /// Tokens of a whole map.
     pub const TOKENS: usize = occ_dit::TOKENS;
 }

@@ -28,6 +28,7 @@ pub mod perspective;
 pub mod picture_hints;
 mod plots;
 pub mod project;
+pub mod radar;
 pub mod raycast;
 pub mod rays;
 pub mod road_exits;

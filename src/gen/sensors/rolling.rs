@@ -14,7 +14,7 @@ use scene::{LidarSweep, Scene, SceneBox};
 /// Parts of a revolution. While one of them is swept, things stand still and the own vehicle drives straight on.
 const PARTS: u32 = 8;
 /// Distance by which a voxel may stick out of its box, m: one voxel.
-const AROUND_M: f64 = 0.4;
+const AROUND_M: f64 = scene::Lattice::OCC3D.voxel_m();
 
 /// The exact sweep of a scene's first LiDAR ([`lidar::rig_sweep`]) with returns on the shapes of boxes ([`onto_shapes`]), as
 /// [`sweep`] makes it; empty if the rig has none.
@@ -101,9 +101,12 @@ fn at(scene: &Scene, time_s: f64) -> Scene {
     then
 }
 
-/// Gives points on moving boxes the velocity of the box.
+/// Gives points on moving boxes the velocity of the box. In a clip everything stands that has no motion of its own, whatever its
+/// label says.
 fn tell_velocity(sweep: &mut LidarSweep, scene: &Scene) {
-    let moving = |b: &&SceneBox| b.velocity_mps != DVec2::ZERO;
+    let clip = scene.clip();
+    let moves = |b: &SceneBox| clip.stands() || clip.tracks.contains_key(&b.id);
+    let moving = |b: &&SceneBox| b.velocity_mps != DVec2::ZERO && moves(b);
     let boxes: Vec<&SceneBox> = scene.frame().boxes.values().filter(moving).collect();
     if boxes.is_empty() {
         return;

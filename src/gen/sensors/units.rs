@@ -1,7 +1,10 @@
 //! Voxel units of one map with its corner computed once, for work that is done for every ray.
 
 use glam::{DVec2, DVec3};
-use scene::Extent;
+use scene::{Extent, Lattice};
+
+/// Voxels in a metre.
+const PER_M: f64 = Lattice::OCC3D.per_m();
 
 /// Conversions between m and voxel units, bit for bit those of [`Extent`].
 #[derive(Clone, Copy, Debug)]
@@ -31,19 +34,19 @@ impl Units {
     /// See [`Extent::to_voxel_units`].
     #[inline]
     pub fn to_voxels(self, p_in_ego: DVec3) -> DVec3 {
-        (p_in_ego - self.min_m) * 2.5
+        (p_in_ego - self.min_m) * PER_M
     }
 
     /// See [`Extent::from_voxel_units`].
     #[inline]
     pub fn to_ego(self, u: DVec3) -> DVec3 {
-        u / 2.5 + self.min_m
+        u / PER_M + self.min_m
     }
 
     /// Place in arrays `[x][y]` of the column under a point of the ego frame; `None` outside or for NaN.
     #[inline]
     pub fn index_at(self, p: DVec2) -> Option<usize> {
-        let u = (p - self.min_m.truncate()) * 2.5;
+        let u = (p - self.min_m.truncate()) * PER_M;
         let inside = u.cmpge(DVec2::ZERO).all() && u.cmplt(self.size).all();
         inside.then(|| u.x as usize * self.ny + u.y as usize)
     }

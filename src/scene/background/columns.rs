@@ -11,7 +11,7 @@ use crate::{BevLayout, Class};
 pub type ColumnLabels = BTreeMap<[usize; 2], Vec<u8>>;
 
 impl Thing {
-    /// Its voxels in the convention of the lattice, from the bin of the ground upward, on the relief of a layout of the same
+    /// Its voxels in the convention of the lattice, from the ground upward, on the relief of a layout of the same
     /// frame.
     pub fn columns(&self, layout: &BevLayout) -> ColumnLabels {
         let mut solids = Vec::new();
@@ -33,7 +33,7 @@ impl Thing {
         }
         for ([x, y], column) in &mut columns {
             smear_down(column, lattice.lowered());
-            column[..ground_bin(layout, *x, *y)].fill(Class::FREE);
+            column[..lattice.foot_bin(ground_bin(layout, *x, *y))].fill(Class::FREE);
         }
         columns
     }

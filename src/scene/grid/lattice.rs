@@ -145,6 +145,13 @@ impl Lattice {
     pub fn ground_bin(&self, height_m: f64) -> usize {
         self.bin(height_m).saturating_sub(self.lowered())
     }
+
+    /// Lowest bin of what stands on ground in a bin, cut to the lattice: the ground's own where labels let it down, in Occ3D
+    /// things take the place of the ground; the one above it where labels are where things are.
+    pub fn foot_bin(&self, ground_bin: usize) -> usize {
+        let above = usize::from(self.lowered() == 0);
+        (ground_bin + above).min(self.bins() - 1)
+    }
 }
 
 #[cfg(test)]
@@ -163,6 +170,7 @@ mod tests {
         let b = Lattice::new(0.2, 40, -5.0).expect("OpenOccupancy");
         assert_eq!((b.voxel_m(), b.per_m(), b.top_m()), (0.2, 5.0, 3.0));
         assert_eq!((b.bin(0.0), b.ground_bin(0.0)), (25, 25));
+        assert_eq!((a.foot_bin(0), b.foot_bin(25), b.foot_bin(39)), (0, 26, 39));
         assert_eq!((a.ground_top_m(), b.ground_top_m()), (-0.6, 0.2));
         let high = Lattice::new(0.25, 64, -4.0).expect("as high as can be");
         assert_eq!((high.all_bins(), high.top_m()), (u64::MAX, 12.0));

@@ -5,14 +5,16 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
+use crate::support::neighbours;
 use crate::{BoxId, BoxLabel, Class, Extent, Frame, Lattice, Relief, SceneBox, VoxelGrid, Window};
 
-/// Fewest voxels of a component that is worth a box.
-const LEAST_VOXELS: usize = 4;
+/// Fewest voxels of a component that is worth a box, in voxels of 0.4 m; as much area in others.
+const LEAST_VOXELS: f64 = 4.0;
 /// A component this many times as long or wide as the class usually is holds several objects.
 const SEVERAL: f64 = 1.6;
-/// Objects are two voxels taller in these labels than they are: the ground lies in bin 0.
-const SMEAR_M: f64 = 2.0 * Window::VOXEL_M;
+/// Mean height by which the top of a voxel is above the object in it, voxels: [`crate::draft`] fills a voxel of which the object
+/// reaches a sixth.
+const ABOVE: f64 = 1.0 / 3.0;
 
 /// A box for every object in the labels, [`Frame::MAX_BOXES`] at most. Which end of it is the front is a guess.
 pub fn boxes(labels: &VoxelGrid) -> BTreeMap<BoxId, SceneBox> {
@@ -40,66 +42,81 @@ pub fn boxes_around(extent: Extent, class: Class, voxels: &[[usize; 3]]) -> Vec<
     let mut columns: Vec<[usize; 2]> = voxels.iter().map(|&[x, y, _]| [x, y]).collect();
     columns.sort_unstable();
     columns.dedup();
-    // As the labels of Occ3D have it, whose bin of the same height counts.
-    let top =
-        |z: usize| Lattice::OCC3D.bin(extent.center(0, 0, z).z + (extent.voxel_m() - Window::VOXEL_M) / 2.0);
+    let Some(top) = voxels.iter().map(|v| v[2]).max() else {
+        return Vec::new();
+    };
     let component = Component {
         points_m: columns
             .iter()
             .map(|&[x, y]| extent.center(x, y, 0).truncate())
             .collect(),
-        top: voxels.iter().map(|v| v[2]).max().map_or(0, top),
+        voxel_m: extent.voxel_m(),
+        height_m: height_m(extent.lattice(), top, 0.0),
     };
-    if component.points_m.is_empty() {
-        return Vec::new();
-    }
     let parts = split(class, &component).into_iter().zip(1..);
     parts.map(|(part, id)| part.to_box(BoxId(id), class)).collect()
 }
 
-/// Columns of one object: centres on the ground and the highest voxel, counted from the bin of the ground.
+/// Columns of one object.
 struct Component {
+    /// Their centres on the ground.
     points_m: Vec<DVec2>,
-    top: usize,
+    /// Edge of a column, m.
+    voxel_m: f64,
+    /// Height of the highest voxel above the ground, m.
+    height_m: f64,
+}
+
+/// Height of an object above ground of some height, from its highest bin, m.
+fn height_m(lattice: Lattice, top: usize, ground_m: f64) -> f64 {
+    let voxel_m = lattice.voxel_m();
+    match lattice.lowered() {
+        0 => lattice.bottom_m() + (top as f64 + 1.0 - ABOVE) * voxel_m - ground_m,
+        // Objects are taller in such labels than they are: they reach down to the ground.
+        by => {
+            let above = top.saturating_sub(lattice.ground_bin(ground_m));
+            (above + 1) as f64 * voxel_m - by as f64 * voxel_m
+        }
+    }
 }
 
 /// Connected columns (8 neighbours) that hold a class; small ones are left out.
 fn components(labels: &VoxelGrid, class: Class, relief: &Relief) -> Vec<Component> {
-    let height = |c: usize| {
-        let column = labels.column(c / Window::NY, c % Window::NY);
-        let top = column.iter().rposition(|l| *l == class.id())?;
-        Some(top.saturating_sub(Lattice::OCC3D.ground_bin(relief.column_m(c / Window::NY, c % Window::NY))))
-    };
-    let voxels = |c: usize| {
-        let column = labels.column(c / Window::NY, c % Window::NY);
-        column.iter().filter(|l| **l == class.id()).count()
-    };
-    let mut seen = vec![false; Window::COLUMNS];
+    let extent = labels.extent();
+    // Number of voxels of the class in each column, and the highest.
+    let mut held = vec![(0u8, 0u8); extent.columns()];
+    for (x, y, z, _) in labels.iter_set().filter(|v| v.3 == class.id()) {
+        let (count, top) = &mut held[extent.index(x, y)];
+        (*count, *top) = (*count + 1, (*top).max(z as u8));
+    }
+    let least = (LEAST_VOXELS * (Window::VOXEL_M / extent.voxel_m()).powi(2)).ceil() as usize;
+    let mut seen = vec![false; held.len()];
     let mut out = Vec::new();
-    for start in 0..Window::COLUMNS {
-        if seen[start] || height(start).is_none() {
+    for start in 0..held.len() {
+        if seen[start] || held[start].0 == 0 {
             continue;
         }
         seen[start] = true;
         let mut part = vec![start];
         let mut next = 0;
         while next < part.len() {
-            let (x, y) = (part[next] / Window::NY, part[next] % Window::NY);
+            let near = neighbours(extent, part[next]);
+            part.extend(near.filter(|near| held[*near].0 > 0 && !std::mem::replace(&mut seen[*near], true)));
             next += 1;
-            for x in x.saturating_sub(1)..=(x + 1).min(Window::NX - 1) {
-                for y in y.saturating_sub(1)..=(y + 1).min(Window::NY - 1) {
-                    let near = x * Window::NY + y;
-                    if height(near).is_some() && !std::mem::replace(&mut seen[near], true) {
-                        part.push(near);
-                    }
-                }
-            }
         }
-        if part.iter().map(|c| voxels(*c)).sum::<usize>() >= LEAST_VOXELS {
-            let center = |c: &usize| Window::center(c / Window::NY, c % Window::NY, 0).truncate();
+        if part.iter().map(|c| usize::from(held[*c].0)).sum::<usize>() >= least {
+            let point = |c: &usize| {
+                let [x, y] = extent.column(*c);
+                extent.center(x, y, 0).truncate()
+            };
+            let height = |c: &usize| {
+                let [x, y] = extent.column(*c);
+                height_m(extent.lattice(), held[*c].1.into(), relief.column_m(x, y))
+            };
             out.push(Component {
-                points_m: part.iter().map(center).collect(),
-                top: part.iter().filter_map(|c| height(*c)).max().unwrap_or(0),
+                points_m: part.iter().map(point).collect(),
+                voxel_m: extent.voxel_m(),
+                height_m: part.iter().map(height).fold(0.0, f64::max),
             });
         }
     }
@@ -136,19 +153,19 @@ const FILLED: f64 = 0.7;
 /// Centre, length, width and heading of the rectangle around the columns; length is the longer side. The
 /// heading is that of least area, by trying headings a degree apart; where the columns fill it, their
 /// second moments tell it more exactly.
-fn around(points: &[DVec2]) -> (DVec2, DVec2, f64) {
+fn around(points: &[DVec2], voxel_m: f64) -> (DVec2, DVec2, f64) {
     let headings = (0..90).map(|degree| f64::from(degree).to_radians());
     let least = |yaw: &f64| {
-        let (_, size) = extent(points, *yaw);
+        let (_, size) = extent(points, *yaw, voxel_m);
         size.x * size.y
     };
     let mut yaw = headings
         .min_by(|a, b| least(a).total_cmp(&least(b)))
         .unwrap_or(0.0);
-    if points.len() as f64 * Window::VOXEL_M.powi(2) > FILLED * least(&yaw) {
+    if points.len() as f64 * voxel_m.powi(2) > FILLED * least(&yaw) {
         yaw = heading_of_moments(points);
     }
-    let (center, size) = extent(points, yaw);
+    let (center, size) = extent(points, yaw, voxel_m);
     if size.x >= size.y {
         (center, size, yaw)
     } else {
@@ -161,7 +178,7 @@ fn around(points: &[DVec2]) -> (DVec2, DVec2, f64) {
 }
 
 /// Centre and size of the rectangle of that heading. Half a column more on every side than the centres.
-fn extent(points: &[DVec2], yaw: f64) -> (DVec2, DVec2) {
+fn extent(points: &[DVec2], yaw: f64, voxel_m: f64) -> (DVec2, DVec2) {
     let along = DVec2::from_angle(yaw);
     let local = points
         .iter()
@@ -172,7 +189,7 @@ fn extent(points: &[DVec2], yaw: f64) -> (DVec2, DVec2) {
     let middle = (low + high) / 2.0;
     (
         along * middle.x + along.perp() * middle.y,
-        high - low + DVec2::splat(Window::VOXEL_M),
+        high - low + DVec2::splat(voxel_m),
     )
 }
 
@@ -198,7 +215,7 @@ fn split(class: Class, component: &Component) -> Vec<BoxFootprint> {
     } else {
         typical.truncate()
     };
-    let (center, size, yaw) = around(&component.points_m);
+    let (center, size, yaw) = around(&component.points_m, component.voxel_m);
     let along = DVec2::from_angle(yaw);
     let count = |size: f64, usual: f64| {
         if size > usual * SEVERAL {
@@ -208,10 +225,9 @@ fn split(class: Class, component: &Component) -> Vec<BoxFootprint> {
         }
     };
     // Cells of an object: at least a voxel each way, so that small things are not cut to crumbs.
-    let cell = usual.max(DVec2::splat(2.0 * Window::VOXEL_M));
+    let cell = usual.max(DVec2::splat(2.0 * component.voxel_m));
     let (columns, rows) = (count(size.x, cell.x), count(size.y, cell.y));
-    let height_m =
-        ((component.top + 1) as f64 * Window::VOXEL_M - SMEAR_M).clamp(0.5 * typical.z, 2.0 * typical.z);
+    let height_m = component.height_m.clamp(0.5 * typical.z, 2.0 * typical.z);
     let mut out = Vec::new();
     for i in 0..columns as usize {
         for j in 0..rows as usize {
@@ -277,7 +293,7 @@ mod tests {
     fn painted(objects: &[SceneBox]) -> VoxelGrid {
         let mut labels = VoxelGrid::new();
         for b in objects {
-            let top = ((b.size_m.z + SMEAR_M) / Window::VOXEL_M).round() as usize;
+            let top = (b.size_m.z / Window::VOXEL_M).round() as usize + 2;
             box_cells(crate::Extent::WINDOW, b, 0.0, |x, y| {
                 (0..top).for_each(|z| labels.set(x, y, z, b.class.id()))
             });
@@ -358,5 +374,34 @@ mod tests {
             (2, 1, 3)
         );
         assert!(found.values().all(|b| b.size_m.truncate().max_element() < 1.6));
+    }
+
+    #[test]
+    fn boxes_have_the_heights_of_finer_voxels() {
+        let lattice = Lattice::new(0.2, 40, -3.2).expect("sound");
+        let extent = Extent::over(lattice, [-100, -100], [200, 200]).expect("sound");
+        let mut layout = crate::BevLayout::over(extent);
+        for [x, y] in extent.all_columns() {
+            layout.set(crate::BevLayer::DrivableArea, x, y, true);
+        }
+        let truth = [
+            object(Class::Car, 8.0, 3.0, 20.0),
+            object(Class::Pedestrian, -5.0, 2.0, 0.0),
+        ];
+        let labels = crate::draft::draft(&layout, truth.iter());
+        let found: Vec<SceneBox> = boxes(&labels).into_values().collect();
+        assert_eq!(found.len(), 2);
+        for (one, truth) in found.iter().zip(&truth) {
+            assert_eq!(one.class, truth.class);
+            let off = (one.size_m.z - truth.size_m.z).abs();
+            assert!(
+                off < 0.15,
+                "{:?}: {} for {}",
+                one.class,
+                one.size_m.z,
+                truth.size_m.z
+            );
+            assert!(one.center_m.distance(truth.center_m) < 0.3, "{}", one.center_m);
+        }
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::{BevLayer, BevLayout, Class, Extent, VoxelGrid};
 
-/// Columns around a gap that must be road on opposite sides for it to be road: 3.2 m bridges a car's width.
-const REACH: usize = 8;
+/// Distance from a gap within which road must be on opposite sides for it to be road, m: bridges a car's width.
+const REACH_M: f64 = 3.2;
 
 /// Drivable area from driveable surface and walkways from sidewalk. Objects hide the ground that they
 /// stand on, and labels have holes: a column without ground that has the same ground on two opposite
@@ -37,8 +37,9 @@ fn columns(labels: &VoxelGrid) -> impl Iterator<Item = &[u8]> {
 /// True if something set lies on both sides along x, along y or along a diagonal.
 fn between(extent: Extent, seen: &[bool], x: usize, y: usize) -> bool {
     let [nx, ny] = [extent.nx(), extent.ny()].map(|n| n as isize);
+    let reach = (REACH_M * extent.lattice().per_m()).round() as isize;
     let meets = |dx: isize, dy: isize| {
-        (1..=REACH as isize).any(|i| {
+        (1..=reach).any(|i| {
             let (x, y) = (x as isize + i * dx, y as isize + i * dy);
             let inside = (0..nx).contains(&x) && (0..ny).contains(&y);
             inside && seen[extent.index(x as usize, y as usize)]

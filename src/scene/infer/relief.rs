@@ -6,9 +6,9 @@ use crate::{Class, Extent, Relief, VoxelGrid};
 const UNEVEN_SHARE: f64 = 0.03;
 /// Height of a kerb, m: a sidewalk lies so much above the road beside it.
 const KERB_M: f32 = 0.2;
-/// Passes and radius of the smoothing that turns bins of 0.4 m into slopes, columns.
+/// Passes and radius, m, of the smoothing that turns bins into slopes.
 const PASSES: usize = 3;
-const RADIUS: usize = 3;
+const RADIUS_M: f64 = 1.2;
 
 /// Heights of the ground, m; [`Relief::FLAT`] where all of it lies in the bins of flat ground.
 pub fn relief(labels: &VoxelGrid) -> Relief {
@@ -75,11 +75,12 @@ fn filled(cells: &[f32], nx: usize, ny: usize) -> Vec<f32> {
 /// Means over a square around each column.
 fn blurred(extent: Extent, heights: &[f32]) -> Vec<f32> {
     let (nx, ny) = (extent.nx(), extent.ny());
+    let radius = (RADIUS_M * extent.lattice().per_m()).round() as usize;
     let along = |values: &[f32], stride: usize, n: usize, place: &dyn Fn(usize) -> usize| -> Vec<f32> {
         (0..values.len())
             .map(|i| {
                 let at = place(i);
-                let (from, to) = (at.saturating_sub(RADIUS), (at + RADIUS).min(n - 1));
+                let (from, to) = (at.saturating_sub(radius), (at + radius).min(n - 1));
                 let sum: f32 = (from..=to).map(|k| values[i - at * stride + k * stride]).sum();
                 sum / (to - from + 1) as f32
             })

@@ -29,7 +29,7 @@ const MOST_PIXELS: u64 = 40_000_000;
 #[serde(deny_unknown_fields)]
 pub struct Render {
     /// Kinds of output: `bev` is the map and the voxels from above, `view` the 3D view (needs a graphics driver),
-    /// `lidar` the points of a sweep; the others are what cameras see, `appearance` as a photograph.
+    /// `lidar` the points of a sweep, `radar` the returns of all radars; the others are what cameras see, `appearance` as a photograph.
     #[schemars(schema_with = "names::what")]
     what: Vec<String>,
     /// Names of cameras, as `state` lists them; all of them if left out.
@@ -82,6 +82,8 @@ pub struct RenderReceipt {
     files: Vec<FileEntry>,
     /// Rays of the LiDAR and points that came back, if it was asked for.
     lidar: Option<[usize; 2]>,
+    /// Returns of all radars, if they were asked for.
+    radar: Option<usize>,
     /// Time by kind, s.
     wall_s: BTreeMap<String, f64>,
     /// The moment that they show, s.
@@ -109,7 +111,7 @@ impl Render {
         let kinds = self
             .what
             .iter()
-            .filter(|w| !["bev", "view", "lidar"].contains(&w.as_str()));
+            .filter(|w| !["bev", "view", "lidar", "radar"].contains(&w.as_str()));
         let pictures = (kinds.count() * cameras) as u64;
         let [width, height] = self.size.map(u64::from);
         let pixels = (width * height).saturating_mul(pictures);
@@ -160,7 +162,7 @@ fn small(picture: RgbaPicture) -> Option<Vec<u8>> {
 
 impl Operation for Render {
     const NAME: &'static str = "render";
-    const ABOUT: &'static str = "Renders what cameras and LiDAR of the ego vehicle see at the moment that is shown, or the map from above, and writes PNG pictures and data into a folder. Over MCP the first picture comes with the answer, at most 640 pixels wide. Look at bev to see where things are. Files that are there are written over only with replace: call again with it, or name another folder.";
+    const ABOUT: &'static str = "Renders what cameras, LiDAR and radars of the ego vehicle see at the moment that is shown, or the map from above, and writes PNG pictures and data into a folder. Over MCP the first picture comes with the answer, at most 640 pixels wide. Look at bev to see where things are. Files that are there are written over only with replace: call again with it, or name another folder.";
     const EXAMPLE: &'static str = r#"{"what": ["bev", "semantic"], "cameras": ["CAM_FRONT"], "size": [480, 270], "folder": "pictures", "replace": true}"#;
     const CHANGES: bool = false;
     type Receipt = RenderReceipt;
@@ -208,6 +210,7 @@ impl Operation for Render {
                 .folder
                 .publish(staging.path(), (&self.folder, None), self.replace)?,
             lidar: made.lidar,
+            radar: made.radar,
             wall_s: wall_s.collect(),
             time_s: scene.time_s(),
             revision: desk.number(scene.content()),
@@ -244,7 +247,7 @@ mod tests {
                 .is_err()
         );
         assert!(
-            of(&["bev", "view", "lidar"], [8192, 8192])
+            of(&["bev", "view", "lidar", "radar"], [8192, 8192])
                 .check_pixels(6)
                 .is_ok()
         );

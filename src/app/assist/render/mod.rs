@@ -19,13 +19,14 @@ use scene::{Scene, TimeOfDay, Weather};
 use sensors::appearance::Quality;
 use sensors::cameras::{self, CameraInput, Card, Detail, PreparedSource, RenderOptions, SourceId};
 use sensors::painter::PaintWith;
+use sensors::radar;
 
 pub use forecast::{Listen, RenderProgress};
 use plan::{Cameras, RenderPlan};
 use write::Writer;
 
 /// Kinds of output besides the views of cameras.
-const OTHERS: [&str; 4] = ["truth", "lidar", "bev", "view"];
+const OTHERS: [&str; 5] = ["truth", "lidar", "radar", "bev", "view"];
 
 /// Options of a rendering.
 #[derive(Clone, Debug)]
@@ -57,6 +58,8 @@ pub struct RenderedFiles {
     pub wall_s: BTreeMap<&'static str, f64>,
     /// Rays and returns of the LiDAR, if it was asked for.
     pub lidar: Option<[usize; 2]>,
+    /// Returns of all radars, if they were asked for.
+    pub radar: Option<usize>,
     /// One of the pictures, to be looked at.
     pub first: Option<RgbaPicture>,
 }
@@ -169,7 +172,7 @@ impl Rendering {
             let time_s = self.truth(scene, &mut writer, &mut made)?;
             out.wall_s.insert("truth", time_s);
         }
-        if plan.truth || !plan.cameras.is_empty() || plan.lidar.is_some() {
+        if plan.truth || !plan.cameras.is_empty() || plan.lidar.is_some() || plan.radar {
             writer.calibration(of_file, &frame.world_from_ego, self.size)?;
         }
         if let Some(model) = &plan.lidar {
@@ -177,7 +180,14 @@ impl Rendering {
             let sweep = model.sweep(scene)?;
             out.wall_s.insert("lidar", start.elapsed().as_secs_f64());
             out.lidar = Some([sweep.rays, sweep.points.len()]);
-            writer.lidar(frame.extent(), &sweep)?;
+            writer.lidar(frame, &sweep)?;
+        }
+        if plan.radar {
+            let start = Instant::now();
+            let scans = radar::scans(scene);
+            out.wall_s.insert("radar", start.elapsed().as_secs_f64());
+            out.radar = Some(scans.iter().map(|scan| scan.returns.len()).sum());
+            writer.radar(frame, &scans)?;
         }
         if plan.bev {
             let start = Instant::now();

@@ -36,6 +36,8 @@ pub struct RenderPlan {
     pub cameras: Vec<Cameras>,
     /// The sweep.
     pub lidar: Option<LoadedLidarModel>,
+    /// The scans of all radars.
+    pub radar: bool,
     /// Pictures with the truth about them.
     pub truth: bool,
     /// Pictures from above.
@@ -75,9 +77,13 @@ impl RenderPlan {
         let lidar = wants("lidar")
             .then(|| LoadedLidarModel::from_request(wanted, scene))
             .transpose()?;
+        if wants("radar") && scene.rig.radars.is_empty() {
+            bail!("the rig {:?} has no radar", scene.rig.name);
+        }
         Ok(Self {
             cameras,
             lidar,
+            radar: wants("radar"),
             truth,
             bev: wants("bev"),
             view: wants("view").then(View3d::new).transpose()?,

@@ -10,7 +10,9 @@ use formats::npz::{self, Array, NpzValues};
 use formats::out_folder::OutFolder;
 use formats::recipe::Recipe;
 use formats::{calibration, multi_plane, png};
-use scene::{CameraMaps, Extent, LidarSweep, MultiPlaneImage, PerspectiveMap, Pose, Scene};
+use scene::{
+    CameraMaps, Frame, LidarSweep, MultiPlaneImage, PerspectiveMap, Pose, RadarReturn, RadarScan, Scene,
+};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, SourceView, ViewId};
 use sensors::color;
@@ -215,9 +217,50 @@ impl Writer {
         self.picture(&format!("{}_mpi.png", image.camera), &picture::plane_sheet(image))
     }
 
-    /// Points, and a picture of the map from above.
-    pub fn lidar(&mut self, extent: Extent, sweep: &LidarSweep) -> anyhow::Result<()> {
-        self.bytes("lidar.ply", &ply::to_bytes(sweep))?;
-        self.picture("lidar.png", &picture::lidar_top(extent, sweep, 4))
+    /// Points in the ego frame, and a picture of the map from above.
+    pub fn lidar(&mut self, frame: &Frame, sweep: &LidarSweep) -> anyhow::Result<()> {
+        let mut placed = sweep.clone();
+        placed.place(&frame.world_from_ego.inverse());
+        self.bytes("lidar.ply", &ply::to_bytes(&placed))?;
+        self.picture("lidar.png", &picture::lidar_top(frame.extent(), sweep, 4))
+    }
+
+    /// Returns of all radars as arrays, places in the ego frame, and a picture of the map from above.
+    pub fn radar(&mut self, frame: &Frame, scans: &[RadarScan]) -> anyhow::Result<()> {
+        let mut placed = scans.to_vec();
+        let ego_from_world = frame.world_from_ego.inverse();
+        placed.iter_mut().for_each(|scan| scan.place(&ego_from_world));
+        let of_radar = |(i, scan): (usize, &RadarScan)| std::iter::repeat_n(i as u8, scan.returns.len());
+        let radars: Vec<u8> = placed.iter().enumerate().flat_map(of_radar).collect();
+        let returns: Vec<&RadarReturn> = placed.iter().flat_map(|scan| &scan.returns).collect();
+        let (rows, places) = ([returns.len()], [returns.len(), 3]);
+        let floats = |name, of: fn(&RadarReturn) -> f32| Array {
+            name,
+            shape: &rows,
+            values: NpzValues::F32(returns.iter().map(|one| of(one)).collect()),
+        };
+        let bytes = |name, values| Array {
+            name,
+            shape: &rows,
+            values: NpzValues::U8(values),
+        };
+        let arrays = [
+            bytes("radar", radars),
+            bytes("class", returns.iter().map(|one| one.class.id()).collect()),
+            Array {
+                name: "position_m",
+                shape: &places,
+                values: NpzValues::F32(returns.iter().flat_map(|one| one.position_m).collect()),
+            },
+            floats("range_m", |one| one.range_m),
+            floats("azimuth_rad", |one| one.azimuth_rad),
+            floats("elevation_rad", |one| one.elevation_rad.unwrap_or(f32::NAN)),
+            floats("speed_mps", |one| one.speed_mps),
+            floats("speed_over_ground_mps", |one| one.speed_over_ground_mps),
+            floats("rcs_dbsm", |one| one.rcs_dbsm),
+            floats("snr_db", |one| one.snr_db),
+        ];
+        self.bytes("radar.npz", &npz::to_bytes(&arrays)?)?;
+        self.picture("radar.png", &picture::radar_top(frame, scans, 4))
     }
 }

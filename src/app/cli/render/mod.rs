@@ -114,6 +114,7 @@ impl Render {
             "files": made.files,
             "wall_s": made.wall_s,
             "lidar": made.lidar.map(of_lidar),
+            "radar": made.radar.map(|returns| json!({ "returns": returns })),
             "peak_rss_mb": output::peak_rss_mb(),
         });
         output::report(&self.common, &report, || {

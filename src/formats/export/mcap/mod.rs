@@ -1,7 +1,7 @@
 //! A clip as MCAP with Foxglove's schemas (protobuf), for Foxglove, Rerun and others.
 //!
 //! Every moment of the clip's rate has, with its time in the clip as log time: `/tf` (`map` to `base_link`, the ego frame, and
-//! that to each sensor), `/pose`, `/markers/annotations` (boxes), `/occupancy` (voxels around the vehicle), `/lidar_top`, and
+//! that to each sensor), `/pose`, `/markers/annotations` (boxes), `/occupancy` (voxels around the vehicle), `/lidar_top`, `/NAME/points` for each radar, and
 //! for each camera `/NAME/camera_info` and `/NAME/image_rect_compressed` (`image_compressed` where its lens is no pinhole).
 //! `/drivable_area` and `/semantic_map` are there once; the recipe is metadata. Chunks are compressed by lz4.
 
@@ -15,7 +15,7 @@ use glam::{DQuat, DVec3};
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions, Writer};
 use prost::Message;
-use scene::{Camera, Lens, LidarPattern, LidarSweep, Pose, Scene, SceneBox};
+use scene::{Camera, Lens, LidarPattern, LidarSweep, Pose, RadarPattern, RadarScan, Scene, SceneBox};
 
 use super::{ExportPicture, ExportSpan, Exporter, OutFile, Product, Products};
 use crate::recipe::{self, Recipe};
@@ -30,12 +30,12 @@ use messages::{
 /// See the module.
 pub const EXPORTER: Exporter = Exporter {
     id: "mcap",
-    title: "MCAP with Foxglove schemas: frames, boxes, LiDAR, cameras, voxels, map",
+    title: "MCAP with Foxglove schemas: frames, boxes, LiDAR, radars, cameras, voxels, map",
     file_name: Some("scene.mcap"),
     holds: &[Holds::Boxes, Holds::Points, Holds::Pictures, Holds::Occupancy],
     lost: "",
     span: ExportSpan::Clip,
-    needs: &[Product::Sweep, Product::Pictures],
+    needs: &[Product::Sweep, Product::Radar, Product::Pictures],
     write: |scene, products| Ok(vec![OutFile::new("scene.mcap", to_bytes(scene, products)?)]),
 };
 
@@ -53,6 +53,7 @@ fn to_bytes(scene: &Scene, products: &mut dyn Products) -> Result<Vec<u8>, Forma
     }
     let mut log = Log::new(products.recipe())?;
     let cameras = sensor_names::cameras(&scene.rig);
+    let radars = sensor_names::radars(&scene.rig);
     let times_s = moments::times_s(scene, scene.clip().rate_hz);
     for (i, &time_s) in times_s.iter().enumerate() {
         products.show(time_s)?;
@@ -61,7 +62,11 @@ fn to_bytes(scene: &Scene, products: &mut dyn Products) -> Result<Vec<u8>, Forma
             return Err(FormatError::new(problem));
         }
         log.time_s = time_s;
-        log.put("/tf", "FrameTransforms", &transforms(&now, &cameras, log.stamp()))?;
+        log.put(
+            "/tf",
+            "FrameTransforms",
+            &transforms(&now, (&cameras, &radars), log.stamp()),
+        )?;
         let pose = PoseInFrame {
             timestamp: log.stamp(),
             frame_id: MAP.into(),
@@ -84,6 +89,17 @@ fn to_bytes(scene: &Scene, products: &mut dyn Products) -> Result<Vec<u8>, Forma
             let origin_in_ego = lidar.ego_from_sensor().translation_m;
             physical::to_physical_ground(&mut sweep, origin_in_ego, now.frame());
             log.put("/lidar_top", "PointCloud", &points(&sweep, lidar, log.stamp()))?;
+        }
+        if !radars.is_empty() {
+            let scans = products.radars()?;
+            for ((scan, radar), name) in scans.iter().zip(&now.rig.radars).zip(&radars) {
+                let message = radar_points(scan, radar, name, log.stamp());
+                log.put(
+                    &format!("/{}/points", name.to_lowercase()),
+                    "PointCloud",
+                    &message,
+                )?;
+            }
         }
         if !cameras.is_empty() {
             pictures(&mut log, products, &now, &cameras)?;
@@ -170,7 +186,11 @@ impl Log {
 }
 
 /// Where the vehicle is on the map, and where each sensor is on the vehicle.
-fn transforms(now: &Scene, cameras: &[String], timestamp: Option<Time>) -> FrameTransforms {
+fn transforms(
+    now: &Scene,
+    (cameras, radars): (&[String], &[String]),
+    timestamp: Option<Time>,
+) -> FrameTransforms {
     let one = |parent: &str, child: &str, pose: Pose| FrameTransform {
         timestamp,
         parent_frame_id: parent.into(),
@@ -183,6 +203,8 @@ fn transforms(now: &Scene, cameras: &[String], timestamp: Option<Time>) -> Frame
     transforms.extend(of_cameras.map(|(camera, name)| one(BASE, name, camera.ego_from_camera())));
     let lidar = now.rig.lidars.first();
     transforms.extend(lidar.map(|lidar| one(BASE, LIDAR, lidar.ego_from_sensor())));
+    let of_radars = now.rig.radars.iter().zip(radars);
+    transforms.extend(of_radars.map(|(radar, name)| one(BASE, name, radar.ego_from_sensor())));
     FrameTransforms { transforms }
 }
 
@@ -231,6 +253,31 @@ fn boxes(now: &Scene, timestamp: Option<Time>) -> SceneUpdate {
     SceneUpdate {
         deletions: vec![all],
         entities: now.frame().boxes.values().map(entity).collect(),
+    }
+}
+
+/// Returns in the frame of the radar; `speed` is measured, `speed_over_ground` without the own motion.
+fn radar_points(scan: &RadarScan, radar: &RadarPattern, name: &str, timestamp: Option<Time>) -> PointCloud {
+    let radar_from_ego = radar.ego_from_sensor().inverse();
+    let mut data = Vec::with_capacity(scan.returns.len() * 29);
+    for one in &scan.returns {
+        let at = radar_from_ego.apply(DVec3::from_array(one.position_m.map(f64::from)));
+        let [x, y, z] = at.as_vec3().to_array();
+        let told = [one.speed_mps, one.speed_over_ground_mps, one.rcs_dbsm, one.snr_db];
+        data.extend([x, y, z].into_iter().chain(told).flat_map(f32::to_le_bytes));
+        data.push(one.class.id());
+    }
+    let mut numbers = ["x", "y", "z", "speed", "speed_over_ground", "rcs", "snr"]
+        .map(|name| (name, Numeric::Float32))
+        .to_vec();
+    numbers.push(("class", Numeric::Uint8));
+    PointCloud {
+        timestamp,
+        frame_id: name.to_owned(),
+        pose: Some(Pose::IDENTITY.into()),
+        point_stride: 29,
+        fields: fields(&numbers),
+        data,
     }
 }
 

@@ -35,7 +35,7 @@ fn every_topic_is_there_at_every_moment() {
     scene.change_clip(|clip| clip.rate_hz = 4.0);
     let (bytes, messages) = written(&scene);
     let topics: Vec<&str> = messages.keys().map(String::as_str).collect();
-    assert_eq!(topics.len(), 7 + 2 * 6, "{topics:?}");
+    assert_eq!(topics.len(), 7 + 2 * 6 + 5, "{topics:?}");
     for (topic, list) in &messages {
         let once = ["/drivable_area", "/semantic_map"].contains(&topic.as_str());
         let times: Vec<u64> = list.iter().map(|(time_ns, _)| *time_ns).collect();
@@ -43,6 +43,15 @@ fn every_topic_is_there_at_every_moment() {
         assert_eq!(times, if once { vec![0] } else { expected }, "{topic}");
     }
     assert!(topics.contains(&"/cam_front_left/image_rect_compressed"));
+    // A car straight ahead of each radar, 12 m away: see [`Plain`].
+    let cloud: PointCloud = decode(&messages, "/radar_front_left/points", 0);
+    let number = |i: usize| f32::from_le_bytes(cloud.data[4 * i..][..4].try_into().expect("four"));
+    assert_eq!(
+        (cloud.frame_id.as_str(), cloud.data.len()),
+        ("RADAR_FRONT_LEFT", 29)
+    );
+    assert!((number(0) - 12.0).abs() < 1e-4 && number(1).abs() < 1e-4);
+    assert_eq!([number(3), number(5)], [-2.0, 10.0]);
     assert_eq!(bytes, written(&scene).0, "equal scenes give equal bytes");
 }
 
@@ -71,8 +80,9 @@ fn boxes_vehicle_and_sensors_are_where_they_are() {
             .iter()
             .map(|t| (t.parent_frame_id.as_str(), t.child_frame_id.as_str()))
             .collect();
-        assert_eq!((frames[0], frames.len()), (("map", "base_link"), 8));
+        assert_eq!((frames[0], frames.len()), (("map", "base_link"), 13));
         assert_eq!(frames[7], ("base_link", "LIDAR_TOP"));
+        assert_eq!(frames[8], ("base_link", "RADAR_FRONT"));
         let ego = now.frame().world_from_ego;
         assert_eq!(tf.transforms[0].translation, Some(ego.translation_m.into()));
         let pose: PoseInFrame = decode(&messages, "/pose", at);
@@ -191,6 +201,7 @@ fn what_cannot_be_written_is_one_line_and_what_lacks_sensors_is_written() {
     let rig = std::sync::Arc::make_mut(&mut scene.rig);
     rig.cameras.clear();
     rig.lidars.clear();
+    rig.radars.clear();
     assert_eq!(written(&scene).1.len(), 6);
     scene.change_canvas(|c| c.boxes.get_mut(&BoxId(4)).expect("there").center_m.x = f64::INFINITY);
     let line = to_bytes(&scene, &mut Plain::of(&scene))

@@ -94,7 +94,7 @@ impl Annotations {
                 prev: String::new(),
                 next: String::new(),
                 num_lidar_pts: seen.returns.get(&b.id).copied().unwrap_or(0),
-                num_radar_pts: 0,
+                num_radar_pts: seen.radar_returns.get(&b.id).copied().unwrap_or(0),
             };
             writing.tables.sample_annotation.push(row);
         }

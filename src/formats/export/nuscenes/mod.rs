@@ -1,7 +1,7 @@
 //! nuScenes tables: see [`crate::nuscenes`]. Written for the devkit (nuscenes-devkit 1.2.0), with lidarseg, a map mask and a
 //! map expansion.
 //!
-//! Key frames are every 0.5 s from the start of the clip; a scene that stands still is one. Between them are LiDAR sweeps at
+//! Key frames are every 0.5 s from the start of the clip; a scene that stands still is one. Between them are LiDAR sweeps and radar scans at
 //! 10 Hz, in clips of up to a minute. The global frame is the world frame, moved so that the map lies where x and y are
 //! positive, as map masks want it; `map.json` says by how much. `log.json` has the recipe.
 
@@ -28,14 +28,14 @@ use crate::{FormatError, Holds, moments};
 /// See the module.
 pub const EXPORTER: Exporter = Exporter {
     id: "nuscenes",
-    title: "nuScenes: a folder of tables, sweeps, pictures and a map, for the devkit",
+    title: "nuScenes: a folder of tables, LiDAR sweeps, radar scans, pictures and a map, for the devkit",
     file_name: None,
     holds: &[Holds::Boxes, Holds::Points, Holds::Pictures],
     lost: "what happens between key frames and after the last one, names and paint of boxes, velocities of a scene that \
-           stands still, slopes of the ground, beams of the LiDAR and further LiDARs, distortion and shutters of cameras, size of the own vehicle; voxels, map \
+           stands still, slopes of the ground, beams of the LiDAR and further LiDARs, patterns of radars, distortion and shutters of cameras, size of the own vehicle; voxels, map \
            and scenery are inferred anew from the LiDAR",
     span: ExportSpan::Clip,
-    needs: &[Product::Sweep, Product::Truth],
+    needs: &[Product::Sweep, Product::Radar, Product::Truth],
     write,
 };
 

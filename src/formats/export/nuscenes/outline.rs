@@ -125,8 +125,7 @@ impl CoveredCells {
 
     fn corner(&self, [x, y]: [i64; 2]) -> DVec2 {
         let from = self.extent.from().map(i64::from);
-        // 0.4 is not exact in binary, 2.5 is.
-        DVec2::new((from[0] + x) as f64, (from[1] + y) as f64) / 2.5
+        DVec2::new((from[0] + x) as f64, (from[1] + y) as f64) / self.extent.lattice().per_m()
     }
 }
 

@@ -1,17 +1,17 @@
-//! Sweeps and pictures, where the sensors are, and where the vehicle was.
+//! Sweeps, scans and pictures, where the sensors are, and where the vehicle was.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glam::DVec3;
-use scene::{BoxId, LidarPoint, LidarSweep, Returns, Scene, SceneBox};
+use scene::{BoxId, LidarPoint, LidarSweep, RadarScan, Returns, Scene, SceneBox};
 
 use super::{Writing, log_name, timestamp_us};
 use crate::export::{ExportPicture, Products, nuscenes_lidar};
 use crate::nuscenes::tables::{CalibratedSensor, EgoPose, Lidarseg, NuscenesSensor, SampleData};
 use crate::nuscenes::{categories, wxyz};
 use crate::sensor_names::{self, LIDAR};
-use crate::{FormatError, jpeg, physical};
+use crate::{FormatError, jpeg, nuscenes_radar, physical};
 
 /// Time between two sweeps, s.
 const SWEEP_S: f64 = 0.1;
@@ -22,11 +22,14 @@ const OFF_FACE_M: f64 = 1e-3;
 /// Bits of a token's number that count the measurements of a sensor.
 const COUNT_BITS: u64 = 32;
 
-/// The sensors that are written: the cameras of the rig in its order, and its first LiDAR after them.
+/// The sensors that are written: the cameras of the rig in its order, its first LiDAR after them, and its radars.
 pub(super) struct Sensors {
     /// Channels in that order.
     channels: Vec<String>,
-    has_lidar: bool,
+    /// Place of the LiDAR among them.
+    lidar: Option<usize>,
+    /// Place of the first radar.
+    radars: usize,
     /// How many files each has.
     counts: Vec<u64>,
     log: String,
@@ -41,6 +44,8 @@ pub(super) type Visible = BTreeMap<BoxId, f64>;
 pub(super) struct Sighted {
     /// Returns of the sweep, as it is written, that lie in each box; boxes without returns are left out.
     pub(super) returns: BTreeMap<BoxId, u32>,
+    /// Returns of all radars that lie in each box, seen from above.
+    pub(super) radar_returns: BTreeMap<BoxId, u32>,
     pub(super) visible: Visible,
 }
 
@@ -60,16 +65,19 @@ impl Sensors {
     pub(super) fn new(writing: &mut Writing<'_>) -> Self {
         let rig = &writing.scene.rig;
         let mut channels = sensor_names::cameras(rig);
-        let has_lidar = !rig.lidars.is_empty();
-        channels.extend(has_lidar.then(|| LIDAR.to_owned()));
-        let cameras = rig.cameras.iter().map(|c| c.ego_from_camera());
-        let lidar = rig.lidars.iter().take(1).map(|l| l.ego_from_sensor());
-        for (i, pose) in cameras.chain(lidar).enumerate() {
+        let lidar = (!rig.lidars.is_empty()).then_some(channels.len());
+        channels.extend(lidar.map(|_| LIDAR.to_owned()));
+        let radars = channels.len();
+        channels.extend(sensor_names::radars(rig));
+        let cameras = rig.cameras.iter().map(|c| ("camera", c.ego_from_camera()));
+        let of_lidar = rig.lidars.iter().take(1).map(|l| ("lidar", l.ego_from_sensor()));
+        let of_radars = rig.radars.iter().map(|r| ("radar", r.ego_from_sensor()));
+        for (i, (modality, pose)) in cameras.chain(of_lidar).chain(of_radars).enumerate() {
             let camera = rig.cameras.get(i);
             writing.tables.sensor.push(NuscenesSensor {
                 token: writing.tokens.token("sensor", i as u64),
                 channel: channels[i].clone(),
-                modality: camera.map_or("lidar", |_| "camera").into(),
+                modality: modality.into(),
             });
             writing.tables.calibrated_sensor.push(CalibratedSensor {
                 token: writing.tokens.token("calibrated_sensor", i as u64),
@@ -82,7 +90,8 @@ impl Sensors {
         Self {
             counts: vec![0; channels.len()],
             channels,
-            has_lidar,
+            lidar,
+            radars,
             log: log_name(writing.scene),
             has_sweeps: writing.scene.clip().length_s <= LONGEST_S,
         }
@@ -97,13 +106,13 @@ impl Sensors {
         now: &Scene,
     ) -> Result<Sighted, FormatError> {
         let mut seen = Sighted::default();
-        if self.has_lidar {
+        if let Some(lidar) = self.lidar {
             let sweep = sweep(now, products)?;
             let pose = now.frame().world_from_ego;
             let in_world = |p: &LidarPoint| pose.apply(DVec3::from_array(p.position_in_ego.map(f64::from)));
             let returns = Returns::new(sweep.points.iter().map(in_world));
             seen.returns = returns.by_box(now.frame().boxes.values());
-            let token = self.add_sweep(writing, &sweep, sample, now, true);
+            let token = self.add_sweep(writing, lidar, &sweep, sample, now, true);
             let labels = sweep
                 .points
                 .iter()
@@ -117,6 +126,8 @@ impl Sensors {
                 filename,
             });
         }
+        let scans = self.add_scans(writing, products, sample, now, true)?;
+        seen.radar_returns = within_boxes(&scans, now);
         if now.rig.cameras.is_empty() {
             return Ok(seen);
         }
@@ -142,7 +153,7 @@ impl Sensors {
         Ok(seen)
     }
 
-    /// Sweeps between two key frames, without these.
+    /// Sweeps and scans between two key frames, without these.
     pub(super) fn between(
         &mut self,
         writing: &mut Writing<'_>,
@@ -150,7 +161,8 @@ impl Sensors {
         sample: &str,
         times_s: Range<f64>,
     ) -> Result<(), FormatError> {
-        if !(self.has_lidar && self.has_sweeps) {
+        let has_ranging = self.lidar.is_some() || self.radars < self.channels.len();
+        if !(has_ranging && self.has_sweeps) {
             return Ok(());
         }
         let steps = ((times_s.end - times_s.start) / SWEEP_S).round() as usize;
@@ -158,22 +170,53 @@ impl Sensors {
             let time_s = times_s.start + SWEEP_S * step as f64;
             products.show(time_s)?;
             let now = writing.scene.at(time_s);
-            let sweep = sweep(&now, products)?;
-            self.add_sweep(writing, &sweep, sample, &now, false);
+            if let Some(lidar) = self.lidar {
+                let sweep = sweep(&now, products)?;
+                self.add_sweep(writing, lidar, &sweep, sample, &now, false);
+            }
+            self.add_scans(writing, products, sample, &now, false)?;
         }
         Ok(())
+    }
+
+    /// Writes the scans of all radars, and returns them.
+    fn add_scans(
+        &mut self,
+        writing: &mut Writing<'_>,
+        products: &mut dyn Products,
+        sample: &str,
+        now: &Scene,
+        is_key_frame: bool,
+    ) -> Result<Vec<RadarScan>, FormatError> {
+        if now.rig.radars.is_empty() {
+            return Ok(Vec::new());
+        }
+        let scans = products.radars()?;
+        for (i, (scan, radar)) in scans.iter().zip(&now.rig.radars).enumerate() {
+            let measured = SensorFile {
+                sensor: self.radars + i,
+                sample,
+                now,
+                is_key_frame,
+                size: [0; 2],
+                bytes: nuscenes_radar::to_bytes(scan, radar),
+            };
+            self.add(writing, measured);
+        }
+        Ok(scans)
     }
 
     fn add_sweep(
         &mut self,
         writing: &mut Writing<'_>,
+        lidar: usize,
         sweep: &LidarSweep,
         sample: &str,
         now: &Scene,
         is_key_frame: bool,
     ) -> String {
         let measured = SensorFile {
-            sensor: self.channels.len() - 1,
+            sensor: lidar,
             sample,
             now,
             is_key_frame,
@@ -215,8 +258,12 @@ impl Sensors {
             .tokens
             .token("sample_data", (sensor as u64) << COUNT_BITS | count);
         let timestamp = timestamp_us(measured.now.time_s());
-        let (channel, is_lidar) = (&self.channels[sensor], measured.size == [0; 2]);
-        let kind = if is_lidar { "pcd.bin" } else { "jpg" };
+        let channel = &self.channels[sensor];
+        let (kind, format) = match sensor {
+            i if Some(i) == self.lidar => ("pcd.bin", "pcd"),
+            i if i >= self.radars => ("pcd", "pcd"),
+            _ => ("jpg", "jpg"),
+        };
         let folder = if measured.is_key_frame {
             "samples"
         } else {
@@ -237,7 +284,7 @@ impl Sensors {
             ego_pose_token: token.clone(),
             calibrated_sensor_token: writing.tokens.token("calibrated_sensor", sensor as u64),
             timestamp,
-            fileformat: if is_lidar { "pcd" } else { "jpg" }.into(),
+            fileformat: format.into(),
             is_key_frame: measured.is_key_frame,
             height: measured.size[1],
             width: measured.size[0],
@@ -266,6 +313,28 @@ impl Sensors {
             }
         }
     }
+}
+
+/// Returns of radars that lie in each box; those of radars that measure no heights as seen from above.
+fn within_boxes(scans: &[RadarScan], now: &Scene) -> BTreeMap<BoxId, u32> {
+    let pose = now.frame().world_from_ego;
+    let returns: Vec<(DVec3, bool)> = scans
+        .iter()
+        .flat_map(|scan| &scan.returns)
+        .map(|r| {
+            let at = pose.apply(DVec3::from_array(r.position_m.map(f64::from)));
+            (at, r.elevation_rad.is_some())
+        })
+        .collect();
+    let within = |b: &SceneBox| {
+        let level = |(at, has_height): &(DVec3, bool)| match has_height {
+            true => *at,
+            false => at.truncate().extend(b.center_m.z),
+        };
+        returns.iter().filter(|r| b.contains(level(r), 0.0)).count() as u32
+    };
+    let counts = now.frame().boxes.values().map(|b| (b.id, within(b)));
+    counts.filter(|(_, count)| *count > 0).collect()
 }
 
 /// The sweep of the moment that is shown, on the physical ground. No return is exactly on a face of a box, so readers

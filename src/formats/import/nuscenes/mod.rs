@@ -25,8 +25,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use scene::message::shortened;
 use scene::{
-    BevLayout, Clip, Conditions, Extent, Frame, Inferred, Key, Motion, Pose, Recorded, Scene, TimeOfDay,
-    Weather, draft, infer,
+    BevLayout, Clip, Conditions, Extent, Frame, Inferred, Key, Lattice, Motion, Pose, Recorded, Scene,
+    TimeOfDay, Weather, draft, infer,
 };
 
 use super::{Content, ImportFile, ImportedScene, Importer};
@@ -175,9 +175,9 @@ fn extent(poses: &[Pose]) -> Result<Extent, String> {
     let low = places.clone().fold(DVec3::INFINITY, DVec3::min);
     let high = places.fold(DVec3::NEG_INFINITY, DVec3::max);
     let reach = Extent::WINDOW.max_m().x;
-    let column = |metres: f64| (metres * 2.5).floor() as i32;
+    let column = |metres: f64| (metres * Lattice::OCC3D.per_m()).floor() as i32;
     let from = [column(low.x - reach), column(low.y - reach)];
-    let to = |metres: f64| ((metres + reach) * 2.5).ceil() as i32;
+    let to = |metres: f64| ((metres + reach) * Lattice::OCC3D.per_m()).ceil() as i32;
     let size = |axis: usize, high: f64| usize::try_from(to(high).saturating_sub(from[axis])).unwrap_or(0);
     Extent::new(from, [size(0, high.x), size(1, high.y)])
 }

@@ -20,7 +20,7 @@ const POINT: usize = 20;
 /// A point this far outside of a box still comes from what is in it, m.
 const MARGIN_M: f64 = 0.15;
 /// A voxel this far outside of a box still belongs to what is in it, m.
-const VOXEL_MARGIN_M: f64 = 0.4;
+const VOXEL_MARGIN_M: f64 = Window::VOXEL_M;
 /// Classes that a number can hold beside its voxel.
 const CLASSES: u64 = 32;
 

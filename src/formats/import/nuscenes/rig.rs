@@ -1,6 +1,7 @@
 //! Calibrated sensors as a rig.
 
-use scene::{Camera, LidarPattern, SensorRig};
+use scene::rig_presets::RADARS;
+use scene::{Camera, LidarPattern, RadarPattern, SensorRig};
 
 use super::read::Kinds;
 use super::{Skipped, count};
@@ -9,13 +10,14 @@ use crate::nuscenes::tables::{CalibratedSensor, SampleData};
 use crate::sensor_names::LIDAR;
 
 /// The sensors that measured something in these key frames, as they were calibrated at the first. Cameras of the known vehicle are in the order of its rig, others in that of the table. The tables do not hold the
-/// beams of a LiDAR: it is the known vehicle's.
+/// beams of a LiDAR or the pattern of a radar: these are the known vehicle's.
 pub(super) fn rig(kinds: &Kinds<'_>, data: &[SampleData], skipped: &mut Skipped) -> SensorRig {
     let known = SensorRig::default();
     let mut rig = SensorRig {
         name: "nuScenes".into(),
         cameras: Vec::new(),
         lidars: Vec::new(),
+        radars: Vec::new(),
         ..known.clone()
     };
     let (mut cameras, mut taken) = (Vec::new(), Vec::new());
@@ -36,7 +38,11 @@ pub(super) fn rig(kinds: &Kinds<'_>, data: &[SampleData], skipped: &mut Skipped)
                 Some(lidar) => rig.lidars.push(lidar),
                 None => count(skipped, "LiDARs without a sound pose", 1),
             },
-            _ => count(skipped, "radars", 1),
+            "radar" => match radar(&sensor.channel, calibrated) {
+                Some(radar) => rig.radars.push(radar),
+                None => count(skipped, "radars without a sound pose", 1),
+            },
+            _ => count(skipped, "sensors of other kinds", 1),
         }
     }
     let known_place = |c: &Camera| known.cameras.iter().position(|k| k.name == c.name);
@@ -50,6 +56,7 @@ pub(super) fn rig(kinds: &Kinds<'_>, data: &[SampleData], skipped: &mut Skipped)
     // The first LiDAR is the one that sweeps are made of.
     rig.lidars.sort_by_key(|l| l.name != LIDAR);
     rig.lidars.truncate(SensorRig::MOST_SENSORS);
+    rig.radars.truncate(SensorRig::MOST_SENSORS);
     rig
 }
 
@@ -82,5 +89,15 @@ fn lidar(name: &str, calibrated: &CalibratedSensor, known: &SensorRig) -> Option
         rotation_wxyz: calibrated.rotation,
         translation_m: calibrated.translation,
         ..known.lidars.first()?.clone()
+    })
+}
+
+fn radar(name: &str, calibrated: &CalibratedSensor) -> Option<RadarPattern> {
+    pose(name, calibrated.rotation, calibrated.translation).ok()?;
+    Some(RadarPattern {
+        name: name.into(),
+        rotation_wxyz: calibrated.rotation,
+        translation_m: calibrated.translation,
+        ..(RADARS.first()?.build)()
     })
 }

@@ -54,7 +54,7 @@ impl PatchRuns {
     /// Counter-clockwise: the lower borders with growing x, then the upper ones back.
     fn outline(&self, extent: Extent) -> Vec<DVec2> {
         let low = extent.min_m().truncate();
-        let at = |x: usize, y: usize| low + DVec2::new(x as f64, y as f64) / 2.5;
+        let at = |x: usize, y: usize| low + DVec2::new(x as f64, y as f64) / extent.lattice().per_m();
         let n = self.runs.len();
         let side = |which: usize| {
             let mut points: Vec<DVec2> = Vec::new();

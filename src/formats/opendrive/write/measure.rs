@@ -197,7 +197,7 @@ pub(crate) fn picture(path: &std::path::Path, layout: &BevLayout, found: &BevLay
         for line in lines {
             let length: f64 = line.windows(2).map(|w| w[0].distance(w[1])).sum();
             for p in resampled(line, (length * 20.0) as usize + 2) {
-                let q = (p - extent.min_m().truncate()) * 2.5 * scale as f64;
+                let q = (p - extent.min_m().truncate()) * extent.lattice().per_m() * scale as f64;
                 if q.x >= 0.0 && q.y >= 0.0 && (q.x as usize) < w && (q.y as usize) < h {
                     let (px, py) = place(q.x as usize, q.y as usize);
                     image.put_pixel(px, py, image::Rgb(color));

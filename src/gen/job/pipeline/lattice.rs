@@ -4,7 +4,8 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::contract::{GenError, GenResult, Job, JobCtx, JobUpdate};
+use crate::contract::{GenError, GenParams, GenResult, Job, JobCtx, JobUpdate, RegionMode};
+use scene::draft::ground_bin;
 use scene::grid::{lower, raise};
 use scene::{Class, Frame, Lattice, VoxelGrid};
 
@@ -29,7 +30,7 @@ pub(super) fn resampled(
     let (fine, coarse) = (job.scene.for_generation(), inner.scene.for_generation());
     let back = |result: &GenResult| GenResult {
         key: job.key(),
-        occupancy: put_back(fine.frame(), coarse.frame(), &result.occupancy),
+        occupancy: put_back(fine.frame(), coarse.frame(), &result.occupancy, &job.params),
         report: result.report.clone(),
     };
     let report = |update: JobUpdate| {
@@ -49,17 +50,22 @@ pub(super) fn resampled(
     let mut out = back(&result);
     let source = &fine.frame().source.occupancy;
     out.report.voxels_changed = source.count_different(&out.occupancy);
-    out.report.notes.push(format!(
-        "the networks worked in voxels of {} m on this map of {}; what they changed is as coarse as theirs",
-        Lattice::OCC3D.voxel_m(),
-        fine.frame().extent().lattice()
-    ));
+    let coarse = fine.frame().occupancy.count_different(&out.occupancy);
+    if coarse > 0 {
+        out.report.notes.push(format!(
+            "{coarse} voxels that the networks changed are as coarse as theirs of {} m, on this map of {}",
+            Lattice::OCC3D.voxel_m(),
+            fine.frame().extent().lattice()
+        ));
+    }
     Ok(out)
 }
 
 /// The labels of a map after a result in the networks' lattice. Where that equals the draft or the source in its own voxels,
-/// the map's draft or source stays; elsewhere a voxel has the label at its middle. Painted voxels stay.
-fn put_back(fine: &Frame, coarse: &Frame, result: &VoxelGrid) -> VoxelGrid {
+/// the map's draft or source stays; elsewhere a voxel has the label at its middle. Painted voxels stay, and so do objects and
+/// ground, which the draft has as finely as the map: of the result's ground only that in columns without any is taken. An edit
+/// changes walls and plants only in columns whose layout it changed: around a box that comes or goes they stay.
+fn put_back(fine: &Frame, coarse: &Frame, result: &VoxelGrid, params: &GenParams) -> VoxelGrid {
     let (extent, of) = (fine.extent(), result.extent());
     let (lattice, of_lattice) = (extent.lattice(), of.lattice());
     let (draft, source) = (&fine.occupancy, &fine.source.occupancy);
@@ -83,10 +89,8 @@ fn put_back(fine: &Frame, coarse: &Frame, result: &VoxelGrid) -> VoxelGrid {
         if column == coarse.occupancy.column(i, j) {
             continue;
         }
-        if column == coarse.source.occupancy.column(i, j) {
-            if draft.column(x, y) != source.column(x, y) {
-                out.column_mut(x, y).copy_from_slice(source.column(x, y));
-            }
+        let is_edit = params.region == RegionMode::Auto && params.strength == 0.0;
+        if is_edit && fine.layout.cell(x, y) == fine.source.layout.cell(x, y) && !fine.is_new_ground(x, y) {
             continue;
         }
         raise(of_lattice, column, &mut new);
@@ -95,12 +99,25 @@ fn put_back(fine: &Frame, coarse: &Frame, result: &VoxelGrid) -> VoxelGrid {
         raise(lattice, draft.column(x, y), &mut drafted);
         raise(lattice, source.column(x, y), &mut kept);
         for (z, bin) in bins.iter().enumerate() {
-            kept[z] = match *bin {
+            let now = match *bin {
                 Some(bin) if new[bin] == was_draft[bin] => drafted[z],
                 Some(bin) if new[bin] != was_source[bin] => new[bin],
                 Some(_) => kept[z],
                 None => drafted[z],
             };
+            kept[z] = if is_exact(now) || is_exact(drafted[z]) {
+                drafted[z]
+            } else {
+                now
+            };
+        }
+        if let Some(label) = new.iter().copied().find(|label| is_ground(*label))
+            && !drafted.iter().any(|label| is_ground(*label))
+        {
+            let bin = ground_bin(&fine.layout, x, y) + lattice.lowered();
+            if kept[bin] == Class::FREE {
+                kept[bin] = label;
+            }
         }
         lower(lattice, &mut kept);
         out.column_mut(x, y).copy_from_slice(&kept[..extent.nz()]);
@@ -109,6 +126,15 @@ fn put_back(fine: &Frame, coarse: &Frame, result: &VoxelGrid) -> VoxelGrid {
         out.set(x, y, z, class);
     }
     out
+}
+
+fn is_ground(label: u8) -> bool {
+    Class::from_id(label).is_some_and(Class::is_ground)
+}
+
+/// True for what a draft has as it is: objects and ground.
+fn is_exact(label: u8) -> bool {
+    Class::from_id(label).is_some_and(|class| class.is_ground() || class.is_object())
 }
 
 #[cfg(test)]
@@ -129,26 +155,55 @@ mod tests {
         Scene::single("fine", frame, Arc::default(), 1)
     }
 
+    /// Parameters of a whole scene, in which the networks may change all.
+    fn anew() -> GenParams {
+        GenParams::whole_scene()
+    }
+
     #[test]
     fn what_the_networks_leave_stays_as_fine_as_it_was() {
         let scene = fine();
         let coarse = scene.in_lattice(Lattice::OCC3D);
         let (before, of) = (scene.frame(), coarse.frame());
-        assert_eq!(put_back(before, of, &of.occupancy), before.occupancy);
+        assert_eq!(put_back(before, of, &of.occupancy, &anew()), before.occupancy);
         // Ground of Occ3D is in bin 0 of its labels, and a voxel above it is a voxel of 0.4 m.
         let mut result = of.occupancy.clone();
         let [i, j] = result.extent().column_at(10.1, 10.1).expect("inside");
         assert_eq!(result.get(i, j, 0), Class::DriveableSurface.id());
-        (1..=4).for_each(|z| result.set(i, j, z, Class::Car.id()));
-        let after = put_back(before, of, &result);
+        (1..=4).for_each(|z| result.set(i, j, z, Class::Vegetation.id()));
+        let after = put_back(before, of, &result, &anew());
         let differ = before.occupancy.count_different(&after);
         // Two voxels of a metre and a half at true heights: bins 3 and 4 of 0.4 m, four columns of 0.2 m in each.
-        let cars = after.class_counts()[usize::from(Class::Car.id())];
-        assert_eq!((cars, differ), (16, 16));
+        let plants = after.class_counts()[usize::from(Class::Vegetation.id())];
+        assert_eq!((plants, differ), (16, 16));
+        // An edit that leaves the layout as it is adds no plants.
+        let edited = put_back(before, of, &result, &GenParams::default());
+        assert_eq!(edited, before.occupancy);
         let low = after
             .iter_set()
-            .filter(|(.., l)| *l == Class::Car.id())
+            .filter(|(.., l)| *l == Class::Vegetation.id())
             .map(|(_, _, z, _)| z);
         assert_eq!(low.min(), Some(17));
+    }
+
+    #[test]
+    fn objects_and_ground_stay_as_the_draft_has_them() {
+        let scene = fine();
+        let coarse = scene.in_lattice(Lattice::OCC3D);
+        let (before, of) = (scene.frame(), coarse.frame());
+        let mut result = of.occupancy.clone();
+        let [i, j] = result.extent().column_at(10.1, 10.1).expect("inside");
+        // A car that no box stands for, and a hole in the road.
+        (1..=4).for_each(|z| result.set(i, j, z, Class::Car.id()));
+        result.set(i, j + 1, 0, Class::FREE);
+        assert_eq!(put_back(before, of, &result, &anew()), before.occupancy);
+        // A hole of the map is closed by one voxel where the result has ground.
+        let mut open = (**before).clone();
+        let [x, y] = open.extent().column_at(10.1, 10.1).expect("inside");
+        open.occupancy.set(x, y, 16, Class::FREE);
+        let mut raised = of.occupancy.clone();
+        raised.set(i, j, 1, Class::DriveableSurface.id());
+        let after = put_back(&open, of, &raised, &anew());
+        assert_eq!(after, before.occupancy);
     }
 }

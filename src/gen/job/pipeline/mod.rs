@@ -36,6 +36,7 @@ use diffusion::solver::Sampler;
 use nets::{DecoderInput, DitCondition, GROUPS, OccModels, tokens_of};
 use network::{Condition, Network};
 use new_ground::NewGround;
+use nn::{Cpu, Ops};
 use numeric::philox::{Stream, normal_field};
 use scene::{BevLayout, BoxId, Extent, Scene, SceneBox, VoxelGrid, Window};
 use source::{EditSource, stored_for};
@@ -77,9 +78,9 @@ impl Glimpses {
 /// Generates occupancy. Keeps the trajectories of recent sources and of its own results in memory, so that the next
 /// edit of such a scene needs no inversion. A clone shares what is in memory so far.
 #[derive(Clone)]
-pub struct OccPipeline {
-    models: Arc<OccModels>,
-    sources: VecDeque<EditSource>,
+pub struct OccPipeline<B: Ops = Cpu> {
+    models: Arc<OccModels<B>>,
+    sources: VecDeque<EditSource<B>>,
     /// The last draft and its latent. The next draft mostly differs in a few columns, and only those are encoded again.
     draft: Option<(VoxelGrid, Vec<f32>)>,
     /// The voxels beside the road in the last job.
@@ -91,8 +92,15 @@ pub struct OccPipeline {
 }
 
 impl OccPipeline {
-    /// A pipeline with these networks.
-    pub fn new(models: Arc<OccModels>) -> Self {
+    /// A pipeline with the weights that ship with the program.
+    pub fn bundled() -> Result<Self, GenError> {
+        Ok(Self::new(OccModels::bundled().map_err(GenError::failed)?))
+    }
+}
+
+impl<B: Ops + Clone> OccPipeline<B> {
+    /// A pipeline with these networks, on their backend.
+    pub fn new(models: Arc<OccModels<B>>) -> Self {
         Self {
             models,
             sources: VecDeque::new(),
@@ -108,13 +116,8 @@ impl OccPipeline {
         self.ablation = ablation;
     }
 
-    /// A pipeline with the weights that ship with the program.
-    pub fn bundled() -> Result<Self, GenError> {
-        Ok(Self::new(OccModels::bundled().map_err(GenError::failed)?))
-    }
-
     /// The networks in use.
-    pub fn models(&self) -> &OccModels {
+    pub fn models(&self) -> &OccModels<B> {
         &self.models
     }
 
@@ -122,7 +125,7 @@ impl OccPipeline {
     /// values of all other tokens are in memory from the source; `None` if all tokens must be computed.
     fn local_tokens(
         &self,
-        source: &EditSource,
+        source: &EditSource<B>,
         sampler: &Sampler,
         cells: &[bool],
         params: &GenParams,
@@ -174,7 +177,7 @@ impl OccPipeline {
         mask: Vec<f32>,
         context: Vec<f32>,
         params: &GenParams,
-    ) -> Result<Network, GenError> {
+    ) -> Result<Network<B>, GenError> {
         let guided = params.guidance != 1.0;
         let draft_latent = match condition.draft_hidden {
             true => vec![0.0; CELLS * CHANNELS],
@@ -516,7 +519,7 @@ impl OccPipeline {
     }
 }
 
-impl Pipeline for OccPipeline {
+impl<B: Ops + Clone> Pipeline for OccPipeline<B> {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         job.params.check()?;
         ctx.check()?;

@@ -7,11 +7,11 @@ use super::standing::SceneryVoxels;
 use crate::contract::{ChosenDensities, GenError};
 use diffusion::solver::{Branch, Denoiser};
 use nets::{BlockReuse, ColumnHeights, DecoderInput, KeysValues, OccModels, Prepared, column_heights};
-use nn::Precision;
+use nn::{Ops, Precision};
 use scene::{BevLayout, BoxId, Density, Extent, Frame, SceneBox, VoxelGrid, draft, raster};
 
 /// Keys and values by training step (the bits of the step).
-pub type StepKeysValues = BTreeMap<u64, KeysValues>;
+pub type StepKeysValues<T> = BTreeMap<u64, KeysValues<T>>;
 
 /// A part of the condition that is hidden, as in UniScene's table 8 and X-Scene's table 7.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,16 +98,16 @@ pub fn density_of_source(frame: &Frame) -> Density {
 }
 
 /// The network as a solver sees it, under one condition.
-pub struct Network {
+pub struct Network<B: Ops> {
     /// Its weights.
-    pub models: Arc<OccModels>,
+    pub models: Arc<OccModels<B>>,
     /// Its condition.
-    pub condition: Prepared,
+    pub condition: Prepared<B::Tensor>,
     /// The condition without layout and draft, for guidance.
-    pub without: Option<Prepared>,
+    pub without: Option<Prepared<B::Tensor>>,
     /// Keys and values of the conditional branch. Each prediction renews those of the tokens that it computes and reads
     /// the others. `None` if all tokens are computed and the keys and values are not needed later.
-    pub keys_values: Option<StepKeysValues>,
+    pub keys_values: Option<StepKeysValues<B::Tensor>>,
     /// Precision of the denoising network's products.
     pub precision: Precision,
     /// Interval, in predictions, at which the middle blocks are computed; 1 = every prediction.
@@ -118,7 +118,7 @@ pub struct Network {
     pub added: Vec<f32>,
 }
 
-impl Denoiser for Network {
+impl<B: Ops> Denoiser for Network<B> {
     type Error = GenError;
 
     fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, GenError> {

@@ -6,6 +6,7 @@ use crate::region::Region;
 use diffusion::inversion::{Refinement, invert, round_trip_error};
 use diffusion::solver::{Guidance, Sampler};
 use nets::DecoderInput;
+use nn::Ops;
 use scene::{Scene, Unobserved, VoxelGrid};
 
 /// Result of inverting and sampling again.
@@ -17,7 +18,7 @@ pub struct RoundTrip {
     pub noise_std: f64,
 }
 
-impl OccPipeline {
+impl<B: Ops + Clone> OccPipeline<B> {
     /// The occupancy of a scene's frame, encoded and decoded by the VAE; the decoder gets the frame's draft and masks.
     pub fn reconstruct(&mut self, scene: &Scene) -> Result<VoxelGrid, GenError> {
         let frame = scene.frame();

@@ -11,7 +11,7 @@ use crate::region::CELLS;
 use diffusion::inversion::{InversionReport, Refinement, Trajectory, invert};
 use diffusion::solver::{Guidance, Sampler, SolverKind};
 use nets::KeysValues;
-use nn::Precision;
+use nn::{Ops, Precision};
 use scene::{Scene, VoxelGrid};
 use world::draw::hash;
 
@@ -37,28 +37,39 @@ pub(super) struct SourceKey {
     precision: Precision,
 }
 
-#[derive(Clone)]
-pub(super) struct EditSource {
+pub(super) struct EditSource<B: Ops> {
     pub(super) key: SourceKey,
     /// The solver for edits of it: O-BELM can only continue what it inverted itself.
     pub(super) solver: SolverKind,
     pub(super) trajectory: Arc<Trajectory>,
     /// Keys and values of the network at the trajectory's states; `None` if they take too much memory.
-    pub(super) keys_values: Option<Arc<StepKeysValues>>,
+    pub(super) keys_values: Option<Arc<StepKeysValues<B::Tensor>>>,
     pub(super) report: Option<InversionReport>, // None for a trajectory that sampling made
 }
 
+impl<B: Ops> Clone for EditSource<B> {
+    fn clone(&self) -> Self {
+        Self {
+            key: self.key,
+            solver: self.solver,
+            trajectory: self.trajectory.clone(),
+            keys_values: self.keys_values.clone(),
+            report: self.report.clone(),
+        }
+    }
+}
+
 /// An empty store for keys and values, if those of so many steps fit into memory.
-pub(super) fn stored(steps: u32) -> Option<StepKeysValues> {
+pub(super) fn stored<T>(steps: u32) -> Option<StepKeysValues<T>> {
     (steps as usize * STEP_BYTES <= KEYS_VALUES_BYTES).then(StepKeysValues::new)
 }
 
 /// An empty store as of [`stored`]; `None` also if blocks are reused between steps, which leave no keys and values.
-pub(super) fn stored_for(params: &GenParams) -> Option<StepKeysValues> {
+pub(super) fn stored_for<T>(params: &GenParams) -> Option<StepKeysValues<T>> {
     stored(params.steps).filter(|_| params.reuse_steps <= 1)
 }
 
-impl OccPipeline {
+impl<B: Ops + Clone> OccPipeline<B> {
     fn key(&self, occupancy: &VoxelGrid, condition: &Condition, params: &GenParams) -> SourceKey {
         SourceKey {
             occupancy: label_hash(occupancy),
@@ -82,12 +93,12 @@ impl OccPipeline {
         self.condition(scene, &frame.source.layout, &frame.source.boxes, named)
     }
 
-    pub(super) fn remember(&mut self, source: EditSource) {
+    pub(super) fn remember(&mut self, source: EditSource<B>) {
         self.sources.retain(|s| s.key != source.key);
         self.sources.push_front(source);
         self.sources.truncate(KEPT_TRAJECTORIES);
         let mut bytes = 0;
-        let held = |s: &EditSource| s.trajectory.states.len() * CELLS * CHANNELS * size_of::<f64>();
+        let held = |s: &EditSource<B>| s.trajectory.states.len() * CELLS * CHANNELS * size_of::<f64>();
         let mut trajectory_bytes = 0;
         let fit = self.sources.iter().take_while(|s| {
             trajectory_bytes += held(s);
@@ -112,7 +123,7 @@ impl OccPipeline {
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
-    ) -> Result<EditSource, GenError> {
+    ) -> Result<EditSource<B>, GenError> {
         let old = &*scene.frame().source;
         let key = self.key(&old.occupancy, condition, params);
         if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
@@ -170,14 +181,14 @@ impl OccPipeline {
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
-    ) -> Result<(Sampler, EditSource), GenError> {
+    ) -> Result<(Sampler, EditSource<B>), GenError> {
         let source = self.source(scene, condition, params, report, ctx)?;
         if let Some(inversion) = &source.report {
             report.noise_std = Some(inversion.std);
             report.noise_max_abs = Some(inversion.max_abs);
             if !inversion.moments_ok() {
                 report.notes.push(format!(
-                    "the inverted noise is unusual (std {:.2}, max {:.1})",
+                    "the inverted noise is unusual (std {:.2}, max {:.1}): what is generated anew may resemble what was there less",
                     inversion.std, inversion.max_abs
                 ));
             }
@@ -195,7 +206,7 @@ impl OccPipeline {
         params: &GenParams,
         report: &mut GenReport,
         ctx: &JobCtx<'_>,
-    ) -> Result<(Sampler, EditSource), GenError> {
+    ) -> Result<(Sampler, EditSource<B>), GenError> {
         let key = self.key(&scene.frame().source.occupancy, condition, params);
         let clean: Vec<f64> = match self.sources.iter().find(|s| s.key == key) {
             Some(known) => known.trajectory.latent().to_vec(),
@@ -233,7 +244,7 @@ impl OccPipeline {
         &mut self,
         condition: &Condition,
         params: &GenParams,
-    ) -> Result<Network, GenError> {
+    ) -> Result<Network<B>, GenError> {
         let (mask, context) = (vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS]);
         let params = GenParams {
             guidance: 1.0,
@@ -251,7 +262,7 @@ impl OccPipeline {
         params: &GenParams,
         solver: SolverKind,
         trajectory: Trajectory,
-        keys_values: Option<StepKeysValues>,
+        keys_values: Option<StepKeysValues<B::Tensor>>,
     ) {
         let key = self.key(occupancy, condition, params);
         self.remember(EditSource {

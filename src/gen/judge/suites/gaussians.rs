@@ -8,10 +8,10 @@ use anyhow::Context;
 use glam::DVec2;
 use serde_json::{Value, json};
 
-use crate::MeasurementProgress;
-use crate::held_out::TEST_SEED;
 use crate::suite::{Options, SuiteFigures, with_interval};
 use authoring::{drives, open};
+use calibration::MeasurementProgress;
+use calibration::held_out::TEST_SEED;
 use numeric::quantile::median;
 use numeric::splitmix::Draw;
 use scene::{Camera, Pose, Scene};

@@ -5,10 +5,10 @@ use std::time::Instant;
 use serde_json::{Value, json};
 
 use super::world::lidar::lidar_rows;
-use crate::MeasurementProgress;
-use crate::held_out::TEST_SEED;
-use crate::machine::peak_rss_mb;
 use crate::suite::{Bar, Options, SuiteFigures};
+use calibration::MeasurementProgress;
+use calibration::held_out::TEST_SEED;
+use calibration::machine::peak_rss_mb;
 use dataset::world_of;
 use metrics::lidar::{bird_map, jsd, mmd};
 use metrics::logistic::{Logistic, auc};

@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use super::generation::row::{SceneFeatures, SceneSet};
 use super::generation::rows_table;
-use crate::MeasurementProgress;
-use crate::held_out::{TEST_SEED, scene};
 use crate::suite::{Options, SuiteFigures};
+use calibration::MeasurementProgress;
+use calibration::held_out::{TEST_SEED, scene};
 use editor::Document;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx, Pipeline};

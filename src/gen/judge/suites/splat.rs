@@ -5,9 +5,9 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde_json::json;
 
-use crate::MeasurementProgress;
-use crate::held_out::TEST_SEED;
 use crate::suite::{Options, SuiteFigures, with_interval};
+use calibration::MeasurementProgress;
+use calibration::held_out::TEST_SEED;
 use dataset::world_of;
 use metrics::maps::{LabelledDepth, MapAgreement, OUTLINE_PX};
 use numeric::quantile::median;

@@ -16,7 +16,7 @@ pub const APPEARANCE: usize = 16;
 /// Inputs of a ray's heads: appearance, slope, and three facts about the ray.
 pub const RAY_INPUTS: usize = APPEARANCE + 4;
 /// Distance to the next surface where no voxel is near, m.
-const FREE_SDF_M: f32 = 0.4;
+const FREE_SDF_M: f32 = scene::Window::VOXEL_M as f32;
 const LEAST_SUPPORT: f32 = 0.05;
 /// Weight from which on the appearance of an interval counts.
 const LEAST_WEIGHT: f32 = 0.01;

@@ -9,7 +9,7 @@ const BINS: usize = 12;
 pub const PILLAR: usize = BINS + 7;
 /// Start of the lowest bin, and height of each, m.
 const BIN_LOW_M: f32 = -1.2;
-const BIN_M: f32 = 0.4;
+const BIN_M: f32 = scene::Window::VOXEL_M as f32;
 /// Range of heights, m; heights beyond count as its ends.
 const HEIGHTS_M: [f32; 2] = [-3.0, 6.0];
 /// Half the side of the window, m.

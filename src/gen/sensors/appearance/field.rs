@@ -11,7 +11,9 @@ use glam::{Vec2, Vec3};
 use super::noise::{floor, value3};
 use build::{raise, spread, trunks, weights};
 use owners::Owners;
-use scene::appearance::{AppearanceData, AppearanceSection, BLOCK, FieldShape, LEAVES, NZ, SURFACE};
+use scene::appearance::{
+    AppearanceData, AppearanceSection, BLOCK, FieldShape, LEAVES, NZ, PER_M, SURFACE, VOXEL_M,
+};
 use scene::{Class, VoxelGrid};
 #[cfg(test)]
 pub(super) use structures::FARTHEST_M;
@@ -107,7 +109,7 @@ impl OccupancyField {
             blocks,
             structure,
             structures,
-            highest: top as f32 * 0.4 - 1.2,
+            highest: top as f32 * VOXEL_M - 1.2,
         }
     }
 
@@ -119,7 +121,7 @@ impl OccupancyField {
     /// Converts a point of the ego frame to field units: cell = floor, corner i is voxel i - 1.
     #[inline(always)]
     fn to_field(&self, p: Vec3) -> Vec3 {
-        (p - self.shape.low_m) * 2.5 + 0.5
+        (p - self.shape.low_m) * PER_M + 0.5
     }
 
     #[inline(always)]
@@ -289,7 +291,7 @@ impl OccupancyField {
             }
             (u64::MAX << lo as u32) & (u64::MAX >> (63 - hi as u32))
         };
-        let (qo, qd) = (self.to_field(o), d * 2.5);
+        let (qo, qd) = (self.to_field(o), d * PER_M);
         let z = |t: f32| qo.z + qd.z * t;
         if self.blocks[index] & z_bits(z(t_in), z(t_out)) == 0 {
             return None;

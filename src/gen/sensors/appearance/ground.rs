@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 
 use super::noise::{floor, ramp, value2};
 use crate::march::ground::GroundHeightField as Columns;
-use scene::appearance::{AppearanceData, AppearanceSection, HIGHEST_M, KERB_M};
+use scene::appearance::{AppearanceData, AppearanceSection, HIGHEST_M, KERB_M, PER_M};
 use scene::{BevLayer, BevLayout, Class, Extent};
 
 /// Width of the blur's kernel in columns: its standard deviation is about 1.2.
@@ -121,13 +121,13 @@ impl SmoothGround {
     /// True if there is nothing but level road within a metre of a point.
     #[inline]
     pub fn is_level(&self, p: Vec2) -> bool {
-        let q = ((p - self.low) * 2.5).clamp(Vec2::ZERO, self.size_f - 0.5);
+        let q = ((p - self.low) * PER_M).clamp(Vec2::ZERO, self.size_f - 0.5);
         self.level[q.x as usize * self.size[1] + q.y as usize]
     }
 
     fn shares(&self, p: Vec2) -> [f32; 4] {
         let most = (self.size_f - 1.001).max(Vec2::ZERO);
-        let q = ((p - self.low) * 2.5 - 0.5).clamp(Vec2::ZERO, most);
+        let q = ((p - self.low) * PER_M - 0.5).clamp(Vec2::ZERO, most);
         let c = q.map(floor);
         let f = q - c;
         let i = c.x as usize * self.size[1] + c.y as usize;

@@ -369,7 +369,8 @@ fn within(from: f32, to: f32, n: usize) -> std::ops::Range<usize> {
 /// The part of a map that can be seen from near the ego vehicle; a single column if none can.
 fn in_sight(map: Extent, vehicle: &Pose) -> Extent {
     let columns = (f64::from(FAR_M) / Lattice::OCC3D.voxel_m()).ceil() as usize;
-    let middle = [vehicle.translation_m.x, vehicle.translation_m.y].map(|v| (v * 2.5).round() as i32);
+    let middle = [vehicle.translation_m.x, vehicle.translation_m.y]
+        .map(|v| (v * Lattice::OCC3D.per_m()).round() as i32);
     let far = Extent::new(middle.map(|c| c.saturating_sub(columns as i32)), [2 * columns; 2]);
     let seen = far.ok().and_then(|far| far.overlap(&map).map(|part| (far, part)));
     let corner = |from: [i32; 2], at: [usize; 2]| [0, 1].map(|i| from[i] + at[i] as i32);

@@ -38,7 +38,9 @@ impl FreeGround {
             taken: vec![false; extent.columns()],
         };
         for b in boxes.values() {
-            box_cells(extent, b, 0.4, |x, y| out.taken[extent.index(x, y)] = true);
+            box_cells(extent, b, extent.voxel_m(), |x, y| {
+                out.taken[extent.index(x, y)] = true
+            });
         }
         for thing in things.iter() {
             out.take(&thing.form);

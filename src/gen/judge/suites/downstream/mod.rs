@@ -11,9 +11,9 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use crate::MeasurementProgress;
-use crate::held_out::scene;
 use crate::suite::{Options, SuiteFigures, with_interval};
+use calibration::MeasurementProgress;
+use calibration::held_out::scene;
 use editor::Document;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx, Pipeline};

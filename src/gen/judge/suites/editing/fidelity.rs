@@ -5,10 +5,10 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::edited;
-use crate::MeasurementProgress;
-use crate::held_out::scene;
 use crate::suite::{Options, with_interval};
-use crate::trials::{KINDS, Trial};
+use calibration::MeasurementProgress;
+use calibration::held_out::scene;
+use calibration::trials::{KINDS, Trial};
 use diffusion::solver::SolverKind;
 use editor::Document;
 use job::pipeline::OccPipeline;

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::tally::InventionTally;
 use super::trial_run::try_edit;
-use crate::trials::Trial;
+use calibration::trials::Trial;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx};
 use scene::Scene;

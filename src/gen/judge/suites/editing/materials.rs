@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::held_out::{TEST_SEED, scene};
 use authoring::open;
+use calibration::held_out::{TEST_SEED, scene};
 use dataset::world_of;
 use scene::{Frame, Scene, SensorRig, Unobserved};
 use world::voxelize::{Drive, Vertical, labelled};

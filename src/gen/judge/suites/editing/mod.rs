@@ -13,10 +13,10 @@ mod trial_run;
 use anyhow::bail;
 use serde_json::json;
 
-use crate::MeasurementProgress;
 use crate::suite::{Options, SuiteFigures};
-use crate::trials::Trial;
 use authoring::open;
+use calibration::MeasurementProgress;
+use calibration::trials::Trial;
 use editor::Document;
 use job::pipeline::OccPipeline;
 use job::{GenParams, GenReport, Job, JobCtx, Pipeline};

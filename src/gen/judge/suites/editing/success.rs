@@ -6,10 +6,10 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::edited;
-use crate::MeasurementProgress;
-use crate::held_out::scene;
 use crate::suite::{Bar, Options, with_interval};
-use crate::trials::{KINDS, Reached, Trial};
+use calibration::MeasurementProgress;
+use calibration::held_out::scene;
+use calibration::trials::{KINDS, Reached, Trial};
 use job::pipeline::OccPipeline;
 use job::{GenParams, GenReport, Job, JobCtx};
 use metrics::stats::mean_ci95;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::trials::{Reached, Trial};
+use calibration::trials::{Reached, Trial};
 use editor::Document;
 use job::inpaint;
 use job::invented::Invented;

@@ -100,7 +100,7 @@ pub fn shape_spread(truth: &[DriveFrame], found: &[VoxelGrid]) -> Option<f64> {
 
 fn voxels_of(grid: &VoxelGrid, b: &SceneBox) -> f64 {
     let mut n = 0;
-    scene::raster::box_cells(Extent::WINDOW, b, 0.4, |x, y| {
+    scene::raster::box_cells(Extent::WINDOW, b, scene::Window::VOXEL_M, |x, y| {
         n += grid.column(x, y).iter().filter(|l| **l == b.class.id()).count();
     });
     n as f64

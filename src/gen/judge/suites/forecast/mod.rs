@@ -10,10 +10,10 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use crate::MeasurementProgress;
-use crate::held_out::TEST_SEED;
 use crate::suite::{Options, SuiteFigures, with_interval};
 use authoring::drives::{FRAMES, STEP_S, drive_scene_of, frames_of};
+use calibration::MeasurementProgress;
+use calibration::held_out::TEST_SEED;
 use figures::{ForecastFigures, flicker, shape_spread};
 use job::pipeline::OccPipeline;
 use methods::{Drives, KNOWN, METHODS, Wish};

@@ -16,11 +16,11 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use serde_json::json;
 
-use crate::MeasurementProgress;
-use crate::held_out::scene;
 use crate::suite::{Options, SuiteFigures, with_interval};
 use agreement::Agreement;
 use authoring::scenery::{SceneryMethod, SceneryWish};
+use calibration::MeasurementProgress;
+use calibration::held_out::scene;
 use editor::Document;
 use follow::Follow;
 use given_background::Given;

@@ -11,12 +11,12 @@ use anyhow::Context;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::MeasurementProgress;
-use crate::held_out::TEST_SEED;
 use crate::options::Who;
 use crate::suite::{Bar, Options, SuiteFigures, with_interval};
 use authoring::prompting::{How, Laid, lay_out};
 use authoring::text;
+use calibration::MeasurementProgress;
+use calibration::held_out::TEST_SEED;
 use check::Judge;
 use editor::Document;
 use formats::input;

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::{Case, CaseRemarks, CaseTally, place};
-use crate::MeasurementProgress;
-use crate::held_out::TEST_SEED;
 use crate::suite::Options;
 use authoring::prompting::{How, PlacementMethod};
+use calibration::MeasurementProgress;
+use calibration::held_out::TEST_SEED;
 use metrics::layout::{LayoutFigures, diversity};
 use numeric::quantile::median;
 use scene::SceneBox;

@@ -15,7 +15,7 @@ use sensors::appearance::CameraImage;
 use sensors::painter::PaintInput;
 use world::draw::Draw;
 
-use crate::held_out::TEST_SEED;
+use calibration::held_out::TEST_SEED;
 
 /// Features of the windows of all pictures of a world.
 type Windows = Vec<Vec<f64>>;

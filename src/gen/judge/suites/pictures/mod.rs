@@ -12,9 +12,9 @@ use anyhow::Context;
 use serde_json::{Value, json};
 
 use self::likeness::{Likeness, light_of};
-use crate::MeasurementProgress;
-use crate::held_out::TEST_SEED;
 use crate::suite::{Options, SuiteFigures, with_interval};
+use calibration::MeasurementProgress;
+use calibration::held_out::TEST_SEED;
 use dataset::picture_pairs::poses;
 use dataset::world_of;
 use metrics::pictures::{DepthPicture, PixelDifference};

@@ -9,10 +9,10 @@ use std::path::Path;
 use anyhow::Context;
 use serde_json::{Value, json};
 
-use crate::MeasurementProgress;
-use crate::held_out::{TEST_SEED, scene};
 use crate::suite::{Options, SuiteFigures, with_interval};
 use authoring::open;
+use calibration::MeasurementProgress;
+use calibration::held_out::{TEST_SEED, scene};
 use dataset::occupancy_frame;
 use formats::occ3d;
 use job::pipeline::OccPipeline;

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::MeasurementProgress;
-use crate::held_out::scene;
 use crate::suite::{Options, with_interval};
+use calibration::MeasurementProgress;
+use calibration::held_out::scene;
 use editor::checks::{Severity, run_checks};
 use metrics::shape::{FIGURES, shape};
 

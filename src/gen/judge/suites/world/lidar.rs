@@ -4,9 +4,9 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{Targets, outside};
-use crate::MeasurementProgress;
-use crate::held_out::TEST_SEED;
 use crate::suite::Options;
+use calibration::MeasurementProgress;
+use calibration::held_out::TEST_SEED;
 use dataset::world_of;
 use metrics::sweep::SweepFigures;
 use scene::SensorRig;

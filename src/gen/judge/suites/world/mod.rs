@@ -7,9 +7,9 @@ use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::MeasurementProgress;
-use crate::held_out::TEST_SEED;
 use crate::suite::{Options, SuiteFigures};
+use calibration::MeasurementProgress;
+use calibration::held_out::TEST_SEED;
 use dataset::{occupancy_frame, world_of};
 use metrics::occupancy::OccupancyStatistics;
 use scene::Class;

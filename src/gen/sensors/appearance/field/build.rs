@@ -4,7 +4,7 @@ use glam::IVec3;
 
 use super::super::noise::{hash1, unit};
 use super::Structure;
-use scene::appearance::{FieldShape, NZ, TRUNK};
+use scene::appearance::{FieldShape, NZ, TOP_M, TRUNK, VOXEL_M};
 use scene::{Class, Lattice};
 
 /// Continues above the grid the structures and crowns that reach its top.
@@ -39,7 +39,7 @@ pub fn raise(shape: &FieldShape, solid: &mut [u8], structure: &[u16], structures
                 (depth[x * ny + y] * 3).min(NZ as i32) as usize / 2 + 1
             } else if below == made && structure[x * ny + y] > 0 {
                 let s = &structures[usize::from(structure[x * ny + y]) - 1];
-                (((s.height_m - 5.4) / 0.4).max(0.0)) as usize
+                (((s.height_m - TOP_M) / VOXEL_M).max(0.0)) as usize
             } else {
                 0
             };

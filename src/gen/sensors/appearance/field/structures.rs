@@ -11,7 +11,7 @@ use super::super::noise::hash1;
 use super::Structure;
 use super::owners::Owners;
 use scene::Class;
-use scene::appearance::{FieldShape, NZ};
+use scene::appearance::{BOTTOM_M, FieldShape, NZ, VOXEL_M};
 
 /// Margin around a thing, columns: connected voxels within it are its own, since labels are ragged.
 const RAGGED: usize = 3;
@@ -70,7 +70,7 @@ impl<'a> ManmadeColumns<'a> {
 
     fn at(&self, c: usize) -> Vec2 {
         let ny = self.shape.ny;
-        Vec2::new((c / ny) as f32, (c % ny) as f32) * 0.4 + self.shape.blocks_from_m
+        Vec2::new((c / ny) as f32, (c % ny) as f32) * VOXEL_M + self.shape.blocks_from_m
     }
 
     /// Look that some columns have together.
@@ -103,7 +103,7 @@ impl<'a> ManmadeColumns<'a> {
                 false => Vec2::from_angle(sum.to_angle() / 4.0),
             },
             columns: columns.len() as u32,
-            height_m: top as f32 * 0.4 - 1.0,
+            height_m: top as f32 * VOXEL_M + BOTTOM_M,
             id,
             thin: columns.len() <= THIN && !wide,
             top: tops.iter().sum::<Vec2>() / tops.len().max(1) as f32,

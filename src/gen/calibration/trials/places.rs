@@ -103,11 +103,16 @@ pub fn across_the_road(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
         let across = (b - a).normalize_or_zero().perp();
         let mut found = Vec::new();
         for i in -20..=20 {
-            disc_cells(Extent::WINDOW, a + across * (f64::from(i) * 0.4), 1.5, |x, y| {
-                if road_only(x, y) {
-                    found.push([x, y]);
-                }
-            });
+            disc_cells(
+                Extent::WINDOW,
+                a + across * (f64::from(i) * scene::Window::VOXEL_M),
+                1.5,
+                |x, y| {
+                    if road_only(x, y) {
+                        found.push([x, y]);
+                    }
+                },
+            );
         }
         found.sort_unstable();
         found.dedup();

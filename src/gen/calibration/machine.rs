@@ -1,6 +1,7 @@
 //! Load, name and memory of the machine. Times taken on a busy machine are worth little, those of another machine
 //! nothing.
 
+use std::path::Path;
 use std::sync::LazyLock;
 
 use serde::Serialize;
@@ -75,4 +76,14 @@ pub fn peak_rss_mb() -> Option<f64> {
 pub fn forget_peak_memory() {
     // If the reset fails, peaks are those of the whole run, which readers must then assume.
     std::fs::write("/proc/self/clear_refs", "5").ok();
+}
+
+/// A path as reports show it: the file's name alone for an absolute path, since folders of this machine do not belong
+/// there.
+pub fn told(path: &Path) -> String {
+    let name = path.file_name().filter(|_| path.is_absolute());
+    name.map_or_else(
+        || path.display().to_string(),
+        |name| name.to_string_lossy().into_owned(),
+    )
 }

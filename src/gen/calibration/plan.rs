@@ -16,7 +16,7 @@ use super::sensors;
 use super::settings::{self, CandidateSetting};
 use crate::MeasurementProgress;
 use crate::held_out::bare_scene;
-use crate::markdown::told;
+use crate::machine::told;
 use job::{GenParams, JobCtx};
 use nets::OccModels;
 use scene::Scene;
