@@ -139,8 +139,10 @@ mod tests {
         };
         assert_eq!([looks(false, false), looks(true, false)], [100, 100]);
         assert_eq!([looks(false, true), looks(true, true)], [20, 100]);
-        let mut playback = Playback::default();
-        playback.playing = true;
+        let mut playback = Playback {
+            playing: true,
+            ..Playback::default()
+        };
         assert!(playback.sensors_are_due(f64::NAN, false));
     }
 

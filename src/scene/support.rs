@@ -48,7 +48,7 @@ pub const CROWN: usize = 8;
 
 /// Bins up to the one on the ground of most columns that have any, where labels are where things are: data sets leave ground out
 /// under what stands on it. None where labels let the ground down.
-fn usual_ground_bins(extent: Extent, ground: &[u64]) -> u64 {
+pub fn usual_ground_bins(extent: Extent, ground: &[u64]) -> u64 {
     if extent.lattice().lowered() > 0 {
         return 0;
     }

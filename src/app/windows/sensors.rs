@@ -161,6 +161,16 @@ fn lists(
             *choice = SensorChoice::Radar(i);
         }
     }
+    add_buttons(ui, rig, (choice, cameras), commands);
+}
+
+/// Buttons that add a sensor, and those for the chosen one.
+fn add_buttons(
+    ui: &mut Ui,
+    rig: &SensorRig,
+    (choice, cameras): (&mut SensorChoice, &mut CamerasShown),
+    commands: &mut Vec<Command>,
+) {
     ui.horizontal(|ui| {
         if ui
             .add_enabled(

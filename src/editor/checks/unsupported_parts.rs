@@ -6,7 +6,9 @@ use super::{Context, Finding, Findings, Fix, Severity, middle};
 use crate::Edit;
 use language::{t, tf};
 use scene::Class;
-use scene::support::{CROWN, bins_set, ground, groups, is_known_to_float, neighbours, reached, stem};
+use scene::support::{
+    CROWN, bins_set, ground, groups, is_known_to_float, neighbours, reached, stem, usual_ground_bins,
+};
 
 pub const NAME: &str = "unsupported_parts";
 /// Smaller parts are noise of labels, voxels.
@@ -20,6 +22,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     let mut parts: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
     // Standing voxels replace the ground's own voxel, in whatever bin the ground lies beside them.
     let ground = ground(extent, &bits.by_class);
+    let usual = usual_ground_bins(extent, &ground);
     let beside: Vec<u64> = (0..extent.columns())
         .map(|c| neighbours(extent, c).fold(0, |word, n| word | ground[n]))
         .collect();
@@ -29,8 +32,10 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         if own.is_empty() {
             continue;
         }
-        // Held from below: in the ground, or on a voxel of another class.
-        let rests = reached(extent, own, |c| beside[c] | (bits.occupied[c] & !own[c]) << 1);
+        // Held from below: in the ground or where it usually lies, or on a voxel of another class.
+        let rests = reached(extent, own, |c| {
+            usual | beside[c] | (bits.occupied[c] & !own[c]) << 1
+        });
         let mut cells = Vec::new();
         for c in 0..extent.columns() {
             cells.extend(bins_set(extent, c, own[c] & !rests[c] & bits.supported[c]));

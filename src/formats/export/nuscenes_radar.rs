@@ -3,7 +3,7 @@
 use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::{FormatError, Holds, nuscenes_radar, sensor_names};
 
-/// See [`crate::nuscenes_radar`].
+/// See `nuscenes_radar`.
 pub const EXPORTER: Exporter = Exporter {
     id: "nuscenes-radar",
     title: "Radar: nuScenes .pcd of 18 fields, sensor frame (place, cross-section, radial speed), a file a radar",
