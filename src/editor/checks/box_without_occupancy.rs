@@ -1,11 +1,8 @@
 //! Boxes in whose place no voxel of their class stands.
 
-use std::ops::Range;
-
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
 use language::tf;
-use scene::Frame;
 use scene::draft::{box_bins, box_columns, ground_bin};
 use scene::raster::box_cells;
 use scene::{SceneBox, VoxelGrid};
@@ -13,14 +10,6 @@ use scene::{SceneBox, VoxelGrid};
 pub const NAME: &str = "box_without_occupancy";
 /// Voxels this far outside a box still belong to it, m.
 const MARGIN_M: f64 = 0.3;
-
-/// Bins of a column that the fix fills: from the lowest up where labels let the ground down, else above the ground.
-fn bins(frame: &Frame, x: usize, y: usize, layers: usize) -> Range<usize> {
-    match frame.extent().lattice().lowered() {
-        0 => box_bins(frame.extent().lattice(), ground_bin(&frame.layout, x, y), layers),
-        _ => 0..layers,
-    }
-}
 
 pub fn check(context: &Context<'_>, out: &mut Findings) {
     let grid = &context.frame.occupancy;
@@ -30,9 +19,11 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         if columns.is_empty() || voxels(grid, b) > 0 {
             continue;
         }
-        let cells = columns
-            .iter()
-            .flat_map(|&(x, y, layers)| bins(context.frame, x, y, layers).map(move |z| [x, y, z]));
+        let lattice = grid.extent().lattice();
+        let cells = columns.iter().flat_map(|&(x, y, layers)| {
+            let ground = ground_bin(&context.frame.layout, x, y);
+            box_bins(lattice, ground, layers).map(move |z| [x, y, z])
+        });
         out.push(Finding {
             check: NAME,
             severity: Severity::Error,
