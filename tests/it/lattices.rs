@@ -4,9 +4,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{Cursor, Read, Write};
 use std::path::Path;
+use std::sync::Arc;
 
 use app::export::{ExportOptions, ExportProgress, export_all};
-use editor::Document;
+use editor::{Document, Shape};
 use formats::import::{self, Content, ImportOptions};
 use formats::{export, loom};
 use glam::DVec3;
@@ -14,7 +15,7 @@ use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx, Pipeline};
 use nets::OccModels;
 use npyz::WriterBuilder;
-use scene::{Class, Edit, Extent, Lattice, Scene};
+use scene::{BevLayer, Class, Edit, Extent, Lattice, Scene};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
@@ -239,7 +240,7 @@ fn sensors_and_networks_work_on_it_and_leave_the_rest() {
         sweep.points.len()
     );
 
-    // A car is moved; the networks draw around it, in their voxels.
+    // A car is moved: its draft is the result. A walkway is painted: the networks draw on it, in their voxels.
     let mut document = Document::new(scene);
     let car = *document.scene().frame().boxes.values().next().expect("a car");
     let moved = Edit::MoveBox {
@@ -249,18 +250,34 @@ fn sensors_and_networks_work_on_it_and_leave_the_rest() {
         size_m: None,
     };
     document.apply("Move", &moved).expect("sound");
-    let job = Job {
-        scene: document.scene().clone(),
-        params: GenParams {
-            steps: 4,
-            ..GenParams::default()
-        },
-    };
     let mut pipeline = OccPipeline::new(OccModels::bundled().expect("bundled"));
-    let result = pipeline.run(&job, &JobCtx::detached()).expect("a result");
+    let mut run = |scene: &Arc<Scene>| {
+        let job = Job {
+            scene: scene.clone(),
+            params: GenParams {
+                steps: 4,
+                ..GenParams::default()
+            },
+        };
+        pipeline.run(&job, &JobCtx::detached()).expect("a result")
+    };
+    let result = run(document.scene());
+    assert_eq!(result.occupancy, document.scene().frame().occupancy);
+    assert_eq!(result.report.network_calls, 0);
+    assert!(result.report.voxels_changed > 0);
+    let walkway = Edit::PaintBev {
+        layer: BevLayer::Walkway,
+        shape: Shape::Disc {
+            center_m: car.center_m.truncate(),
+            radius_m: 4.0,
+        },
+        value: true,
+    };
+    document.apply("Paint", &walkway).expect("sound");
+    let result = run(document.scene());
     let source = &document.scene().frame().source.occupancy;
     assert_eq!(result.occupancy.extent(), source.extent());
-    assert!(result.report.voxels_changed > 0);
+    assert!(result.report.network_calls > 0);
     // Objects and ground are the draft's, voxel by voxel; what is coarse is told.
     let draft = &document.scene().frame().occupancy;
     let is_exact = |label: u8| Class::from_id(label).is_some_and(|c| c.is_object() || c.is_ground());

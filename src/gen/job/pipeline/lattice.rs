@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::contract::{GenError, GenParams, GenResult, Job, JobCtx, JobUpdate, RegionMode};
+use crate::contract::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, JobUpdate, RegionMode};
 use scene::draft::ground_bin;
 use scene::grid::{lower, raise};
 use scene::{Class, Frame, Lattice, VoxelGrid};
@@ -20,7 +20,25 @@ pub(super) fn in_networks_lattice(job: &Job) -> Option<Job> {
     }
 }
 
-/// Runs a job in the networks' lattice and gives its previews and its result in the lattice of the map.
+/// True if the networks may add to the draft of a column: in a whole scene everywhere, in an edit where it changed the layout
+/// or made the map larger. Around a box that comes or goes, walls and plants stay.
+fn may_change(fine: &Frame, params: &GenParams, x: usize, y: usize) -> bool {
+    params.region == RegionMode::Full
+        || params.strength > 0.0
+        || fine.layout.cell(x, y) != fine.source.layout.cell(x, y)
+        || fine.is_new_ground(x, y)
+}
+
+/// True if the networks may add to no column, so that the draft is the result.
+fn is_draft_the_result(fine: &Frame, params: &GenParams) -> bool {
+    !fine
+        .extent()
+        .all_columns()
+        .any(|[x, y]| may_change(fine, params, x, y))
+}
+
+/// Runs a job in the networks' lattice and gives its previews and its result in the lattice of the map. The networks run only
+/// if they may change something.
 pub(super) fn resampled(
     job: &Job,
     inner: &Job,
@@ -28,6 +46,19 @@ pub(super) fn resampled(
     run: impl FnOnce(&Job, &JobCtx<'_>) -> Result<GenResult, GenError>,
 ) -> Result<GenResult, GenError> {
     let (fine, coarse) = (job.scene.for_generation(), inner.scene.for_generation());
+    let source = &fine.frame().source.occupancy;
+    if is_draft_the_result(fine.frame(), &job.params) {
+        let occupancy = fine.frame().occupancy.clone();
+        let report = GenReport {
+            voxels_changed: source.count_different(&occupancy),
+            ..GenReport::default()
+        };
+        return Ok(GenResult {
+            key: job.key(),
+            occupancy,
+            report,
+        });
+    }
     let back = |result: &GenResult| GenResult {
         key: job.key(),
         occupancy: put_back(fine.frame(), coarse.frame(), &result.occupancy, &job.params),
@@ -48,7 +79,6 @@ pub(super) fn resampled(
     };
     let result = run(inner, &with)?;
     let mut out = back(&result);
-    let source = &fine.frame().source.occupancy;
     out.report.voxels_changed = source.count_different(&out.occupancy);
     let coarse = fine.frame().occupancy.count_different(&out.occupancy);
     if coarse > 0 {
@@ -63,8 +93,8 @@ pub(super) fn resampled(
 
 /// The labels of a map after a result in the networks' lattice. Where that equals the draft or the source in its own voxels,
 /// the map's draft or source stays; elsewhere a voxel has the label at its middle. Painted voxels stay, and so do objects and
-/// ground, which the draft has as finely as the map: of the result's ground only that in columns without any is taken. An edit
-/// changes walls and plants only in columns whose layout it changed: around a box that comes or goes they stay.
+/// ground, which the draft has as finely as the map: of the result's ground only that in columns without any is taken. Columns
+/// that the networks may not change ([`may_change`]) stay whole.
 fn put_back(fine: &Frame, coarse: &Frame, result: &VoxelGrid, params: &GenParams) -> VoxelGrid {
     let (extent, of) = (fine.extent(), result.extent());
     let (lattice, of_lattice) = (extent.lattice(), of.lattice());
@@ -86,11 +116,7 @@ fn put_back(fine: &Frame, coarse: &Frame, result: &VoxelGrid, params: &GenParams
             continue;
         };
         let column = result.column(i, j);
-        if column == coarse.occupancy.column(i, j) {
-            continue;
-        }
-        let is_edit = params.region == RegionMode::Auto && params.strength == 0.0;
-        if is_edit && fine.layout.cell(x, y) == fine.source.layout.cell(x, y) && !fine.is_new_ground(x, y) {
+        if column == coarse.occupancy.column(i, j) || !may_change(fine, params, x, y) {
             continue;
         }
         raise(of_lattice, column, &mut new);
@@ -140,7 +166,7 @@ fn is_exact(label: u8) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{BevLayout, Extent, Scene};
+    use scene::{BevLayer, BevLayout, Extent, Scene};
 
     /// A street in voxels of 0.2 m with a wall of one voxel, which 0.4 m cannot hold.
     fn fine() -> Scene {
@@ -184,6 +210,40 @@ mod tests {
             .filter(|(.., l)| *l == Class::Vegetation.id())
             .map(|(_, _, z, _)| z);
         assert_eq!(low.min(), Some(17));
+    }
+
+    #[test]
+    fn an_edit_of_boxes_asks_no_network_and_one_of_the_layout_does() {
+        let mut scene = fine();
+        scene.change_canvas(|frame| frame.occupancy.set(30, 60, 17, Class::Car.id()));
+        let asked = |scene: Scene, params: GenParams| {
+            let job = Job {
+                scene: Arc::new(scene),
+                params,
+            };
+            let inner = in_networks_lattice(&job).expect("of another lattice");
+            let mut asked = false;
+            let result = resampled(&job, &inner, &JobCtx::detached(), |inner, _| {
+                asked = true;
+                Ok(GenResult {
+                    key: inner.key(),
+                    occupancy: inner.scene.frame().occupancy.clone(),
+                    report: GenReport::default(),
+                })
+            });
+            let result = result.expect("runs");
+            assert_eq!(result.occupancy, job.scene.frame().occupancy);
+            (asked, result.report.voxels_changed)
+        };
+        assert_eq!(asked(scene.clone(), GenParams::default()), (false, 1));
+        assert_eq!(asked(scene.clone(), anew()), (true, 1));
+        let stronger = GenParams {
+            strength: 0.5,
+            ..GenParams::default()
+        };
+        assert_eq!(asked(scene.clone(), stronger), (true, 1));
+        scene.change_canvas(|frame| frame.layout.set(BevLayer::Walkway, 50, 50, true));
+        assert_eq!(asked(scene, GenParams::default()), (true, 1));
     }
 
     #[test]
