@@ -4,9 +4,9 @@
 use nets::lidar::LidarNet;
 use nets::lidar::field::RaySampling;
 use scene::{Class, SensorRig};
-use sensors::learned;
-use sensors::learned_caster::LearnedCaster;
-use sensors::truth;
+use sensors::lidar::learned;
+use sensors::lidar::learned_caster::LearnedCaster;
+use sensors::lidar::truth;
 use world::World;
 use world::voxelize::{Vertical, complete};
 

@@ -18,9 +18,9 @@ use rayon::prelude::*;
 use safetensors::{Dtype, tensor::TensorView};
 use scene::splats::SplatOptions;
 use scene::{Class, SensorRig, VoxelGrid, Window};
-use sensors::cloud::GaussianCloud;
 use sensors::raycast::ColumnMasks;
 use sensors::splat;
+use sensors::splat::cloud::GaussianCloud;
 
 /// Pictures that are splatted.
 const SIZE: [u32; 2] = [240, 135];

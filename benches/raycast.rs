@@ -6,8 +6,8 @@ use glam::DVec3;
 use numeric::quantile::median;
 use rayon::prelude::*;
 use scene::{Class, SensorRig, VoxelGrid, Window};
-use sensors::caster::Caster;
 use sensors::lidar;
+use sensors::lidar::caster::Caster;
 use sensors::raycast::{ColumnMasks, LANES, Packet};
 
 #[path = "timing.rs"]

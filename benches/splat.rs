@@ -3,7 +3,7 @@
 //! Run: `cargo bench --bench splat`.
 
 use scene::SensorRig;
-use sensors::cloud::GaussianCloud;
+use sensors::splat::cloud::GaussianCloud;
 use sensors::splat::{PREVIEW_SIZE, SplatOptions, VIEW_SIZE, render_rig};
 use viewport::{SplatRenderer, headless_device};
 

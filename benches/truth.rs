@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use scene::TimeOfDay;
-use sensors::appearance::{Appearance, Quality};
+use sensors::pictures::appearance::{Appearance, Quality};
 
 const SIZE: [u32; 2] = [800, 450];
 const TURNS: usize = 7;

@@ -6,7 +6,7 @@ use std::path::Path;
 use editor::{Document, Edit};
 use formats::loom;
 use scene::{Class, LidarSweep, Scene, SceneBox};
-use sensors::caster::Caster;
+use sensors::lidar::caster::Caster;
 use viewport::{
     LayoutPlane, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewScene, Viewport, headless_device,
     lidar_colors,

@@ -1,5 +1,5 @@
 // Camera pictures by day and night in any weather: the light that reaches each pixel, computed as
-// src/gen/sensors/appearance does on the processor, function by function under the same names (twins; change both).
+// src/gen/sensors/pictures/appearance does on the processor, function by function under the same names (twins; change both).
 // In front stand the constants that src/viewport/appearance/layout.rs makes of the Rust ones, and appearance_* parts:
 // one module, three storage buffers, no subgroups.
 

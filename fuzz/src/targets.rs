@@ -33,7 +33,7 @@ use scene::{
     BevLayer, BevLayout, BoxId, Class, Extent, Frame, Relief, Scene, SensorRig, TimeOfDay, Weather, infer,
 };
 use sensors::lidar::Rays;
-use sensors::project::SplatCamera;
+use sensors::splat::project::SplatCamera;
 use trade::Presets;
 use words::describe::describe;
 use words::hear::hear;

@@ -66,16 +66,11 @@ fn plant(a: vec3f, normal: vec3f, fp: f32) -> Surface {
 }
 
 fn facade(st: Structure, p: vec3f, at: vec2f, a: vec3f, normal: vec3f, fp: f32) -> Surface {
-    var walls = array<vec3f, 8>(
-        vec3f(198.0, 186.0, 164.0), vec3f(166.0, 92.0, 70.0), vec3f(214.0, 208.0, 198.0), vec3f(150.0, 146.0, 140.0),
-        vec3f(188.0, 160.0, 122.0), vec3f(122.0, 70.0, 56.0), vec3f(176.0, 178.0, 180.0), vec3f(222.0, 204.0, 168.0),
-    );
-    let style = hash1(st.id, 1u) % 8u;
-    let tone = walls[style];
-    var wall = srgb(tone.x, tone.y, tone.z);
+    let style = hash1(st.id, 1u) % 12u;
+    var wall = wall_color(style);
     wall *= 0.90 + 0.14 * value3(a * 0.35, 14u) + 0.05 * (value3(a * 2.5, 15u) - 0.5);
     wall *= 1.0 - 0.25 * ramp(0.9, 0.0, p.z) * (0.4 + 0.6 * value3(a * 1.2, 16u));
-    if style == 1u || style == 5u {
+    if style < 4u {
         let row = floor(at.y / 0.085);
         let joint = band(abs(at.y / 0.085 - row - 0.5) - 0.40, 0.1, fp / 0.085);
         let odd = row - trunc(row / 2.0) * 2.0;

@@ -31,9 +31,19 @@ fn openness(hit: Met, p: vec3f, n: vec3f) -> f32 {
             if hit.kind == KIND_GROUND {
                 let beside = length(max(abs(q.xy) - size.xy / 2.0, vec2f(0.0)));
                 let small = min(min(size.x, size.y) / 1.6, 1.0);
-                open *= 1.0 - 0.80 * small * ramp(0.55 * min(size.z, 1.6), 0.0, beside);
+                var dark = 0.80;
+                var high = 1.6;
+                if is_scenery(a) {
+                    if thing_foot(a).z > p.z + 0.5 {
+                        continue;
+                    }
+                    dark = 0.45;
+                    high = 2.4;
+                }
+                open *= 1.0 - dark * small * ramp(0.55 * min(size.z, high), 0.0, beside);
             } else if hit.kind == KIND_THING && hit.which == i {
-                open *= 0.62 + 0.38 * ramp(0.0, 0.35, clamp(q.z / size.z, 0.0, 1.0));
+                let over = select(q.z / size.z, (q.z - num(a + 17u)) / 2.5, is_scenery(a));
+                open *= 0.62 + 0.38 * ramp(0.0, 0.35, clamp(over, 0.0, 1.0));
             }
         }
     }
@@ -175,7 +185,10 @@ fn light_along(eye: vec3f, ray: vec3f, pixel: f32) -> Sample {
                 let a = thing_word(hit.which);
                 let size = thing_size(a);
                 let reach = 0.028 * max(size.z, size.x * 0.5);
-                start = thing_turn_back(a, rounded(hit.part, thing_turn(a, p - thing_foot(a)), start, reach));
+                if !is_scenery(a) {
+                    start = rounded(hit.part, thing_turn(a, p - thing_foot(a)), start, reach);
+                }
+                start = thing_turn_back(a, start);
             }
             var fp = 0.05 + hit.t * 0.004;
             if first {

@@ -213,7 +213,14 @@ fn surface(hit: Met, p: vec3f, start: vec3f, fp: f32) -> Surface {
         return voxel_surface(p, hit.which, start, fp);
     }
     let a = thing_word(hit.which);
-    var s = thing_surface(a, hit.part, thing_turn(a, p - thing_foot(a)), thing_turn(a, start), fp);
+    let local = thing_turn(a, p - thing_foot(a));
+    let n = thing_turn(a, start);
+    var s: Surface;
+    if is_scenery(a) {
+        s = scenery_surface(a, hit.part, local, n, fp);
+    } else {
+        s = thing_surface(a, hit.part, local, n, fp);
+    }
     s.normal = start;
     return cover(s, p, 0.75);
 }

@@ -16,6 +16,7 @@ fn thing_word(i: u32) -> u32 { return section(8u) + i * THING_WORDS; }
 fn thing_foot(a: u32) -> vec3f { return num3(a + 5u); }
 fn thing_heading(a: u32) -> vec2f { return vec2f(num(a + 8u), num(a + 9u)); }
 fn thing_size(a: u32) -> vec3f { return num3(a + 10u); }
+fn is_scenery(a: u32) -> bool { return words[a + 18u] == 1u; }
 fn thing_turn(a: u32, d: vec3f) -> vec3f {
     let h = thing_heading(a);
     return vec3f(d.x * h.x + d.y * h.y, d.y * h.x - d.x * h.y, d.z);
@@ -136,6 +137,18 @@ fn cast_part(part: u32, o: vec3f, d: vec3f, limit: f32) -> vec4f {
     return best;
 }
 
+// True in a place that was cut out of a thing.
+fn is_cut(a: u32, p: vec3f) -> bool {
+    let cuts = words[a + 19u];
+    let first = cuts >> 4u;
+    for (var i = 0u; i < (cuts & 15u); i++) {
+        if all(p >= plane_at(first + 2u * i).xyz) && all(p <= plane_at(first + 2u * i + 1u).xyz) {
+            return true;
+        }
+    }
+    return false;
+}
+
 // Normal in box coordinates left as it is: turned by the caller. Distance below 0: none.
 fn cast_thing(i: u32, origin: vec3f, dir: vec3f, limit: f32) -> Met {
     let a = thing_word(i);
@@ -165,7 +178,7 @@ fn cast_thing(i: u32, origin: vec3f, dir: vec3f, limit: f32) -> Met {
     let end = first + words[a + 4u];
     for (var part = first; part < end; part++) {
         let hit = cast_part(part, o, d, best);
-        if hit.w >= 0.0 {
+        if hit.w >= 0.0 && !is_cut(a, origin + dir * hit.w) {
             best = hit.w;
             out = Met(hit.w, hit.xyz, KIND_THING, i, part);
         }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use egui::ColorImage;
 use glam::{DMat3, DQuat};
 
-use job::guard::Panicked;
-use job::product::{Ctx, Product, Wake, Worker};
+use runtime::guard::Panicked;
+use runtime::worker::{Ctx, Product, Wake, Worker};
 use scene::{Camera, Lens, Scene, SceneRev};
 use sensors::bake::draw::PreparedGaussians;
 use sensors::bake::{BakeOptions, bake_scene};
@@ -214,7 +214,7 @@ impl Baking {
 mod tests {
     use super::*;
     use glam::DVec3;
-    use sensors::rays::CameraRays;
+    use sensors::raycast::rays::CameraRays;
 
     /// The centre of the view is the centre of the picture, and up is up.
     #[test]

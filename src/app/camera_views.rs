@@ -8,8 +8,8 @@ use egui::{Color32, ColorImage};
 use language::t;
 use scene::{RadarReturn, Scene};
 use sensors::cameras::{self, CameraInput, CameraSource, Detail, SourceId, ViewId};
-use sensors::march::MarchScene;
-use sensors::painter::PaintInput;
+use sensors::pictures::march::MarchScene;
+use sensors::pictures::painter::PaintInput;
 use viewport::LidarColorMode;
 use widgets::theme;
 

@@ -6,12 +6,12 @@ use anyhow::{Context, bail};
 
 use formats::video::{VideoKind, VideoWriter};
 use scene::Scene;
-use sensors::appearance::Quality;
 use sensors::cameras::{
     self, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions, SourceId, ViewId, bounds,
     learned,
 };
-use sensors::painter::{CameraPainter, PaintWith};
+use sensors::pictures::appearance::Quality;
+use sensors::pictures::painter::{CameraPainter, PaintWith};
 use viewport::ViewCamera;
 
 use crate::camera_views::{camera_input, paint_input};

@@ -13,7 +13,7 @@ use super::state::UiState;
 use language::t;
 use nets::perceiver::stands::Stands;
 use scene::{BoxId, Extent, Frame, Pose, Scene, SceneBox, SceneRev};
-use sensors::perceived::{GHOST, MISSED};
+use sensors::perceive::pictures::{GHOST, MISSED};
 use widgets::theme;
 
 /// Colour of a predicted box that matches one of the scene.

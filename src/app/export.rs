@@ -20,16 +20,16 @@ use formats::export::{BoxVisibility, ExportPicture, ExportSpan, Exporter, Observ
 use formats::recipe::Recipe;
 use nets::lidar::LidarNet;
 use scene::{CameraMaps, CameraTruth, GaussianScene, Lattice, LidarSweep, Pose, RadarScan, Scene};
-use sensors::appearance::Quality;
 use sensors::bake::{self, BakeOptions};
 use sensors::cameras::{
     self, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions, SourceId, ViewId, bounds,
     pictures,
 };
-use sensors::learned::Drops;
-use sensors::observed;
+use sensors::lidar::learned::Drops;
+use sensors::lidar::observed;
+use sensors::lidar::rolling;
+use sensors::pictures::appearance::Quality;
 use sensors::radar;
-use sensors::rolling;
 use viewport::{ViewCamera, ViewPreset};
 
 pub use progress::ExportProgress;

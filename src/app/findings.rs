@@ -8,7 +8,7 @@ use crate::camera_views::march;
 use editor::checks::{self, Finding, VisibilityCounts};
 use formats::physical;
 use scene::{BoxId, LidarPoint, Pose, Returns, Scene};
-use sensors::rolling;
+use sensors::lidar::rolling;
 use sensors::splat::PREVIEW_SIZE;
 
 /// Counts the camera pixels and LiDAR returns of every box of the current frame. Pixels come from exact rays to voxels

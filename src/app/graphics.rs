@@ -2,11 +2,11 @@
 //! The sensor thread has a device of its own, so the window never waits for it. The processor draws the rest.
 
 use scene::{Camera, CameraMaps};
-use sensors::appearance::{Appearance, CameraImage, Quality};
 use sensors::cameras::Card;
-use sensors::cloud::GaussianCloud;
-use sensors::rays::CameraRays;
+use sensors::pictures::appearance::{Appearance, CameraImage, Quality};
+use sensors::raycast::rays::CameraRays;
 use sensors::splat::SplatOptions;
+use sensors::splat::cloud::GaussianCloud;
 use viewport::{AppearanceRenderer, SplatRenderer, headless_device};
 
 /// Environment variable: 1 allows software drivers too, for tests; 0 allows no card.

@@ -53,7 +53,7 @@ pub use authoring::{memory, open, prompting, scenery, text, wildcards};
 
 pub use command::Command;
 pub use panes::compare;
+pub use runtime::pool::start_workers;
 pub use shell::app::{AppConfig, BuildPipeline, NewScene, OpenScene, SaveScene, SceneloomApp};
-pub use shell::priority::start_workers;
 pub use shell::run::{run_window, run_window_with};
 pub use shell::{dock, keymap, live, recovery, settings};

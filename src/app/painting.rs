@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use sensors::painter::{PaintError, PaintModel, PaintOptions, PaintWith, SchedulerKind};
+use sensors::pictures::painter::{PaintError, PaintModel, PaintOptions, PaintWith, SchedulerKind};
 
 /// The user's settings. A value of `None` stands for the default of the weights.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

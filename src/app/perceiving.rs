@@ -5,13 +5,13 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use authoring::corner_case::{self, NetworkSensors, SceneVariation, Search, Tried, Vary};
-use job::JobId;
-use job::guard::Panicked;
-use job::product::{Ctx, Event, Product, Wake, Worker};
+use runtime::guard::Panicked;
+use runtime::worker::JobId;
+use runtime::worker::{Ctx, Event, Product, Wake, Worker};
 use scene::{BoxId, Scene, SceneRev};
-use sensors::perceived::{self, CameraReport};
-use sensors::perceived_sweep::{self, SweepReport};
-use sensors::perceived_voxels::{self, Hears, VoxelReport};
+use sensors::perceive::pictures::{self, CameraReport};
+use sensors::perceive::sweep::{self, SweepReport};
+use sensors::perceive::voxels::{self, Hears, VoxelReport};
 
 /// A request to the thread.
 enum PerceptionRequest {
@@ -60,19 +60,19 @@ impl Product for Perceiver {
 
     fn make(&mut self, request: &PerceptionRequest, ctx: &Ctx<'_, PerceptionEvent>) -> PerceptionEvent {
         match request {
-            PerceptionRequest::Look(scene, NetworkSensors::Lidar) => match perceived_sweep::report(scene) {
+            PerceptionRequest::Look(scene, NetworkSensors::Lidar) => match sweep::report(scene) {
                 Ok(report) => PerceptionEvent::Swept(scene.rev, report),
                 Err(error) => PerceptionEvent::Failed(error.to_string()),
             },
             PerceptionRequest::Look(scene, NetworkSensors::Both) => {
-                match perceived_voxels::report(scene, Hears::Both) {
+                match voxels::report(scene, Hears::Both) {
                     Ok(report) => PerceptionEvent::Told(scene.rev, report),
                     Err(error) => PerceptionEvent::Failed(error.to_string()),
                 }
             }
             PerceptionRequest::Look(scene, NetworkSensors::Cameras) => {
                 let placed = scene.for_sensors();
-                match perceived::report(&placed) {
+                match pictures::report(&placed) {
                     Ok(report) => PerceptionEvent::Looked(scene.rev, report),
                     Err(error) => PerceptionEvent::Failed(error.to_string()),
                 }

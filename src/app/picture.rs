@@ -8,7 +8,7 @@ use scene::{
     BevLayer, Class, Extent, Frame, LidarSweep, MultiPlaneImage, RadarScan, Scene, SceneBox, VoxelGrid,
 };
 use sensors::cameras::bounds;
-use sensors::{color, rolling};
+use sensors::{lidar::rolling, pictures::color};
 use viewport::{
     Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     headless_device, lidar_colors,

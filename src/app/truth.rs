@@ -3,8 +3,8 @@
 use anyhow::bail;
 
 use scene::{CameraTruth, Pose, Scene};
-use sensors::appearance::{Appearance, CameraImage, NextMoment, Quality};
 use sensors::cameras::{CameraInput, bounds};
+use sensors::pictures::appearance::{Appearance, CameraImage, NextMoment, Quality};
 
 /// Memory of a picture with its ground truth, bytes per pixel.
 pub const BYTES_PER_PIXEL: u64 = 160;

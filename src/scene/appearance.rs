@@ -1,5 +1,5 @@
 //! A frame prepared for camera pictures, as plain numbers: the data that the renderers on the processor and on the
-//! graphics card share. `sensors::appearance` fills it, `viewport::appearance` draws from it.
+//! graphics card share. `sensors::pictures::appearance` fills it, `viewport::appearance` draws from it.
 
 use glam::{Vec2, Vec3};
 
@@ -134,11 +134,12 @@ pub enum AppearanceSection {
     Share,
     /// 1 where there is only road around, `[x][y]`.
     Level,
-    /// Class, id, lamps, first part, parts, foot (3), heading (2), size (3), paint (3), circle in m^2.
+    /// Class, id, lamps, first part, parts, foot (3), heading (2), size (3), paint (3), circle in m^2, height of the floor,
+    /// 1 for scenery, first cut times 16 and number of cuts.
     Things,
     /// Kind, material, colour (3), six numbers of the shape.
     Parts,
-    /// Normal and reach of half spaces.
+    /// Normal and reach of half spaces; corners of cuts, with 0.
     Planes,
     /// Where the list of each block begins; one more at the end.
     ListStarts,

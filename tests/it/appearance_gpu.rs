@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use std::sync::{Mutex, MutexGuard, OnceLock};
 
 use scene::appearance::AppearanceData;
-use scene::{Camera, Conditions, Frame, SensorRig, TimeOfDay, VoxelGrid, Weather};
-use sensors::appearance::{Appearance, CameraImage, Quality};
+use scene::{Background, Camera, Conditions, Frame, SensorRig, TimeOfDay, VoxelGrid, Weather};
+use sensors::pictures::appearance::{Appearance, CameraImage, Quality};
 use viewport::{AppearanceRenderer, headless_device};
 use world::World;
 use world::voxelize::{Vertical, complete};
@@ -24,10 +24,12 @@ fn gpu() -> MutexGuard<'static, AppearanceRenderer> {
     renderer.lock().unwrap_or_else(|e| e.into_inner())
 }
 
-fn frame() -> Frame {
+/// A frame of a world without what is known about its scenery, or with it.
+fn frame() -> (Frame, Background) {
     let world = World::random(5);
     let grid = complete(&world, Vertical::Occ3d);
-    Frame::new(world.layout.clone(), world.boxes.clone(), grid)
+    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), grid);
+    (frame, world.background)
 }
 
 /// Mean absolute difference of the bytes, and the share of pixels of which no channel differs by more than 8.
@@ -59,21 +61,26 @@ fn keep(name: &str, image: &CameraImage) {
 /// Every time and weather: at most 2/255 apart on average, and 97 % of the pixels within 8/255 in every channel.
 #[test]
 fn pictures_agree_with_the_processor() {
-    let (frame, rig) = (frame(), SensorRig::default());
+    let ((frame, background), rig) = (frame(), SensorRig::default());
+    assert!(background.len() > 20, "{} things", background.len());
     let mut far = Vec::new();
-    for (name, time, weather) in [
-        ("day", TimeOfDay::Day, Weather::Clear),
-        ("night", TimeOfDay::Night, Weather::Clear),
-        ("rain", TimeOfDay::Day, Weather::Rain),
-        ("night rain", TimeOfDay::Night, Weather::Rain),
-        ("snow", TimeOfDay::Day, Weather::Snow),
-        ("fog", TimeOfDay::Day, Weather::Fog),
-        ("dusk", TimeOfDay::Dusk, Weather::Clear),
-        ("dawn, overcast", TimeOfDay::Dawn, Weather::Overcast),
-        ("sandstorm", TimeOfDay::Day, Weather::Sandstorm),
+    let unknown = Background::default();
+    for (name, time, weather, things) in [
+        ("day, things", TimeOfDay::Day, Weather::Clear, &background),
+        ("night, things", TimeOfDay::Night, Weather::Clear, &background),
+        ("snow, things", TimeOfDay::Day, Weather::Snow, &background),
+        ("day", TimeOfDay::Day, Weather::Clear, &unknown),
+        ("night", TimeOfDay::Night, Weather::Clear, &unknown),
+        ("rain", TimeOfDay::Day, Weather::Rain, &unknown),
+        ("night rain", TimeOfDay::Night, Weather::Rain, &unknown),
+        ("snow", TimeOfDay::Day, Weather::Snow, &unknown),
+        ("fog", TimeOfDay::Day, Weather::Fog, &unknown),
+        ("dusk", TimeOfDay::Dusk, Weather::Clear, &unknown),
+        ("dawn, overcast", TimeOfDay::Dawn, Weather::Overcast, &unknown),
+        ("sandstorm", TimeOfDay::Day, Weather::Sandstorm, &unknown),
     ] {
         let conditions = Conditions::usual(time, weather, 3);
-        let appearance = Appearance::new(&frame, &rig, &conditions);
+        let appearance = Appearance::with_things(&frame, things, &rig, &conditions);
         let mut gpu = gpu();
         gpu.set_appearance(&appearance.data()).expect("room");
         for camera in [&rig.cameras[0], &rig.cameras[4]] {

@@ -14,7 +14,7 @@ use app::open;
 use editor::Edit;
 use formats::loom;
 use scene::{BoxId, Class, Form, Scene, Window};
-use sensors::rolling;
+use sensors::lidar::rolling;
 
 fn sceneloom(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_sceneloom"))

@@ -92,6 +92,7 @@ fn rooms_know_only_whom_they_may() {
                 ("app", _) => true,
                 (_, "app") => false,
                 ("assets" | "numeric" | "language", _) => false,
+                ("runtime", other) => other == "scene",
                 (_, "language") => matches!(name.as_str(), "editor" | "widgets"),
                 ("scene", other) => matches!(other, "assets" | "numeric"),
                 ("editor" | "formats" | "viewport", other) => matches!(other, "scene" | "assets" | "numeric"),
@@ -105,6 +106,58 @@ fn rooms_know_only_whom_they_may() {
     }
 }
 
+/// Rooms of `sensors` that a line of code names by `crate::`.
+fn named_rooms(line: &str) -> Vec<String> {
+    let after = |(at, found): (usize, &str)| {
+        let rest = &line[at + found.len()..];
+        match rest.strip_prefix('{') {
+            None => vec![rest],
+            Some(list) => list.split(',').map(str::trim).collect(),
+        }
+    };
+    let word = |text: &str| {
+        text.split(|c: char| !c.is_alphanumeric() && c != '_')
+            .next()
+            .map(str::to_owned)
+    };
+    line.match_indices("crate::")
+        .flat_map(after)
+        .filter_map(word)
+        .collect()
+}
+
+#[test]
+fn rooms_of_the_sensors_use_only_those_above_them() {
+    let row = |line: &str| {
+        let (name, rest) = line.strip_prefix("| `sensors/")?.split_once("/` |")?;
+        let uses = rest.trim_end_matches([' ', '|']).rsplit('|').next()?;
+        let uses = uses.split(',').map(|n| n.trim().to_owned()).filter(|n| n != "–");
+        Some((name.to_owned(), uses.collect::<BTreeSet<String>>()))
+    };
+    let table: Vec<(String, BTreeSet<String>)> = DOCUMENT.lines().filter_map(row).collect();
+    assert!(table.len() >= 8, "{table:?}");
+    let mut above = BTreeSet::new();
+    for (room, uses) in &table {
+        assert!(uses.is_subset(&above), "{room} uses a room below it in the table");
+        let mut found = BTreeSet::new();
+        for path in rust(&format!("src/gen/sensors/{room}")) {
+            let name = path.display().to_string();
+            let text = read(&path);
+            let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or("");
+            if !name.contains("test") {
+                found.extend(code.lines().flat_map(named_rooms));
+            }
+        }
+        found.retain(|other| other != room);
+        assert_eq!(*uses, found, "docs/architecture.md, sensors/{room}");
+        above.insert(room.clone());
+    }
+    let folders = std::fs::read_dir(root().join("src/gen/sensors")).expect("a folder");
+    let folders = folders.flatten().filter(|entry| entry.path().is_dir()).count();
+    assert_eq!(folders, table.len(), "every folder has its row");
+    assert_eq!(named_rooms("use crate::{lidar::a, splat};"), ["lidar", "splat"]);
+}
+
 /// Files of the rooms that work on maps of any extent which may name the networks' window: they talk to the networks, or
 /// show what those did.
 const MAY_NAME_THE_WINDOW: [&str; 7] = [
@@ -112,9 +165,9 @@ const MAY_NAME_THE_WINDOW: [&str; 7] = [
     "src/app/cli/region_arg.rs",
     "src/app/marks.rs",
     "src/app/panes/modelled.rs",
-    "src/gen/sensors/learned.rs",
-    "src/gen/sensors/perceived_sweep.rs",
-    "src/gen/sensors/perceived_voxels.rs",
+    "src/gen/sensors/lidar/learned.rs",
+    "src/gen/sensors/perceive/sweep.rs",
+    "src/gen/sensors/perceive/voxels.rs",
 ];
 
 #[test]

@@ -232,7 +232,7 @@ fn sensors_and_networks_work_on_it_and_leave_the_rest() {
     let scene = fine(dir.path());
     let placed = scene.for_sensors();
     assert_eq!(placed.frame().extent().lattice(), Lattice::OCC3D);
-    let sweep = sensors::rolling::of_voxels(&placed);
+    let sweep = sensors::lidar::rolling::of_voxels(&placed);
     let cars = sweep.points.iter().filter(|p| p.class == Class::Car).count();
     assert!(
         sweep.points.len() > 5000 && cars > 50,

@@ -14,8 +14,8 @@ use scene::{
     BevLayer, BevLayout, BoxId, BoxLabel, Class, Conditions, Extent, Frame, Scene, SensorRig, Shape,
     VoxelGrid, draft,
 };
-use sensors::appearance::Quality;
 use sensors::cameras::{self, CameraInput, Detail, PreparedSource, RenderContext, RenderOptions};
+use sensors::pictures::appearance::Quality;
 
 use super::cli::{Folder, json, sceneloom};
 

@@ -6,7 +6,10 @@ use std::path::PathBuf;
 use glam::DVec3;
 use npyz::NpyFile;
 use scene::{CameraMaps, Class, SensorRig, VoxelGrid, Window};
-use sensors::{cloud, color, lidar, order, project, raycast, splat};
+use sensors::lidar;
+use sensors::pictures::color;
+use sensors::raycast;
+use sensors::splat::{self, cloud, order, project};
 
 use crate::splat_reference::{camera_of, floats, json, reference_cloud};
 

@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 
 use crate::call::{Call, CallAnswer};
 use crate::desk::{Desk, Stop};
-use job::guard::guarded;
+use runtime::guard::guarded;
 
 /// Calls that may wait while one is carried out.
 pub const MOST_WAITING: usize = 32;

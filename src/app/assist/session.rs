@@ -8,7 +8,7 @@ use crate::LONGEST_CALL;
 use crate::call::Call;
 use crate::desk::Desk;
 use crate::lines::{InputLine, next_line};
-use job::guard::guarded;
+use runtime::guard::guarded;
 use scene::message::{one_line, quoted};
 
 /// Answers every line until the input ends. Errors only if input or output fail.

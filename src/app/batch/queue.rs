@@ -305,7 +305,7 @@ impl Queue {
                 !stopped.load(Ordering::Relaxed)
             })
         };
-        let thread = job::guard::spawn("batch", work, move |result| {
+        let thread = runtime::guard::spawn("batch", work, move |result| {
             let _ = tell.send(BatchEvent::Ended(
                 result.unwrap_or_else(|panic| Err(panic.into())),
             ));

@@ -8,8 +8,8 @@ use crate::camera_views::camera_input;
 use crate::picture::{self, RgbaPicture};
 use formats::{atomic, png};
 use scene::Scene;
-use sensors::appearance::{Appearance, Quality};
 use sensors::cameras::Detail;
+use sensors::pictures::appearance::{Appearance, Quality};
 
 /// Name of its file in the variant's folder.
 pub const FILE: &str = "thumb.png";

@@ -5,7 +5,7 @@ use image::imageops::{FilterType, resize};
 
 use scene::raster::box_cells;
 use scene::{BevLayer, BoxId, Class, Extent, Scene, SceneBox};
-use sensors::rolling;
+use sensors::lidar::rolling;
 
 use super::{BEHIND, Subject};
 use crate::picture::{self, RgbaPicture};

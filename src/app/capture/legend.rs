@@ -7,7 +7,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Ui, pos2, vec2};
 use language::t;
 use scene::{BevLayer, Class, Scene};
 use sensors::cameras::{DEPTH_M, ViewId};
-use sensors::color::ramp;
+use sensors::pictures::color::ramp;
 use widgets::{fonts, theme};
 
 use super::{BEHIND, CaptureOptions, Subject, above};

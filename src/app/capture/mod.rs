@@ -9,8 +9,8 @@ use anyhow::{Context, bail};
 use formats::recipe::Recipe;
 use formats::video::{VideoKind, VideoWriter};
 use scene::{Camera, Scene};
-use sensors::appearance::Quality;
 use sensors::cameras::{self, Detail, PreparedSource, RenderOptions, SourceId, ViewId, bounds};
+use sensors::pictures::appearance::Quality;
 
 use crate::camera_views::{camera_input, camera_label};
 use crate::picture::{RgbaPicture, SHEET_COLOR, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};

@@ -20,7 +20,7 @@ use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use nets::OccModels;
 use scene::{BevLayer, BoxId, Class, Scene};
-use sensors::color;
+use sensors::pictures::color;
 
 /// Arguments.
 #[derive(clap::Args, Default)]

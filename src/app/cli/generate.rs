@@ -15,7 +15,7 @@ use job::pipeline::OccPipeline;
 use job::{GenParams, GenResult, Job, Pipeline};
 use metrics::agreement::layout_agreement;
 use scene::Scene;
-use sensors::cloud::GaussianCloud;
+use sensors::splat::cloud::GaussianCloud;
 use sensors::{lidar, splat};
 
 /// Arguments.

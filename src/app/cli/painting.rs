@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use anyhow::bail;
 use app::painting::PaintWish;
-use sensors::painter::{PaintWith, SchedulerKind};
+use sensors::pictures::painter::{PaintWith, SchedulerKind};
 
 /// How learned pictures are painted.
 #[derive(clap::Args, Clone, Debug, Default, PartialEq)]

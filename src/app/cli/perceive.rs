@@ -13,8 +13,8 @@ use super::{CommandResult, Common, Moment, Stop, output};
 use app::open;
 use authoring::corner_case::{self, NetworkSensors, Vary};
 use scene::{BoxId, Scene};
-use sensors::perceived_voxels::{self, Hears, PerceptionInput, VoxelReport};
-use sensors::{perceived, perceived_sweep};
+use sensors::perceive::voxels::{self, Hears, PerceptionInput, VoxelReport};
+use sensors::perceive::{pictures, sweep};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -54,10 +54,10 @@ impl Perceive {
 
     fn look(&self, scene: &Scene) -> CommandResult {
         let placed = scene.for_sensors();
-        let found = perceived::report(&placed)?;
-        let swept = perceived_sweep::report(scene)?;
+        let found = pictures::report(&placed)?;
+        let swept = sweep::report(scene)?;
         let heard = PerceptionInput::from_scene(scene)?;
-        let told = |hears| perceived_voxels::report_of(scene, &heard, hears);
+        let told = |hears| voxels::report_of(scene, &heard, hears);
         let (both, alone) = (told(Hears::Both)?, [told(Hears::Lidar)?, told(Hears::Cameras)?]);
         let name = |camera: usize| &placed.rig.cameras[camera].name;
         let boxes = found.boxes.iter().map(|b| {
@@ -83,7 +83,7 @@ impl Perceive {
             "voxels": of_voxels(scene, &both, &alone),
         });
         output::report(&self.common, &report, || {
-            let line = |b: &perceived::SeenByRig| {
+            let line = |b: &pictures::SeenByRig| {
                 let missed = if b.thing.is_missed() { "missed" } else { "seen" };
                 let class = placed
                     .frame()
@@ -217,7 +217,7 @@ impl Perceive {
 }
 
 /// The predictions of the LiDAR's network, as JSON.
-fn of_sweep(scene: &Scene, swept: &perceived_sweep::SweepReport) -> serde_json::Value {
+fn of_sweep(scene: &Scene, swept: &sweep::SweepReport) -> serde_json::Value {
     let class = |id| scene.frame().boxes.get(&id).map(|b| b.class.name());
     let boxes = swept.boxes.iter().map(|b| {
         json!({

@@ -6,9 +6,9 @@ use glam::DVec3;
 use crate::camera_views::CamerasShown;
 use crate::state::UiState;
 use scene::{Camera, Scene, SceneBox};
-use sensors::march::GroundHeight;
-use sensors::perspective::{EDGES, bent_line, clip_near};
-use sensors::rays::CameraRays;
+use sensors::pictures::march::GroundHeight;
+use sensors::pictures::perspective::{EDGES, bent_line, clip_near};
+use sensors::raycast::rays::CameraRays;
 use viewport::GROUND_TOP_M;
 use widgets::theme;
 

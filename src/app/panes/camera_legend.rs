@@ -5,8 +5,8 @@ use egui::{Color32, Rect, Ui, pos2, vec2};
 use language::t;
 use scene::Class;
 use sensors::cameras::{CameraPicture, DEPTH_M, ViewId, perceived};
-use sensors::color::ramp;
-use sensors::perceived::{GHOST, MISSED};
+use sensors::perceive::pictures::{GHOST, MISSED};
+use sensors::pictures::color::ramp;
 use widgets::theme;
 
 /// Most classes in the legend.

@@ -23,8 +23,8 @@ use language::{t, tf};
 use numeric::decimal::decimal;
 use scene::{Camera, Class, Scene, SceneRev, SensorRig};
 use sensors::cameras::ViewId;
-use sensors::march::{MarchHit, MarchScene};
-use sensors::rays::CameraRays;
+use sensors::pictures::march::{MarchHit, MarchScene};
+use sensors::raycast::rays::CameraRays;
 use widgets::theme;
 
 /// Share of the window's width from which boxes can be chosen in a picture. A click on a smaller picture enlarges it.

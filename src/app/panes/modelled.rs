@@ -10,7 +10,7 @@ use crate::shell::tuning::LastEdit;
 use language::tf;
 use scene::Window;
 use scene::grid::{BRICK, bricks_along};
-use sensors::learned_caster::Sampled;
+use sensors::lidar::learned_caster::Sampled;
 
 /// Tokens along a side of the map.
 const TOKENS: usize = 25;

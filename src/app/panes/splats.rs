@@ -21,7 +21,7 @@ use editor::pick::{self, PickHit, PickRay};
 use editor::tools::point_of;
 use language::{t, tf};
 use scene::Scene;
-use sensors::perspective::EDGES;
+use sensors::pictures::perspective::EDGES;
 use viewport::ViewCamera;
 use widgets::icons::Icon;
 use widgets::theme;

@@ -1,6 +1,6 @@
 //! Pictures of other sources than the strip's.
 
-use job::product::Ctx;
+use runtime::worker::Ctx;
 use scene::SceneRev;
 use sensors::cameras::{SourceId, learned};
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};

@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::Sensing;
 use crate::camera_views::{CameraView, Wanted, paint_input};
 use crate::painting::PaintWish;
-use job::guard::Panicked;
-use job::product::{Ctx, Product};
 use language::tf;
+use runtime::guard::Panicked;
+use runtime::worker::{Ctx, Product};
 use scene::{Lattice, Scene, SceneRev};
-use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, learned};
-use sensors::painter::{CameraPainter, PaintError, PaintModel, PaintProgress};
+use sensors::pictures::appearance::CameraImage;
+use sensors::pictures::painter::{CameraPainter, PaintError, PaintModel, PaintProgress};
 
 /// A request to paint a scene.
 pub(super) struct PaintingRequest {

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use job::product::Ctx;
+use runtime::worker::Ctx;
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
 use super::views::Views;

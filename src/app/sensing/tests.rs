@@ -80,7 +80,7 @@ fn a_panic_is_told_once_and_the_next_scene_is_sensed() {
     let mut scene = Scene::single("test", frame, Arc::default(), 3);
     let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
     let patience = |start: Instant| assert!(start.elapsed() < Duration::from_secs(120), "no news");
-    job::guard::panic_next("sensing");
+    runtime::guard::panic_next("sensing");
     sensing.ask(&Arc::new(scene.clone()), Wanted::default(), Haste::Preview);
     let start = Instant::now();
     let problem = loop {

@@ -1,9 +1,9 @@
 //! Camera views of one scene from one source.
 
-use job::product::Ctx;
+use runtime::worker::Ctx;
 use scene::Scene;
-use sensors::appearance::Quality;
 use sensors::cameras::{CameraSource, Card, Detail, PreparedSource, RenderContext, RenderOptions};
+use sensors::pictures::appearance::Quality;
 
 use super::SensingEvent;
 use crate::camera_views::{CameraView, LARGE_SIZE, camera_input};

@@ -8,9 +8,9 @@ use crate::poses::Pair;
 use crate::renderer::Renderer;
 use crate::wire::{LidarDeviceType, LidarRenderRequest, LidarRenderReturn};
 use scene::{LidarPattern, Pose, Scene, SensorRig};
-use sensors::learned::{self, Drops};
 use sensors::lidar;
-use sensors::shaped::onto_shapes;
+use sensors::lidar::learned::{self, Drops};
+use sensors::lidar::shaped::onto_shapes;
 
 /// Parts of a spin. While one of them is swept, things stand still and the LiDAR moves on straight.
 const PARTS: u32 = 8;

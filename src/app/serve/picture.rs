@@ -14,7 +14,7 @@ use crate::renderer::Renderer;
 use crate::wire::{CameraSpec, RgbRenderRequest, RgbRenderReturn};
 use scene::rig::Carried;
 use scene::{Camera, Pose, Scene, SensorRig, Shutter};
-use sensors::appearance::Quality;
+use sensors::pictures::appearance::Quality;
 
 /// The size that a request asks for, width and height: its own, or that of its lens where it tells none. Errors if there is none,
 /// or the picture would be too large.

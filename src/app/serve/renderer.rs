@@ -9,7 +9,7 @@ use crate::recent::Recent;
 use crate::scenes::Scenes;
 use nets::lidar::LidarNet;
 use scene::{Frame, Scene, SceneRev, SensorRig};
-use sensors::appearance::Appearance;
+use sensors::pictures::appearance::Appearance;
 
 /// How sweeps come about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use egui::Ui;
 
 use editor::Document;
-use job::worker::GenWorker;
+use job::worker;
 use job::{GenError, GenParams, GenResult, Job, JobCtx, Pipeline};
 use scene::{Extent, Scene, SceneRev};
 
@@ -69,7 +69,7 @@ pub struct AppConfig {
     pub settings_file: Option<PathBuf>,
 }
 
-/// Any pipeline that the configuration makes, as one type for [`GenWorker`].
+/// Any pipeline that the configuration makes, as one type for the worker.
 struct AnyPipeline(Box<dyn Pipeline>);
 
 impl Pipeline for AnyPipeline {
@@ -192,7 +192,7 @@ impl SceneloomApp {
         };
         let wake = waker(ctx, between_frames_s);
         let mut build = config.build_pipeline;
-        let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
+        let worker = worker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
         let tuning = Tuning::new(config.settings_file.as_deref());
         // Without a settings file the configuration's parameters are used.
         let quality = tuning

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::findings::check;
 use editor::checks::Finding;
-use job::guard::Panicked;
-use job::product::{Ctx, Product, Worker};
+use runtime::guard::Panicked;
+use runtime::worker::{Ctx, Product, Worker};
 use scene::{Scene, SceneRev};
 
 /// Time without changes before a scene is checked, s.

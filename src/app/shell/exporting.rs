@@ -215,7 +215,7 @@ impl SceneloomApp {
         let progress = Arc::<ExportProgress>::default();
         let told = progress.clone();
         let write = move || write(&told);
-        let thread = job::guard::spawn("export", write, move |written| {
+        let thread = runtime::guard::spawn("export", write, move |written| {
             // Sending fails if the window has closed.
             let _ = send.send(written.unwrap_or_else(|panic| Err(panic.into())));
             wake.request_repaint();

@@ -157,7 +157,7 @@ impl SceneloomApp {
     ) {
         let (send, scene) = bounded(1);
         let wake = ctx.clone();
-        let thread = job::guard::spawn(
+        let thread = runtime::guard::spawn(
             "open",
             move || make().map(Into::into),
             move |scene| {

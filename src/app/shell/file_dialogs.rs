@@ -174,7 +174,7 @@ impl FileDialogs {
                 Box::pin(dialog.pick_file())
             };
         let wait = move || pollster::block_on(chosen).map(|file| file.path().to_path_buf());
-        let thread = job::guard::spawn("file-dialog", wait, move |path| {
+        let thread = runtime::guard::spawn("file-dialog", wait, move |path| {
             // Sending fails if the window has closed. After a panic there is no answer, as after a dismissal.
             let _ = send.send(path.unwrap_or_default());
             wake.request_repaint();

@@ -15,8 +15,8 @@ use crate::shell::workspace::Workspace;
 use crate::{AppConfig, SceneloomApp, open};
 use calibration::calibrate::{CalibrationEvent, Measurement, MeasurementTask};
 use editor::Edit;
-use job::guard::panic_next;
 use job::{GenError, GenParams};
+use runtime::guard::panic_next;
 
 const PATIENCE: Duration = Duration::from_secs(120);
 

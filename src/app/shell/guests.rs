@@ -9,8 +9,8 @@ use crossbeam_channel::Receiver;
 
 use super::app::{SceneloomApp, one_line};
 use editor::Document;
-use job::guard::guarded;
 use language::tf;
+use runtime::guard::guarded;
 use scene::op::Author;
 
 /// A task on the document, to be done by the window's thread.

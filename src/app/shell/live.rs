@@ -9,7 +9,8 @@ use job::inpaint::InpaintMask;
 pub use job::pipeline::Bounds;
 use job::pipeline::parts;
 use job::region::{CELLS, COLUMNS_PER_CELL, edited_columns};
-use job::{ChosenDensities, GenParams, JobId, JobKey, RegionMode, Stage};
+use job::{ChosenDensities, GenParams, JobKey, RegionMode, Stage};
+use runtime::worker::JobId;
 use scene::{Lattice, Scene, SceneRev};
 
 /// Edge of a latent cell, m.

@@ -35,7 +35,6 @@ pub mod perf;
 mod picking;
 pub mod planning;
 mod preferences;
-pub mod priority;
 mod recall;
 mod recovering;
 pub mod recovery;

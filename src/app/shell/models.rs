@@ -38,7 +38,7 @@ impl SceneloomApp {
         let (send, model) = bounded(1);
         let wake = ctx.clone();
         let make = move || anyhow::Ok(formats::model::read(&path, None)?);
-        let thread = job::guard::spawn("model", make, move |model| {
+        let thread = runtime::guard::spawn("model", make, move |model| {
             // Sending fails if another model was requested meanwhile.
             let _ = send.send(model.unwrap_or_else(|panic| Err(panic.into())));
             wake.request_repaint();

@@ -21,7 +21,7 @@ impl SceneloomApp {
             let network = open::road_network(&path)?;
             Ok(PlacePicker::new(network, scene_name(&path)))
         };
-        let thread = job::guard::spawn("roads", make, move |picker| {
+        let thread = runtime::guard::spawn("roads", make, move |picker| {
             // Sending fails if another scene was opened meanwhile.
             let _ = send.send(picker.unwrap_or_else(|panic| Err(panic.into())));
             wake.request_repaint();

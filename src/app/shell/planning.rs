@@ -6,9 +6,9 @@ use std::sync::Arc;
 use editor::Edit;
 use editor::checks::{self, Finding};
 use editor::fix::{RepairPlan, RepairProgress, plan_all, plan_these};
-use job::JobId;
-use job::guard::Panicked;
-use job::product::{Ctx, Event, Product, Wake, Worker};
+use runtime::guard::Panicked;
+use runtime::worker::JobId;
+use runtime::worker::{Ctx, Event, Product, Wake, Worker};
 use scene::Scene;
 
 /// Function that turns edits into the edits to apply, for example into corrections.

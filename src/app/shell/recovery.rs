@@ -16,8 +16,8 @@ use serde::{Deserialize, Serialize};
 
 use editor::Document;
 use formats::{atomic, input, loom};
-use job::guard::{Handed, guarded};
 use language::{t, tf};
+use runtime::guard::{Handed, guarded};
 use scene::{Scene, SceneRev};
 
 /// Time between two copies, s.
@@ -459,7 +459,7 @@ mod tests {
         let mut recovery = Recovery::start(root.path(), 1.0, || panic!("a wake-up")).expect("a session");
         let (mut document, copy) = (document(), recovery.folder.join(SCENE));
         say(&mut document, "one");
-        job::guard::panic_next(NAME);
+        runtime::guard::panic_next(NAME);
         recovery.tick(&document, None, Scene::clone, 0.0);
         let done = recovery.done.recv().expect("an answer");
         let told = recovery.note(done);

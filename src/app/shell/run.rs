@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use super::app::{AppConfig, SceneloomApp};
 use super::guests::AssistantListener;
-use super::{gone, priority, settings};
+use super::{gone, settings};
 use crate::{open, pipeline};
 use formats::loom;
 use job::GenParams;
+use runtime::pool;
 use scene::Scene;
 use widgets::software_ui;
 
@@ -21,7 +22,7 @@ pub fn run_window(
     door: Option<Box<dyn AssistantListener>>,
 ) -> anyhow::Result<()> {
     super::logging::start();
-    if let Some(line) = priority::start_workers(true) {
+    if let Some(line) = pool::start_workers(true) {
         tracing::warn!("{line}");
     }
     let config = AppConfig {

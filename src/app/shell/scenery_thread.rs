@@ -44,7 +44,7 @@ impl SceneloomApp {
         let (send, edits) = bounded(1);
         let (wanted, scene) = (wish.clone(), before.clone());
         let draw = move || wanted.edits(&scene);
-        let thread = job::guard::spawn("scenery", draw, move |edits| {
+        let thread = runtime::guard::spawn("scenery", draw, move |edits| {
             // Sending fails if other scenery was requested meanwhile.
             let _ = send.send(edits.unwrap_or_else(|panic| Err(GenError::failed(panic))));
         });

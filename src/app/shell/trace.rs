@@ -41,7 +41,7 @@ impl Trace {
         let seen = active_ms.clone();
         let work = move || write(out, &orders_in, &seen, clock);
         // A panic has been printed by then; the editor goes on without a trace, as with a full disk.
-        let thread = job::guard::spawn("trace", work, drop).context("trace")?;
+        let thread = runtime::guard::spawn("trace", work, drop).context("trace")?;
         Ok(Self {
             orders,
             active_ms,
@@ -174,7 +174,7 @@ mod tests {
             assert!(lines.last().expect("lines")["cpu_share"].is_number());
         }
         // A panic of the thread ends the trace only.
-        job::guard::panic_next("trace");
+        runtime::guard::panic_next("trace");
         let trace = Trace::start(&path, clock, &json!({"kind": "start"})).expect("started");
         trace.line(&json!({}));
         trace.finish(json!({"kind": "summary"}));

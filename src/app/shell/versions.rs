@@ -12,8 +12,8 @@ use editor::Document;
 use editor::checks::SeverityCounts;
 use formats::loom;
 use formats::recipe::{self, Recipe};
-use job::guard::Handed;
 use language::{t, tf};
+use runtime::guard::Handed;
 use scene::{KeptVersion, Scene, SceneRev};
 
 /// Label of a version that the user kept.
@@ -445,7 +445,7 @@ mod tests {
     fn a_panic_while_packing_costs_that_version_alone() {
         let mut versions = Versions::default();
         versions.push("before".into(), String::new(), scene());
-        job::guard::panic_next(THREAD);
+        runtime::guard::panic_next(THREAD);
         versions.push("panics".into(), String::new(), scene());
         versions.push("after".into(), String::new(), scene());
         let kept = versions.kept(SceneRev::fresh());

@@ -10,7 +10,7 @@ use crate::shell::settings::Settings;
 use crate::windows::open::OpenWindows;
 use language::t;
 use scene::classes::Palette;
-use sensors::painter::{PaintOptions, SchedulerKind};
+use sensors::pictures::painter::{PaintOptions, SchedulerKind};
 use widgets::icons::section;
 use widgets::theme::{self, Theme};
 

@@ -8,10 +8,10 @@ use glam::{DVec2, DVec3};
 use editor::{Document, Edit};
 use scene::clip::{Path, Speed};
 use scene::{BoxId, Camera, Conditions, Motion, Scene, SceneBox, TimeOfDay, Weather};
-use sensors::appearance::Appearance;
-use sensors::perceived::{LEAST_PX, MISSED_BELOW, Perceived};
-use sensors::perceived_sweep::{self, LEAST_RETURNS};
-use sensors::perceived_voxels::{self, LEAST_VOXELS};
+use sensors::perceive::pictures::{LEAST_PX, MISSED_BELOW, Perceived};
+use sensors::perceive::sweep::{self, LEAST_RETURNS};
+use sensors::perceive::voxels::{self, LEAST_VOXELS};
+use sensors::pictures::appearance::Appearance;
 
 /// Distance of one step, m, and number of steps.
 const AWAY_M: (f64, usize) = (1.0, 40);
@@ -259,7 +259,7 @@ pub fn sight(scene: &Scene, id: BoxId, by: NetworkSensors) -> Result<ObjectVisib
     match by {
         NetworkSensors::Cameras => in_cameras(scene, id),
         NetworkSensors::Lidar => {
-            let seen = perceived_sweep::sight(scene, id)?;
+            let seen = sweep::sight(scene, id)?;
             Ok(ObjectVisibility {
                 by,
                 visible: seen.map_or(0, |s| s.returns),
@@ -267,7 +267,7 @@ pub fn sight(scene: &Scene, id: BoxId, by: NetworkSensors) -> Result<ObjectVisib
             })
         }
         NetworkSensors::Both => {
-            let seen = perceived_voxels::sight(scene, id)?;
+            let seen = voxels::sight(scene, id)?;
             Ok(ObjectVisibility {
                 by,
                 visible: seen.map_or(0, |s| s.voxels),
@@ -573,8 +573,12 @@ mod tests {
         let after = then.frame().boxes[&b.id];
         assert!(after.center_m.distance(b.center_m) < 0.05, "{}", after.center_m);
         // The box moves while the LiDAR turns, so the sweep differs.
-        let sweep = |scene: &Scene| sensors::rolling::of_voxels(&scene.for_sensors()).points.len();
-        assert!(sensors::rolling::is_rolling(&then) && sweep(&then) != sweep(&scene));
+        let sweep = |scene: &Scene| {
+            sensors::lidar::rolling::of_voxels(&scene.for_sensors())
+                .points
+                .len()
+        };
+        assert!(sensors::lidar::rolling::is_rolling(&then) && sweep(&then) != sweep(&scene));
         let error = search(&then, b.id, Vary::Speed, NetworkSensors::Lidar, go_on).expect_err("it follows");
         assert!(error.to_string().contains("follows a motion"), "{error}");
         let driven = |change: SceneVariation| matches!(change, SceneVariation::Speed(mps) if (mps - after.velocity_mps.length()).abs() < 1e-6);

@@ -78,7 +78,7 @@ impl Measurement {
                 MeasurementTask::Refine(refine) => refined(&refine, &should_stop, &told),
             }
         };
-        job::guard::spawn("measure", measure, move |answer| {
+        runtime::guard::spawn("measure", measure, move |answer| {
             let told = CalibrationSender {
                 out: out_last,
                 wake: &*wake_last,

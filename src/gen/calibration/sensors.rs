@@ -17,9 +17,9 @@ use nets::{OccModels, fine_vae};
 use numeric::quantile::quantile;
 use scene::raster::bev_channels;
 use scene::{CameraMaps, SensorRig};
-use sensors::cloud::GaussianCloud;
-use sensors::learned;
 use sensors::lidar;
+use sensors::lidar::learned;
+use sensors::splat::cloud::GaussianCloud;
 use sensors::splat::{SplatOptions, VIEW_SIZE, render_rig};
 use trade::{Interval, bootstrap_median};
 

@@ -5,7 +5,7 @@ use safetensors::tensor::Dtype;
 
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{BevLayout, LidarPattern, SensorRig, VoxelGrid};
-use sensors::truth::{self, RANGE_STEP_M, TruthRay};
+use sensors::lidar::truth::{self, RANGE_STEP_M, TruthRay};
 use world::draw::Draw;
 use world::voxelize::{Drive, Vertical, complete, labels};
 

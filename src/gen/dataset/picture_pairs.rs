@@ -10,9 +10,9 @@ use scene::{
     BevLayout, Camera, CameraTruth, Conditions, Extent, Frame, PolylineKind, Pose, SensorRig, TimeOfDay,
     VoxelGrid, Weather, Window,
 };
-pub use sensors::appearance::Quality;
-use sensors::appearance::light_direction;
-use sensors::picture_hints::{HintedFrame, PictureHints};
+pub use sensors::pictures::appearance::Quality;
+use sensors::pictures::appearance::light_direction;
+use sensors::pictures::picture_hints::{HintedFrame, PictureHints};
 use world::World;
 use world::draw::Draw;
 use world::voxelize::{Vertical, complete};

@@ -8,7 +8,7 @@ use scene::{
     BevLayout, Camera, CameraTruth, Class, Conditions, Extent, Frame, PolylineKind, Pose, SceneBox,
     SensorRig, TimeOfDay, VoxelGrid, Weather, raster,
 };
-use sensors::appearance::{Appearance, Quality};
+use sensors::pictures::appearance::{Appearance, Quality};
 use world::draw::Draw;
 use world::voxelize::{Vertical, complete};
 

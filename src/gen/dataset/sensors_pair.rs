@@ -97,7 +97,7 @@ impl Shard for SensorsPair {
 
 #[cfg(test)]
 mod tests {
-    use sensors::appearance::Quality;
+    use sensors::pictures::appearance::Quality;
 
     use super::*;
 

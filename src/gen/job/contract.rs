@@ -14,7 +14,7 @@ use diffusion::solver::SolverError;
 use scene::message::one_line;
 use scene::{Scene, SceneRev, VoxelGrid};
 
-use crate::product::Event;
+use runtime::worker::{Event, JobId};
 
 pub use super::params::{ChosenDensities, GenParams, Quality, RegionMode};
 pub use nn::Precision;
@@ -46,10 +46,6 @@ pub struct JobKey {
     /// Parameters.
     pub params: GenParams,
 }
-
-/// Number of a submitted job; later jobs have greater ones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct JobId(pub u64);
 
 /// Part of a generation, for progress and timing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -116,7 +112,7 @@ pub struct GenReport {
     /// Voxels of the region that the edit does not concern, and that only the VAE's own error would have changed
     /// ([`keep_unchanged`]).
     ///
-    /// [`keep_unchanged`]: super::keep_unchanged::keep_unchanged
+    /// [`keep_unchanged`]: super::guards::unchanged::keep_unchanged
     pub unchanged_kept: usize,
     /// Boxes that the networks left out and whose draft was put in ([`GenParams::keep_objects`]).
     pub objects_kept: usize,
@@ -162,7 +158,7 @@ impl GenReport {
     }
 
     /// Records the numbers of stems and of removed floating voxels.
-    pub fn grounded(&mut self, found: super::keep_grounded::Grounded) {
+    pub fn grounded(&mut self, found: super::guards::grounded::Grounded) {
         (self.stems_added, self.loose_dropped) = (found.stems, found.dropped);
     }
 

@@ -3,27 +3,25 @@
 use std::sync::Arc;
 
 use crate::contract::{GenError, Job, JobCtx, JobUpdate, Pipeline};
-use crate::guard::Panicked;
-pub use crate::product::Wake;
-use crate::product::{Ctx, Product, Worker};
+use runtime::guard::Panicked;
+pub use runtime::worker::Wake;
+use runtime::worker::{Ctx, Product, Worker};
 
 /// Owns the thread `gen-worker`. Dropping it stops the running job and waits for the thread.
 pub type GenWorker = Worker<Job, JobUpdate>;
 
-impl GenWorker {
-    /// Starts the thread. `build` runs on it and makes the pipeline (reads weights): for the first job, and again after
-    /// a panic or if it failed. Errors if the system gives no thread.
-    pub fn spawn<P, B>(build: B, wake: Wake) -> std::io::Result<Self>
-    where
-        P: Pipeline + 'static,
-        B: FnMut() -> Result<P, GenError> + Send + 'static,
-    {
-        let product = move || Occupancy {
-            build,
-            pipeline: None::<P>,
-        };
-        Self::start("gen-worker", product, wake)
-    }
+/// Starts the thread. `build` runs on it and makes the pipeline (reads weights): for the first job, and again after a panic
+/// or if it failed. Errors if the system gives no thread.
+pub fn spawn<P, B>(build: B, wake: Wake) -> std::io::Result<GenWorker>
+where
+    P: Pipeline + 'static,
+    B: FnMut() -> Result<P, GenError> + Send + 'static,
+{
+    let product = move || Occupancy {
+        build,
+        pipeline: None::<P>,
+    };
+    Worker::start("gen-worker", product, wake)
 }
 
 /// Occupancy as a product. Builds its pipeline when the first job needs it.
@@ -85,7 +83,7 @@ mod tests {
 
     use super::*;
     use crate::contract::{GenParams, GenReport, GenResult, JobEvent, Stage, UpdateGate};
-    use crate::product::MOST_WAITING;
+    use runtime::worker::MOST_WAITING;
     use scene::{BevLayout, Frame, Scene, SensorRig, VoxelGrid};
 
     /// What the test tells the running job to do next.
@@ -175,7 +173,7 @@ mod tests {
             count_wakes.fetch_add(1, Ordering::SeqCst);
         });
         Bench {
-            worker: GenWorker::spawn(build, wake).expect("a thread"),
+            worker: spawn(build, wake).expect("a thread"),
             orders,
             started,
             wakes,
@@ -338,7 +336,7 @@ mod tests {
             }
         };
         let panicking_wake = Arc::new(|| panic!("a wake-up that panics"));
-        let mut worker = GenWorker::spawn(build, panicking_wake).expect("a thread");
+        let mut worker = spawn(build, panicking_wake).expect("a thread");
         let mut next = || {
             worker.submit(job());
             short(&worker.updates().recv_timeout(PATIENCE).expect("an update")).1
@@ -422,7 +420,7 @@ mod tests {
                 Ok(result_of(job))
             }
         }
-        let mut worker = GenWorker::spawn(|| Ok(Quick), Arc::new(|| {})).expect("a thread");
+        let mut worker = spawn(|| Ok(Quick), Arc::new(|| {})).expect("a thread");
         let base = job();
         for seed in 0..2000u64 {
             let mut next = base.clone();

@@ -6,7 +6,7 @@ use job::pipeline::OccPipeline;
 use nets::OccModels;
 
 /// All suites, in the order of `eval all`.
-pub static SUITES: [Suite; 12] = [
+pub static SUITES: [Suite; 13] = [
     Suite {
         name: "world",
         title: "Procedural worlds beside what is known of real drives",
@@ -202,6 +202,34 @@ pub static SUITES: [Suite; 12] = [
         quick: |options| options.frames = 3,
         table: None,
         run: |options, progress| options.lidar(progress),
+    },
+    Suite {
+        name: "near",
+        title: "Walls, posts and fences near the cameras beside those of the analytic worlds",
+        figures: &[
+            (
+                "walls whose normal is off by more than 10 degrees",
+                "/level/things/wall_normal_off_by_10_degrees/share",
+            ),
+            (
+                "walls off by more than .15 m",
+                "/level/things/wall_off_by_15_cm/share",
+            ),
+            ("posts missing", "/level/things/posts_missing/share"),
+            ("fences missing", "/level/things/fences_missing/share"),
+            (
+                "man-made surfaces where nothing is",
+                "/level/things/manmade_where_nothing_is/share",
+            ),
+            (
+                "walls off by more than .15 m, on slopes",
+                "/slopes/things/wall_off_by_15_cm/share",
+            ),
+        ],
+        takes_data: false,
+        quick: |options| options.frames = 3,
+        table: None,
+        run: |options, progress| options.near(progress),
     },
     Suite {
         name: "splat",

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use scene::Camera;
-use sensors::appearance::CameraImage;
+use sensors::pictures::appearance::CameraImage;
 
 /// Largest relative difference of depths at which two cameras count as seeing the same surface.
 const SAME_DEPTH: f64 = 0.05;

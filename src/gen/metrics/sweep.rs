@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::logistic::{Logistic, auc};
 use numeric::quantile::Sorted;
 use scene::{Class, LidarPattern, LidarSweep};
-use sensors::truth::{Echo, TruthRay};
+use sensors::lidar::truth::{Echo, TruthRay};
 
 /// Number of low rings, which hold most hits on the vehicle's own body, in a pattern with 32.
 const LOW_RINGS: usize = 9;
@@ -211,7 +211,7 @@ fn share(n: usize, of: usize) -> f64 {
 mod tests {
     use super::*;
     use scene::{LidarPoint, SensorRig};
-    use sensors::truth::sweep;
+    use sensors::lidar::truth::sweep;
     use world::World;
 
     /// Counted by hand: 4 slots on the own body, 2 echoes, the rest nothing.

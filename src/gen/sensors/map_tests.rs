@@ -2,18 +2,18 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::border::{Border, Covered};
+use crate::beyond::border::{Border, Covered};
 use crate::cameras::{
     self, CameraInput, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions,
 };
-use crate::caster::Caster;
-use crate::cloud::GaussianCloud;
-use crate::learned::{self, Drops};
-use crate::learned_caster::LearnedCaster;
 use crate::lidar;
-use crate::mpi::{self, RenderIds};
+use crate::lidar::caster::Caster;
+use crate::lidar::learned::{self, Drops};
+use crate::lidar::learned_caster::LearnedCaster;
+use crate::lidar::surroundings::{is_beyond, is_own};
+use crate::pictures::mpi::{self, RenderIds};
 use crate::raycast::ColumnMasks;
-use crate::surroundings::{is_beyond, is_own};
+use crate::splat::cloud::GaussianCloud;
 use nets::lidar::LidarNet;
 use scene::sensor_data::PlaneDepths;
 use scene::{
@@ -86,7 +86,7 @@ fn picture(name: &str, grid: &VoxelGrid) -> CameraPicture {
     };
     let options = RenderOptions {
         size: SIZE,
-        quality: crate::appearance::Quality::Preview,
+        quality: crate::pictures::appearance::Quality::Preview,
     };
     let ready = PreparedSource::new(*source.expect("a source"), &input);
     let picture = ready.render(&ahead(), &options, RenderContext::processor());

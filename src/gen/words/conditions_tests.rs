@@ -8,7 +8,7 @@ use super::super::reader::Mode;
 use super::super::stage::OpenScene;
 use super::*;
 use scene::{Edit, Frame, SensorRig};
-use sensors::appearance::{Appearance, Quality};
+use sensors::pictures::appearance::{Appearance, Quality};
 use world::World;
 use world::voxelize::{Vertical, complete};
 

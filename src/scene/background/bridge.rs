@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::GroundM;
+use super::{GroundM, PartRole, ThingPart};
 use crate::Class;
 use crate::solid::Solid;
 
@@ -32,7 +32,7 @@ pub struct Bridge {
 }
 
 impl Bridge {
-    pub(super) fn solids(&self, ground_m: GroundM<'_>, out: &mut Vec<Solid>) {
+    pub(super) fn parts(&self, ground_m: GroundM<'_>, out: &mut Vec<ThingPart>) {
         let deck = match self.for_vehicles {
             true => Class::DriveableSurface,
             false => Class::Sidewalk,
@@ -56,20 +56,32 @@ impl Bridge {
                 let step = length / count;
                 let body = DVec3::new(step + 0.05, self.width_m, self.thickness_m - 0.2);
                 let under = top - self.thickness_m;
-                out.push(Solid::block(Class::Manmade, p.extend(under), body, along));
+                out.push(ThingPart::new(
+                    PartRole::BridgeBody,
+                    Solid::block(Class::Manmade, p.extend(under), body, along),
+                ));
                 let surface = DVec3::new(step + 0.05, self.width_m, 0.2);
-                out.push(Solid::block(deck, p.extend(top - 0.2), surface, along));
+                out.push(ThingPart::new(
+                    PartRole::Deck,
+                    Solid::block(deck, p.extend(top - 0.2), surface, along),
+                ));
                 for side in [-0.5, 0.5] {
                     let at = p + along.perp() * (side * self.width_m);
                     let rail = DVec3::new(step + 0.05, 0.2, 1.0);
-                    out.push(Solid::block(Class::Manmade, at.extend(top), rail, along));
+                    out.push(ThingPart::new(
+                        PartRole::BridgeBody,
+                        Solid::block(Class::Manmade, at.extend(top), rail, along),
+                    ));
                 }
                 to_pier -= step;
                 let low = ground_m(p) - 0.3;
                 if to_pier <= 0.0 && under - low > 1.0 {
                     to_pier = PIER_STEP_M;
                     let pier = DVec3::new(0.9, self.width_m * 0.6, under - low);
-                    out.push(Solid::block(Class::Manmade, p.extend(low), pier, along));
+                    out.push(ThingPart::new(
+                        PartRole::BridgeBody,
+                        Solid::block(Class::Manmade, p.extend(low), pier, along),
+                    ));
                 }
             }
         }

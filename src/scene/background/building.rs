@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::GroundM;
+use super::{GroundM, PartRole, ThingPart};
 use crate::Class;
 use crate::draw::{Draw, hash};
 use crate::solid::Solid;
@@ -94,7 +94,7 @@ impl Building {
         }
     }
 
-    pub(super) fn solids(&self, look: u64, ground_m: GroundM<'_>, out: &mut Vec<Solid>) {
+    pub(super) fn parts(&self, look: u64, ground_m: GroundM<'_>, out: &mut Vec<ThingPart>) {
         let outline = counter_clockwise(&self.outline_m);
         let n = outline.len();
         let middle = outline.iter().sum::<DVec2>() / n as f64;
@@ -108,24 +108,30 @@ impl Building {
         let arcade = self.facade == Facade::Arcade && n == 4 && self.height_m > 1.6 * STOREY_M;
         if arcade {
             let inner: Vec<DVec2> = outline.iter().map(|p| middle + inset(*p - middle, 1.6)).collect();
-            out.push(Solid::prism(Class::Manmade, &inner, bottom, floor + STOREY_M));
-            out.push(Solid::prism(Class::Manmade, &outline, floor + STOREY_M, eaves));
+            out.push(ThingPart::new(
+                PartRole::Walls,
+                Solid::prism(Class::Manmade, &inner, bottom, floor + STOREY_M),
+            ));
+            out.push(ThingPart::new(
+                PartRole::UpperWalls,
+                Solid::prism(Class::Manmade, &outline, floor + STOREY_M, eaves),
+            ));
             for (a, b) in edges(&outline) {
                 let count = (a.distance(b) / 4.0).floor().max(1.0);
                 for i in 0..count as usize {
                     let p = middle + inset(a.lerp(b, i as f64 / count) - middle, 0.3);
                     let height = floor + STOREY_M - bottom;
-                    out.push(Solid::frustum(
-                        Class::Manmade,
-                        p.extend(bottom),
-                        height,
-                        0.22,
-                        0.22,
+                    out.push(ThingPart::new(
+                        PartRole::Column,
+                        Solid::frustum(Class::Manmade, p.extend(bottom), height, 0.22, 0.22),
                     ));
                 }
             }
         } else {
-            out.push(Solid::prism(Class::Manmade, &outline, bottom, eaves));
+            out.push(ThingPart::new(
+                PartRole::Walls,
+                Solid::prism(Class::Manmade, &outline, bottom, eaves),
+            ));
         }
         self.roof_solids(&outline, eaves, &mut draw, out);
         for (a, b) in edges(&outline) {
@@ -133,7 +139,7 @@ impl Building {
         }
     }
 
-    fn roof_solids(&self, outline: &[DVec2], eaves: f64, draw: &mut Draw, out: &mut Vec<Solid>) {
+    fn roof_solids(&self, outline: &[DVec2], eaves: f64, draw: &mut Draw, out: &mut Vec<ThingPart>) {
         let middle = outline.iter().sum::<DVec2>() / outline.len() as f64;
         if self.roof == Roof::Flat || outline.len() != 4 {
             // A lift head or a cooling unit.
@@ -143,7 +149,10 @@ impl Building {
                 .map(|(a, b)| a.distance(b))
                 .fold(f64::INFINITY, f64::min);
             if shortest > 5.0 {
-                out.push(Solid::block(Class::Manmade, middle.extend(eaves), size, along));
+                out.push(ThingPart::new(
+                    PartRole::RoofUnit,
+                    Solid::block(Class::Manmade, middle.extend(eaves), size, along),
+                ));
             }
             return;
         }
@@ -155,17 +164,14 @@ impl Building {
         let size = DVec3::new(length + 0.6, depth + 0.6, depth * draw.range(0.22, 0.4));
         let ridge = if self.roof == Roof::Gabled { 0.98 } else { 0.55 };
         let taper = DVec2::new(ridge, 0.04);
-        out.push(Solid::tapered(
-            Class::Manmade,
-            middle.extend(eaves),
-            size,
-            taper,
-            along,
+        out.push(ThingPart::new(
+            PartRole::PitchedRoof,
+            Solid::tapered(Class::Manmade, middle.extend(eaves), size, taper, along),
         ));
     }
 
     /// Appends the attachments of the wall from `a` to `b`; the outside is on its right.
-    fn facade_solids(&self, a: DVec2, b: DVec2, floor: f64, draw: &mut Draw, out: &mut Vec<Solid>) {
+    fn facade_solids(&self, a: DVec2, b: DVec2, floor: f64, draw: &mut Draw, out: &mut Vec<ThingPart>) {
         let (along, length) = ((b - a).normalize_or(DVec2::X), a.distance(b));
         let outward = -along.perp();
         let pitch = draw.range(3.2, 5.0);
@@ -186,17 +192,26 @@ impl Building {
                         let z = floor + f64::from(storey) * STOREY_M;
                         let p = place(i);
                         let slab = DVec3::new(width, stands_out, 0.2);
-                        out.push(Solid::block(Class::Manmade, p.extend(z - 0.2), slab, along));
+                        out.push(ThingPart::new(
+                            PartRole::BalconyFloor,
+                            Solid::block(Class::Manmade, p.extend(z - 0.2), slab, along),
+                        ));
                         let front = p + outward * (stands_out / 2.0 - 0.06);
                         let rail = DVec3::new(width, 0.12, 1.1);
-                        out.push(Solid::block(Class::Manmade, front.extend(z), rail, along));
+                        out.push(ThingPart::new(
+                            PartRole::BalconyRail,
+                            Solid::block(Class::Manmade, front.extend(z), rail, along),
+                        ));
                     }
                 }
             }
             Facade::Bays => {
                 for i in (0..count as usize).step_by(2) {
                     let size = DVec3::new(width, stands_out, self.height_m - 0.4);
-                    out.push(Solid::block(Class::Manmade, place(i).extend(floor), size, along));
+                    out.push(ThingPart::new(
+                        PartRole::Bay,
+                        Solid::block(Class::Manmade, place(i).extend(floor), size, along),
+                    ));
                 }
             }
             _ => {}

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::GroundM;
+use super::{GroundM, PartRole, ThingPart};
 use crate::Class;
 use crate::draw::{Draw, hash};
 use crate::solid::Solid;
@@ -98,7 +98,7 @@ impl SceneryLine {
         }
     }
 
-    pub(super) fn solids(&self, look: u64, ground_m: GroundM<'_>, out: &mut Vec<Solid>) {
+    pub(super) fn parts(&self, look: u64, ground_m: GroundM<'_>, out: &mut Vec<ThingPart>) {
         let mut draw = Draw::new(hash(look), "line");
         let (class, mut pieces) = (self.kind.class(), 0);
         for pair in self.points_m.windows(2) {
@@ -128,22 +128,34 @@ impl SceneryLine {
                             along,
                         );
                         piece.porosity = 0.15;
-                        out.push(piece);
+                        out.push(ThingPart::new(PartRole::Hedge, piece));
                     }
                     LineKind::Wall | LineKind::RetainingWall => {
-                        out.push(Solid::block(class, middle.extend(low), size, along));
+                        out.push(ThingPart::new(
+                            PartRole::Masonry,
+                            Solid::block(class, middle.extend(low), size, along),
+                        ));
                     }
                     LineKind::Fence => {
-                        out.push(Solid::frustum(class, a.extend(low), size.z, 0.06, 0.06));
+                        out.push(ThingPart::new(
+                            PartRole::LinePost,
+                            Solid::frustum(class, a.extend(low), size.z, 0.06, 0.06),
+                        ));
                         // Mesh or boards: half of what meets it goes through.
                         let mut mesh = Solid::block(class, middle.extend(low), size, along);
                         mesh.porosity = 0.5;
-                        out.push(mesh);
+                        out.push(ThingPart::new(PartRole::FencePanel, mesh));
                     }
                     LineKind::GuardRail => {
-                        out.push(Solid::frustum(class, a.extend(low), size.z, 0.07, 0.07));
+                        out.push(ThingPart::new(
+                            PartRole::LinePost,
+                            Solid::frustum(class, a.extend(low), size.z, 0.07, 0.07),
+                        ));
                         let rail = DVec3::new(size.x, size.y, 0.32);
-                        out.push(Solid::block(class, middle.extend(top - 0.32), rail, along));
+                        out.push(ThingPart::new(
+                            PartRole::RailBeam,
+                            Solid::block(class, middle.extend(top - 0.32), rail, along),
+                        ));
                     }
                 }
             }

@@ -5,6 +5,7 @@ mod bridge;
 mod building;
 mod columns;
 mod line;
+mod part;
 mod post;
 mod problem;
 mod shrubs;
@@ -23,6 +24,7 @@ pub use bridge::Bridge;
 pub use building::{Building, Facade, Roof, STOREY_M};
 pub use columns::ColumnLabels;
 pub use line::{LineKind, SceneryLine};
+pub use part::{PartRole, ThingPart};
 pub use post::{Post, PostKind};
 pub use problem::crossing_edges;
 pub use shrubs::Shrubs;
@@ -188,17 +190,23 @@ impl Form {
 }
 
 impl Thing {
-    /// Appends its solids, in the frame of the form and of `ground_m`.
-    pub fn solids(&self, ground_m: GroundM<'_>, out: &mut Vec<Solid>) {
-        let look = u64::from(self.look);
+    /// Its parts, in the frame of the form and of `ground_m`.
+    pub fn parts(&self, ground_m: GroundM<'_>) -> Vec<ThingPart> {
+        let (look, mut out) = (u64::from(self.look), Vec::new());
         match &self.form {
-            Form::Building(b) => b.solids(look, ground_m, out),
-            Form::Tree(t) => t.solids(look, ground_m, out),
-            Form::Shrubs(s) => s.solids(look, ground_m, out),
-            Form::Line(l) => l.solids(look, ground_m, out),
-            Form::Post(p) => p.solids(look, ground_m, out),
-            Form::Bridge(b) => b.solids(ground_m, out),
+            Form::Building(b) => b.parts(look, ground_m, &mut out),
+            Form::Tree(t) => t.parts(look, ground_m, &mut out),
+            Form::Shrubs(s) => s.parts(look, ground_m, &mut out),
+            Form::Line(l) => l.parts(look, ground_m, &mut out),
+            Form::Post(p) => p.parts(look, ground_m, &mut out),
+            Form::Bridge(b) => b.parts(ground_m, &mut out),
         }
+        out
+    }
+
+    /// Appends the solids of [`Self::parts`].
+    pub fn solids(&self, ground_m: GroundM<'_>, out: &mut Vec<Solid>) {
+        out.extend(self.parts(ground_m).into_iter().map(|part| part.solid));
     }
 }
 

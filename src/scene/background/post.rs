@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::GroundM;
+use super::{GroundM, PartRole, ThingPart};
 use crate::Class;
 use crate::draw::{Draw, hash};
 use crate::solid::Solid;
@@ -125,14 +125,23 @@ impl Post {
         }
     }
 
-    pub(super) fn solids(&self, look: u64, ground_m: GroundM<'_>, out: &mut Vec<Solid>) {
+    pub(super) fn parts(&self, look: u64, ground_m: GroundM<'_>, out: &mut Vec<ThingPart>) {
         let mut draw = Draw::new(hash(look), "post");
         let (p, class) = (self.position_m, self.kind.class());
         let ahead = DVec2::from_angle(self.yaw_rad.rem_euclid(std::f64::consts::TAU));
         let z = ground_m(p);
         let base = p.extend(z - 0.1);
         let height = self.height_m + 0.1;
-        let mut pole = |radius: f64| out.push(Solid::frustum(class, base, height, radius, radius * 0.75));
+        let role = match self.kind {
+            PostKind::Bollard => PartRole::Bollard,
+            _ => PartRole::Pole,
+        };
+        let mut pole = |radius: f64| {
+            out.push(ThingPart::new(
+                role,
+                Solid::frustum(class, base, height, radius, radius * 0.75),
+            ))
+        };
         match self.kind {
             PostKind::Pole => pole(0.12),
             PostKind::Bollard => pole(0.1),
@@ -140,59 +149,82 @@ impl Post {
                 pole(0.12);
                 let arm = DVec3::new(1.8, 0.2, 0.2);
                 let middle = (p + ahead * 0.85).extend(z + self.height_m - 0.2);
-                out.push(Solid::block(class, middle, arm, ahead));
+                out.push(ThingPart::new(
+                    PartRole::LampArm,
+                    Solid::block(class, middle, arm, ahead),
+                ));
             }
             PostKind::Sign => {
                 pole(0.05);
                 let side = draw.range(0.6, 0.8);
                 let plate = DVec3::new(0.1, side, side);
                 let at = (p + ahead * 0.08).extend(z + (self.height_m - side).max(0.0));
-                out.push(Solid::block(class, at, plate, ahead));
+                out.push(ThingPart::new(
+                    PartRole::SignPlate,
+                    Solid::block(class, at, plate, ahead),
+                ));
             }
             PostKind::TrafficLight => {
                 pole(0.08);
                 let head = DVec3::new(0.35, 0.35, 1.0);
                 let at = (p + ahead * 0.15).extend(z + (self.height_m - 1.0).max(0.0));
-                out.push(Solid::block(class, at, head, ahead));
+                out.push(ThingPart::new(
+                    PartRole::SignalHead,
+                    Solid::block(class, at, head, ahead),
+                ));
             }
             PostKind::BusStop => {
                 let back = DVec3::new(0.15, 3.6, self.height_m);
-                out.push(Solid::block(class, (p - ahead * 0.8).extend(z), back, ahead));
+                out.push(ThingPart::new(
+                    PartRole::ShelterWall,
+                    Solid::block(class, (p - ahead * 0.8).extend(z), back, ahead),
+                ));
                 for side in [-1.7, 1.7] {
                     let at = (p + ahead.perp() * side).extend(z);
-                    out.push(Solid::block(
-                        class,
-                        at,
-                        DVec3::new(1.4, 0.12, self.height_m),
-                        ahead,
+                    out.push(ThingPart::new(
+                        PartRole::ShelterWall,
+                        Solid::block(class, at, DVec3::new(1.4, 0.12, self.height_m), ahead),
                     ));
                 }
                 let roof = DVec3::new(1.9, 3.8, 0.15);
-                out.push(Solid::block(
-                    class,
-                    p.extend(z + self.height_m - 0.15),
-                    roof,
-                    ahead,
+                out.push(ThingPart::new(
+                    PartRole::ShelterRoof,
+                    Solid::block(class, p.extend(z + self.height_m - 0.15), roof, ahead),
                 ));
                 let seat = DVec3::new(0.4, 2.4, 0.5);
-                out.push(Solid::block(class, (p - ahead * 0.5).extend(z), seat, ahead));
+                out.push(ThingPart::new(
+                    PartRole::Seat,
+                    Solid::block(class, (p - ahead * 0.5).extend(z), seat, ahead),
+                ));
             }
             PostKind::Bench => {
                 let seat = DVec3::new(0.5, 1.8, self.height_m * 0.55);
-                out.push(Solid::block(class, p.extend(z), seat, ahead));
+                out.push(ThingPart::new(
+                    PartRole::Seat,
+                    Solid::block(class, p.extend(z), seat, ahead),
+                ));
                 let back = DVec3::new(0.1, 1.8, self.height_m);
-                out.push(Solid::block(class, (p - ahead * 0.22).extend(z), back, ahead));
+                out.push(ThingPart::new(
+                    PartRole::Seat,
+                    Solid::block(class, (p - ahead * 0.22).extend(z), back, ahead),
+                ));
             }
             PostKind::Bin => {
                 let radius = draw.range(0.3, 0.5);
-                out.push(Solid::frustum(class, base, height, radius, radius));
+                out.push(ThingPart::new(
+                    PartRole::Bin,
+                    Solid::frustum(class, base, height, radius, radius),
+                ));
             }
             PostKind::Stairs => {
                 // Steps of a fifth of the height, one behind another.
                 for step in 0..5 {
                     let rise = (f64::from(step) + 1.0) / 5.0 * self.height_m;
                     let at = (p + ahead * (f64::from(step) * 0.8 - 1.6)).extend(z - 0.1);
-                    out.push(Solid::block(class, at, DVec3::new(0.8, 2.4, rise + 0.1), ahead));
+                    out.push(ThingPart::new(
+                        PartRole::Step,
+                        Solid::block(class, at, DVec3::new(0.8, 2.4, rise + 0.1), ahead),
+                    ));
                 }
             }
         }

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::GroundM;
+use super::{GroundM, PartRole, ThingPart};
 use crate::Class;
 use crate::draw::{Draw, hash};
 use crate::road_map::inside;
@@ -27,7 +27,7 @@ pub struct Shrubs {
 }
 
 impl Shrubs {
-    pub(super) fn solids(&self, look: u64, ground_m: GroundM<'_>, out: &mut Vec<Solid>) {
+    pub(super) fn parts(&self, look: u64, ground_m: GroundM<'_>, out: &mut Vec<ThingPart>) {
         let mut draw = Draw::new(hash(look), "shrubs");
         let min = self.outline_m.iter().copied().fold(DVec2::INFINITY, DVec2::min);
         let max = self
@@ -46,17 +46,20 @@ impl Shrubs {
             }
             let base = p.extend(ground_m(p) - 0.05);
             let height = self.height_m * tall;
-            out.push(match is_bush {
-                true => {
-                    let radius = 0.35 + 0.55 * wide;
-                    let radii = DVec3::new(radius, radius, height);
-                    Solid::ellipsoid(Class::Vegetation, base, radii, 0.3)
-                }
-                false => {
-                    let radius = 0.12 + 0.16 * wide;
-                    Solid::frustum(Class::Vegetation, base, height, radius, radius * 0.7)
-                }
-            });
+            out.push(ThingPart::new(
+                PartRole::Bush,
+                match is_bush {
+                    true => {
+                        let radius = 0.35 + 0.55 * wide;
+                        let radii = DVec3::new(radius, radius, height);
+                        Solid::ellipsoid(Class::Vegetation, base, radii, 0.3)
+                    }
+                    false => {
+                        let radius = 0.12 + 0.16 * wide;
+                        Solid::frustum(Class::Vegetation, base, height, radius, radius * 0.7)
+                    }
+                },
+            ));
         }
     }
 }

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::GroundM;
+use super::{GroundM, PartRole, ThingPart};
 use crate::Class;
 use crate::draw::{Draw, hash};
 use crate::solid::Solid;
@@ -46,18 +46,15 @@ pub struct Tree {
 }
 
 impl Tree {
-    pub(super) fn solids(&self, look: u64, ground_m: GroundM<'_>, out: &mut Vec<Solid>) {
+    pub(super) fn parts(&self, look: u64, ground_m: GroundM<'_>, out: &mut Vec<ThingPart>) {
         let mut draw = Draw::new(hash(look), "tree");
         let base = self.position_m.extend(ground_m(self.position_m) - 0.1);
         let (height, crown) = (self.height_m + 0.1, self.crown_radius_m);
         let trunk_radius = (0.05 + 0.022 * height) * draw.range(0.8, 1.3);
         let mut trunk = |top: f64| {
-            out.push(Solid::frustum(
-                Class::Vegetation,
-                base,
-                top,
-                trunk_radius,
-                trunk_radius * 0.6,
+            out.push(ThingPart::new(
+                PartRole::Trunk,
+                Solid::frustum(Class::Vegetation, base, top, trunk_radius, trunk_radius * 0.6),
             ));
         };
         match self.kind {
@@ -72,7 +69,7 @@ impl Tree {
                     0.1,
                 );
                 cone.porosity = 0.35;
-                out.push(cone);
+                out.push(ThingPart::new(PartRole::Crown, cone));
             }
             TreeKind::Columnar => {
                 trunk(height * 0.4);
@@ -80,7 +77,10 @@ impl Tree {
                 let half = (height - clear) / 2.0;
                 let middle = base + DVec3::Z * (clear + half);
                 let radii = DVec3::new(crown, crown, half);
-                out.push(Solid::ellipsoid(Class::Vegetation, middle, radii, 0.3));
+                out.push(ThingPart::new(
+                    PartRole::Crown,
+                    Solid::ellipsoid(Class::Vegetation, middle, radii, 0.3),
+                ));
             }
             TreeKind::Bare => {
                 // Branches that spread upward from the trunk.
@@ -94,7 +94,7 @@ impl Tree {
                     crown,
                 );
                 branches.porosity = 0.6;
-                out.push(branches);
+                out.push(ThingPart::new(PartRole::Crown, branches));
             }
             TreeKind::Broadleaf => {
                 // Boughs with gaps between them rather than one ball, all of them on the trunk.
@@ -105,7 +105,10 @@ impl Tree {
                 let boughs = 8 + draw.below(6);
                 let middle = base + DVec3::Z * (fork + deep / 2.0);
                 let core = DVec3::new(crown * 0.5, crown * 0.5, deep * 0.46);
-                out.push(Solid::ellipsoid(Class::Vegetation, middle, core, porosity));
+                out.push(ThingPart::new(
+                    PartRole::Crown,
+                    Solid::ellipsoid(Class::Vegetation, middle, core, porosity),
+                ));
                 for i in 0..boughs {
                     let angle = (i as f64 + draw.unit()) / boughs as f64 * std::f64::consts::TAU;
                     let size = draw.range(0.26, 0.42);
@@ -117,7 +120,10 @@ impl Tree {
                         crown * size,
                         deep / 2.0 * size * draw.range(0.8, 1.1),
                     );
-                    out.push(Solid::ellipsoid(Class::Vegetation, center, radii, porosity));
+                    out.push(ThingPart::new(
+                        PartRole::Crown,
+                        Solid::ellipsoid(Class::Vegetation, center, radii, porosity),
+                    ));
                 }
             }
         }

@@ -147,6 +147,7 @@ pub fn appearance_source() -> &'static str {
             include_str!("../../../shaders/appearance/trace.wgsl"),
             include_str!("../../../shaders/appearance/paint.wgsl"),
             include_str!("../../../shaders/appearance/material.wgsl"),
+            include_str!("../../../shaders/appearance/scenery_material.wgsl"),
             include_str!("../../../shaders/appearance/thing_material.wgsl"),
             include_str!("../../../shaders/appearance/shade.wgsl"),
             include_str!("../../../shaders/appearance/render.wgsl"),

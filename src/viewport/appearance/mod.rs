@@ -1,4 +1,4 @@
-//! Camera pictures on the graphics card: the light that reaches each pixel, as `generation::sensors::appearance` computes
+//! Camera pictures on the graphics card: the light that reaches each pixel, as `generation::sensors::pictures::appearance` computes
 //! it on the processor, to rounding. Glare and tone are put on it there, by one and the same code.
 
 mod layout;

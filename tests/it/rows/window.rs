@@ -6,9 +6,9 @@ use app::recovery::{Recovery, ago};
 use editor::{Document, Edit};
 use job::{ChosenDensities, GenParams};
 use scene::{BoxId, Conditions};
-use sensors::appearance::{Appearance, Quality};
-use sensors::cloud::GaussianCloud;
+use sensors::pictures::appearance::{Appearance, Quality};
 use sensors::splat;
+use sensors::splat::cloud::GaussianCloud;
 
 const TIMES: [f64; 9] = [0.0, 0.0, 1.0, 0.5, -1e9, 1e300, f64::INFINITY, f64::NAN, 2.0];
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use scene::splats::{RawMaps, SplatOptions};
 use scene::{Camera, SensorRig};
-use sensors::cloud::GaussianCloud;
-use sensors::{color, splat};
+use sensors::splat::cloud::GaussianCloud;
+use sensors::{pictures::color, splat};
 use viewport::{SplatError, SplatRenderer};
 
 use super::{assert_same, camera, clouds, draw, draw_on_processor, gaps, gpu, sheet};

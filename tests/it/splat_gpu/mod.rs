@@ -8,8 +8,8 @@ use std::sync::{Mutex, MutexGuard, OnceLock};
 
 use scene::splats::{RawMaps, SplatOptions};
 use scene::{Camera, SensorRig};
-use sensors::cloud::{Gaussian, GaussianCloud};
 use sensors::splat;
+use sensors::splat::cloud::{Gaussian, GaussianCloud};
 use viewport::{SplatRenderer, headless_device};
 
 /// One renderer for all tests of this file.

@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use scene::Camera;
 use scene::splats::{RawMaps, SplatOptions};
-use sensors::cloud::{Gaussian, GaussianCloud};
+use sensors::splat::cloud::{Gaussian, GaussianCloud};
 use serde_json::Value;
 
 /// A JSON file of tests/reference.

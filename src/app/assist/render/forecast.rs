@@ -7,8 +7,8 @@ use super::Rendering;
 use super::plan::RenderPlan;
 use app::truth;
 use scene::Scene;
-use sensors::appearance::Quality;
 use sensors::cameras::{PreparedSource, RenderOptions};
+use sensors::pictures::appearance::Quality;
 
 /// Progress report of a rendering.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -16,9 +16,9 @@ use app::graphics::Graphics;
 use app::picture::{self, RgbaPicture};
 use formats::recipe::Recipe;
 use scene::{Scene, TimeOfDay, Weather};
-use sensors::appearance::Quality;
 use sensors::cameras::{self, CameraInput, Card, Detail, PreparedSource, RenderOptions, SourceId};
-use sensors::painter::PaintWith;
+use sensors::pictures::appearance::Quality;
+use sensors::pictures::painter::PaintWith;
 use sensors::radar;
 
 pub use forecast::{Listen, RenderProgress};

@@ -11,8 +11,8 @@ use app::picture::View3d;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene};
 use sensors::cameras::{self, CameraSource, SourceView, bounds};
-use sensors::learned::Drops;
-use sensors::rolling;
+use sensors::lidar::learned::Drops;
+use sensors::lidar::rolling;
 
 /// Pictures of one source.
 pub struct Cameras {

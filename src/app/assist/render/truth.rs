@@ -9,8 +9,8 @@ use formats::export::truth as files;
 use formats::export::{ExportPicture, OutFile};
 use formats::sensor_names;
 use scene::Scene;
-use sensors::appearance::Quality;
 use sensors::cameras::ViewId;
+use sensors::pictures::appearance::Quality;
 
 /// A folder for the files of the truth where `depth` has files of the same names beside them.
 const FOLDER: &str = "truth";

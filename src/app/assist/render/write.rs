@@ -13,9 +13,9 @@ use formats::{calibration, multi_plane, png};
 use scene::{
     CameraMaps, Frame, LidarSweep, MultiPlaneImage, PerspectiveMap, Pose, RadarReturn, RadarScan, Scene,
 };
-use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, SourceView, ViewId};
-use sensors::color;
+use sensors::pictures::appearance::CameraImage;
+use sensors::pictures::color;
 
 /// A folder, and the files written into it.
 pub struct Writer {

@@ -14,7 +14,7 @@ use app::open;
 use assist::render::{RenderProgress, Rendering, check_what};
 use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
 use sensors::cameras::{SourceId, learned};
-use sensors::rolling;
+use sensors::lidar::rolling;
 use sensors::splat::{self, GaussianCloud, SplatOptions};
 
 pub use arguments::{size, source};

@@ -9,9 +9,9 @@ use crate::perceiving::Perceiving;
 use language::{t, tf};
 use scene::SceneBox;
 use sensors::cameras::perceived;
-use sensors::perceived::SeenByRig;
-use sensors::perceived_sweep::SeenBySweep;
-use sensors::perceived_voxels::SeenInVoxels;
+use sensors::perceive::pictures::SeenByRig;
+use sensors::perceive::sweep::SeenBySweep;
+use sensors::perceive::voxels::SeenInVoxels;
 use widgets::icons::section;
 use widgets::theme;
 

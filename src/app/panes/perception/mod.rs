@@ -13,8 +13,8 @@ use language::{t, tf};
 use nets::perceiver::stands::{Stands, standing};
 use scene::{Extent, Scene, SceneRev};
 use sensors::cameras::perceived;
-use sensors::perceived_sweep::SweepReport;
-use sensors::perceived_voxels::{VoxelReport, on_map};
+use sensors::perceive::sweep::SweepReport;
+use sensors::perceive::voxels::{VoxelReport, on_map};
 use widgets::icons::{self, Icon};
 use widgets::theme;
 

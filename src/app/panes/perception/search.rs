@@ -9,7 +9,7 @@ use editor::Document;
 use language::{t, tf};
 use nets::perceiver::SCORE;
 use scene::{BoxId, Scene};
-use sensors::perceived::MISSED_BELOW;
+use sensors::perceive::pictures::MISSED_BELOW;
 use widgets::icons::section;
 use widgets::theme;
 

@@ -13,10 +13,10 @@ use super::recalled::{Recall, Recalled};
 use crate::command::Command;
 use crate::prompting::{Ask, Diffused, How, Keep, Laid, PlacementMethod, Remembered};
 use editor::Edit;
-use job::guard::Panicked;
 use language::{t, tf};
 use place::description::Description;
 use place::to_graph::{Graphed, to_graph};
+use runtime::guard::Panicked;
 use widgets::theme;
 use widgets::thumbnail;
 
@@ -400,7 +400,7 @@ impl PromptPlan {
                 wake.request_repaint();
             }
         };
-        let thread = job::guard::spawn("variants", lay_out, move |ended| {
+        let thread = runtime::guard::spawn("variants", lay_out, move |ended| {
             if let Err(panic) = ended {
                 let _ = tell.send(Err(panic));
                 wake_last.request_repaint();

@@ -6,8 +6,8 @@ use egui::{Sense, Ui, vec2};
 
 use crate::memory::layout_of;
 use crate::prompting::{Ask, Remembered, recall};
-use job::guard::Panicked;
 use language::{t, tf};
+use runtime::guard::Panicked;
 use scene::{BevLayout, SceneBox};
 use widgets::theme;
 use widgets::thumbnail;
@@ -89,7 +89,7 @@ impl Recall {
             let found = recall(&ask.prompt, &ask.description, ask.seed);
             found.as_ref().and_then(Recalled::from_retrieval)
         };
-        let thread = job::guard::spawn("recall", recall, move |found| {
+        let thread = runtime::guard::spawn("recall", recall, move |found| {
             // The receiver is gone once the pane is closed.
             let _ = send.send((words, found));
             wake.request_repaint();
@@ -164,11 +164,11 @@ mod tests {
             assert_eq!(of, words);
             found.map(|f| f.is_some()).map_err(|e| e.to_string())
         };
-        job::guard::panic_next("recall");
+        runtime::guard::panic_next("recall");
         assert_eq!(found(), Err("recall panicked: asked for by a test".into()));
         assert_eq!(found(), Ok(true));
         let mut plan = super::super::plan::PromptPlan::default();
-        job::guard::panic_next("variants");
+        runtime::guard::panic_next("variants");
         let first = plan.first_variant(&ask);
         assert_eq!(first, Err("variants panicked: asked for by a test".into()));
         assert_eq!(plan.first_variant(&ask), Ok(ask.seed));

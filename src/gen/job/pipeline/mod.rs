@@ -8,7 +8,7 @@ mod new_ground;
 mod plan;
 mod round_trip;
 mod source;
-mod standing;
+pub(crate) mod standing;
 mod unfinished;
 mod window;
 
@@ -16,17 +16,15 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::close_holes::{close_holes, close_holes_of_edit, still_closed};
 use crate::composite::{composite, seam_change_share, untouched_hash, untouched_voxels_changed};
 use crate::contract::{
     ChosenDensities, GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, Quality, RegionMode,
     Stage,
 };
+use crate::guards::clear::observed_still;
+use crate::guards::holes::still_closed;
+use crate::guards::{self, GuardInput};
 use crate::inpaint::{self, InpaintMask};
-use crate::keep_clear::{keep_clear, keep_unobserved, observed_still};
-use crate::keep_grounded::keep_grounded;
-use crate::keep_objects::{keep_ground, keep_objects};
-use crate::keep_unchanged::keep_unchanged;
 use crate::refine::decode_refined;
 use crate::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use crate::request::VoxelRequest;
@@ -287,24 +285,17 @@ impl<B: Ops + Clone> OccPipeline<B> {
                 refine,
             )
         })?;
-        let mut holes = Vec::new();
-        if params.keep_objects {
-            report.objects_kept = keep_objects(frame, &region, true, &mut generated);
-            if params.named.completeness.is_none_or(|share| share >= COMPLETE) {
-                holes = close_holes(&frame.layout, &mut generated);
-            }
-            report.grounded(keep_grounded(
-                frame,
-                &region,
-                true,
-                &VoxelRequest::from_frame(frame),
-                &mut generated,
-            ));
-        }
-        standing::keep_loose_things(&job.scene, &region, &mut generated);
-        let source = &frame.source.occupancy;
-        let mut result = self.finish(job, source, &generated, &region, &mut report);
-        result.report.close(still_closed(holes, &result.occupancy));
+        let request = VoxelRequest::from_frame(frame);
+        let on = GuardInput {
+            scene: &job.scene,
+            region: &region,
+            inpainted: &InpaintMask::default(),
+            request: &request,
+            source: None,
+            complete: params.named.completeness.is_none_or(|share| share >= COMPLETE),
+        };
+        guards::run(&on, params.keep_objects, &mut generated, &mut report);
+        let result = self.finish(job, &frame.source.occupancy, &generated, &region, &mut report);
         self.adopt(
             &result.occupancy,
             &condition,
@@ -442,7 +433,7 @@ impl<B: Ops + Clone> OccPipeline<B> {
         ctx.progress(Stage::Decode, 0, 1)?;
         let request = VoxelRequest::from_frame(frame);
         let observed = observed_still(frame, inpainted, &request);
-        let mut generated = report.timed(Stage::Decode, |report| {
+        let (mut generated, decoded_source) = report.timed(Stage::Decode, |_| {
             let refine = (params.fine_steps, params.seed);
             let decoded = |latent: &[f32], condition: &Condition| {
                 let input = DecoderInput {
@@ -455,24 +446,18 @@ impl<B: Ops + Clone> OccPipeline<B> {
                 || decoded(&edited.latent, &condition),
                 || decoded(&latent, &condition_before),
             );
-            let (mut generated, source) = (generated?, source?);
-            report.unchanged_kept =
-                keep_unchanged(frame, &region, inpainted, &request, &source, &mut generated);
-            Ok::<_, GenError>(generated)
+            Ok::<_, GenError>((generated?, source?))
         })?;
-        let mut holes = Vec::new();
-        if params.keep_objects {
-            report.objects_kept = keep_objects(frame, &region, false, &mut generated);
-            report.ground_kept = keep_ground(frame, &region, &mut generated);
-            report.unobserved_kept = keep_unobserved(frame, &region, inpainted, &request, &mut generated);
-            report.invented_cleared = keep_clear(frame, &region, inpainted, &request, &mut generated);
-            let complete = is_new && named.completeness.is_some_and(|share| share >= COMPLETE);
-            holes = close_holes_of_edit(&frame.layout, before, (&region, complete), &mut generated);
-            report.grounded(keep_grounded(frame, &region, false, &request, &mut generated));
-        }
-        standing::keep_loose_things(&job.scene, &region, &mut generated);
-        let mut result = self.finish(job, before, &generated, &region, &mut report);
-        result.report.close(still_closed(holes, &result.occupancy));
+        let on = GuardInput {
+            scene: &job.scene,
+            region: &region,
+            inpainted,
+            request: &request,
+            source: Some(&decoded_source),
+            complete: is_new && named.completeness.is_some_and(|share| share >= COMPLETE),
+        };
+        guards::run(&on, params.keep_objects, &mut generated, &mut report);
+        let result = self.finish(job, before, &generated, &region, &mut report);
         if fresh {
             return Ok(result); // not adopted: its states around the region are noised, not inverted
         }
@@ -504,6 +489,8 @@ impl<B: Ops + Clone> OccPipeline<B> {
         let occupancy = report.timed(Stage::Composite, |_| {
             composite(source, generated, region, painted)
         });
+        let holes = std::mem::take(&mut report.holes);
+        report.close(still_closed(holes, &occupancy));
         report.region_columns = region.column_count();
         report.region_share = region.share();
         report.region_cells = region.cell_count();

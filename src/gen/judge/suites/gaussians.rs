@@ -15,8 +15,8 @@ use calibration::held_out::TEST_SEED;
 use numeric::quantile::median;
 use numeric::splitmix::Draw;
 use scene::{Camera, Pose, Scene};
-use sensors::appearance::{Appearance, Quality};
 use sensors::bake::{self, BakeOptions, draw, stands};
+use sensors::pictures::appearance::{Appearance, Quality};
 use world::template::TEMPLATES;
 
 /// Size of the judged pictures, px; larger than the pictures that are baked from.

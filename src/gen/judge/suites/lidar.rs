@@ -18,9 +18,9 @@ use nets::lidar::sites::physical;
 use nets::lidar::{LearnedRay, LidarNet};
 use numeric::quantile::{Sorted, median};
 use scene::{Class, SensorRig, VoxelGrid, Window};
-use sensors::learned::{self, Drops};
+use sensors::lidar::learned::{self, Drops};
+use sensors::lidar::truth::{self, Echo, TruthRay};
 use sensors::raycast::ColumnMasks;
-use sensors::truth::{self, Echo, TruthRay};
 use world::draw::{Draw, hash};
 use world::voxelize::{Drive, Vertical, complete, labels};
 

@@ -8,6 +8,7 @@ pub mod generation;
 pub mod layout;
 pub mod lidar;
 pub mod map;
+pub mod near;
 pub mod pictures;
 pub mod splat;
 pub mod vae;

@@ -1,6 +1,6 @@
 //! A network that predicts voxels from one LiDAR sweep and the pictures of the cameras, or from either alone. Twin of
 //! `training/models/sensor_occupancy.py`, trained by `training/train_sensor_occupancy.py` on procedural worlds. The
-//! classes that the segmenter predicts in pictures are painted on the voxels, see `sensors::perceived_voxels`.
+//! classes that the segmenter predicts in pictures are painted on the voxels, see `sensors::perceive::voxels`.
 
 #[cfg(test)]
 mod tests;

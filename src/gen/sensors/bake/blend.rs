@@ -1,7 +1,7 @@
 //! Blends coloured splats front to back into one tile of a picture, and goes backwards through the same sum for the
 //! gradient with each splat.
 
-use crate::tile::{BlendThresholds, Splat, SplatPixels, TILE, exp};
+use crate::splat::tile::{BlendThresholds, Splat, SplatPixels, TILE, exp};
 
 type BlendRow = [f32; TILE];
 

@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3};
 
-use crate::appearance::Appearance;
+use crate::pictures::appearance::Appearance;
 use scene::{SceneGaussian, truth};
 
 /// How far away they are, m.

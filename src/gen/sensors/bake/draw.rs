@@ -5,10 +5,10 @@ use glam::{DVec3, Quat, Vec3};
 use rayon::prelude::*;
 
 use super::blend::{Light, Slopes, Sums};
-use crate::order::depth_order;
-use crate::project::SplatCamera;
+use crate::splat::order::depth_order;
+use crate::splat::project::SplatCamera;
+use crate::splat::tile::{BlendThresholds, SplatPixels, TILE};
 use crate::splat::{Bins, placed};
-use crate::tile::{BlendThresholds, SplatPixels, TILE};
 use scene::splats::SplatOptions;
 use scene::{Camera, SceneGaussian};
 
@@ -194,7 +194,7 @@ struct ViewCone {
 
 impl ViewCone {
     fn from_camera(camera: &Camera, [width, height]: [u32; 2]) -> Self {
-        let rays = crate::rays::CameraRays::new(camera, width, height);
+        let rays = crate::raycast::rays::CameraRays::new(camera, width, height);
         let pose = camera.ego_from_camera();
         let (w, h) = (f64::from(width), f64::from(height));
         let ahead = pose.rotation * DVec3::Z;

@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::appearance::Appearance;
+use crate::pictures::appearance::Appearance;
 use draw::Ellipsoid;
 pub use of_scene::{bake_scene, between, places};
 use samples::{Sampled, SurfaceSample};

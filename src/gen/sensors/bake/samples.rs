@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::appearance::{Appearance, Probe};
-use crate::rays::CameraRays;
+use crate::pictures::appearance::{Appearance, Probe};
+use crate::raycast::rays::CameraRays;
 use scene::Camera;
 use scene::truth::{self, TruthClass};
 

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::samples::SampleGroup;
-use crate::material::{Materials, PulseHit};
+use crate::lidar::material::{Materials, PulseHit};
 use scene::Class;
 use scene::truth::{self, TruthClass};
 use world::SurfacePoint;

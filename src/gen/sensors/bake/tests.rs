@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use glam::DVec3;
 
 use super::*;
-use crate::appearance::Quality;
+use crate::pictures::appearance::Quality;
 use scene::{BoxId, Class, SceneBox, truth};
 use world::World;
 use world::template;

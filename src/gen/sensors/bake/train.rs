@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::blend::Slopes;
 use super::draw::{Ellipsoid, OPTIONS, Projected};
 use super::samples::CapturedPicture;
-use crate::project::SplatCamera;
+use crate::splat::project::SplatCamera;
 use scene::SceneGaussian;
 
 /// Views of one step.

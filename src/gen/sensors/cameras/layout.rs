@@ -4,8 +4,8 @@ use super::{
     CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
     PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
-use crate::march::GroundHeight;
-use crate::perspective;
+use crate::pictures::march::GroundHeight;
+use crate::pictures::perspective;
 use scene::{Camera, Frame};
 
 /// The view of boxes and lanes.

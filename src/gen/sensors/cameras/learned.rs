@@ -10,9 +10,9 @@ use super::{
     CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
     PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
-use crate::appearance::CameraImage;
-use crate::march::GroundHeight;
-use crate::painter::{PaintError, PaintInput, PaintModel, PaintOptions, PaintWith};
+use crate::pictures::appearance::CameraImage;
+use crate::pictures::march::GroundHeight;
+use crate::pictures::painter::{PaintError, PaintInput, PaintModel, PaintOptions, PaintWith};
 use scene::{Camera, SensorRig};
 
 /// The view of the learned picture.

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::{CameraError, CameraPicture, Card, PreparedCameras, RenderOptions};
-use crate::march::{GroundHeight, MarchOptions, MarchScene};
+use crate::pictures::march::{GroundHeight, MarchOptions, MarchScene};
 use scene::{Camera, Frame};
 
 /// A frame for exact rays. With `shapes`, boxes have solids and stand on the road at its physical height. Without them

@@ -24,10 +24,10 @@ pub use view::{Knob, SourceId, SourceView, ViewId};
 
 use rayon::prelude::*;
 
-use super::appearance::{Appearance, CameraImage, Quality};
-use super::cloud::GaussianCloud;
-use super::march::GroundHeight;
-use super::painter::PaintWith;
+use crate::pictures::appearance::{Appearance, CameraImage, Quality};
+use crate::pictures::march::GroundHeight;
+use crate::pictures::painter::PaintWith;
+use crate::splat::cloud::GaussianCloud;
 use scene::Conditions;
 use scene::{Background, Camera, CameraMaps, Frame, SensorRig};
 

@@ -10,9 +10,9 @@ use super::{
     CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
     PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
-use crate::appearance::{Appearance, CameraImage};
-use crate::march::GroundHeight;
-use crate::rays::CameraRays;
+use crate::pictures::appearance::{Appearance, CameraImage};
+use crate::pictures::march::GroundHeight;
+use crate::raycast::rays::CameraRays;
 use scene::Camera;
 use scene::Conditions;
 

@@ -6,9 +6,9 @@ use super::{
     CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
     PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
-use crate::appearance::Appearance;
-use crate::march::GroundHeight;
-use crate::perceived::Perceived;
+use crate::perceive::pictures::Perceived;
+use crate::pictures::appearance::Appearance;
+use crate::pictures::march::GroundHeight;
 use scene::{Camera, Frame};
 
 /// The view of predicted classes.

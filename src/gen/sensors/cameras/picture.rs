@@ -1,8 +1,8 @@
 //! Data that a source renders, and its display in colours.
 
 use super::view::ViewId;
-use crate::appearance::CameraImage;
-use crate::color::{depth_rgba, perspective_rgba, plane_rgba, semantic_rgba};
+use crate::pictures::appearance::CameraImage;
+use crate::pictures::color::{depth_rgba, perspective_rgba, plane_rgba, semantic_rgba};
 use scene::{CameraMaps, MultiPlaneImage, PerspectiveMap};
 
 /// Depth at which the colours of depths begin and end in the window, m.

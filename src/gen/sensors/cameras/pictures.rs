@@ -4,8 +4,8 @@ use super::{
     CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
     PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
-use crate::appearance::Appearance;
-use crate::march::GroundHeight;
+use crate::pictures::appearance::Appearance;
+use crate::pictures::march::GroundHeight;
 use scene::Camera;
 
 /// The view of the picture.

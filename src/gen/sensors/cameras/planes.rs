@@ -4,8 +4,8 @@ use super::{
     CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Knob, Needs,
     PreparedCameras, RenderOptions, SourceId, SourceView, ViewId,
 };
-use crate::march::GroundHeight;
-use crate::mpi::{self, RenderIds};
+use crate::pictures::march::GroundHeight;
+use crate::pictures::mpi::{self, RenderIds};
 use scene::Camera;
 use scene::sensor_data::PlaneDepths;
 

@@ -5,8 +5,8 @@ use super::{
     CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Detail, Needs,
     PreparedCameras, RenderOptions, SourceId,
 };
-use crate::cloud::GaussianCloud;
-use crate::march::GroundHeight;
+use crate::pictures::march::GroundHeight;
+use crate::splat::cloud::GaussianCloud;
 use crate::splat::{self, SplatOptions};
 use scene::Camera;
 

@@ -5,8 +5,8 @@ use super::{
     CameraError, CameraInput, CameraPicture, CameraSource, CameraSourceDescription, Card, Needs,
     PreparedCameras, RenderOptions, SourceId,
 };
-use crate::appearance::Appearance;
-use crate::march::GroundHeight;
+use crate::pictures::appearance::Appearance;
+use crate::pictures::march::GroundHeight;
 use scene::truth::{OUTSIDE, STOP_LINE};
 use scene::{Camera, CameraMaps, CameraTruth, Class, Frame};
 

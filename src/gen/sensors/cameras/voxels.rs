@@ -2,7 +2,7 @@
 
 use super::view::MAP_VIEWS;
 use super::{CameraInput, CameraSource, CameraSourceDescription, Needs, PreparedCameras, SourceId, marched};
-use crate::march::GroundHeight;
+use crate::pictures::march::GroundHeight;
 
 /// Name of the source.
 pub const ID: SourceId = SourceId::new("voxels");

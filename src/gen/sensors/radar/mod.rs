@@ -10,7 +10,7 @@ mod echo;
 
 use glam::DVec3;
 
-use super::rolling;
+use crate::lidar::rolling;
 use cells::Cells;
 use echo::Echo;
 use scene::draft::ground_class;

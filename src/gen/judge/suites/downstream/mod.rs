@@ -18,7 +18,7 @@ use editor::Document;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx, Pipeline};
 use scene::{Class, Scene};
-use sensors::perceived_sweep::report;
+use sensors::perceive::sweep::report;
 use voxels::VoxelFigures;
 
 /// Figures of the LiDAR network on scenes, a value per scene.

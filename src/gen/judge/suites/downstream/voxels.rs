@@ -10,9 +10,9 @@ use crate::suite::with_interval;
 use crate::suites::pictures::go_on;
 use nets::picture::PictureNets;
 use scene::{Conditions, Scene, TimeOfDay, Weather};
-use sensors::appearance::CameraImage;
-use sensors::painter::{PaintInput, PaintOptions, Painter};
-use sensors::perceived_voxels::{Hears, PerceptionInput, VoxelReport, report, report_of};
+use sensors::perceive::voxels::{Hears, PerceptionInput, VoxelReport, report, report_of};
+use sensors::pictures::appearance::CameraImage;
+use sensors::pictures::painter::{PaintInput, PaintOptions, Painter};
 
 /// Sensors that the network gets, by name.
 const ARMS: [(&str, Hears); 3] = [

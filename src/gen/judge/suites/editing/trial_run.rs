@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use calibration::trials::{Reached, Trial};
 use editor::Document;
+use job::guards::clear::{keep_clear, keep_unobserved};
+use job::guards::grounded::keep_grounded;
+use job::guards::objects::{keep_ground, keep_objects};
 use job::inpaint;
 use job::invented::Invented;
-use job::keep_clear::{keep_clear, keep_unobserved};
-use job::keep_grounded::keep_grounded;
-use job::keep_objects::{keep_ground, keep_objects};
 use job::pipeline::OccPipeline;
 use job::request::{VoxelRequest, voxels_of};
 use job::{GenParams, Job, JobCtx, Pipeline};

@@ -13,7 +13,7 @@ use metrics::extractor::Extractor;
 use metrics::local::{Windows, depth, occupancy};
 use metrics::shape::{FIGURES, ShapeFigures, shape};
 use scene::{Scene, SensorRig, VoxelGrid};
-use sensors::march::{MarchOptions, MarchScene};
+use sensors::pictures::march::{MarchOptions, MarchScene};
 use world::draw::Draw;
 
 /// Number of cells of the extractor's map, and of windows of occupancy, that are taken of a scene for distances.

@@ -11,8 +11,8 @@ use dataset::world_of;
 use metrics::scenewise::{frechet, kernel, standardised};
 use nets::picture::PictureSegmenter;
 use scene::{Conditions, SensorRig, TimeOfDay, Weather};
-use sensors::appearance::CameraImage;
-use sensors::painter::PaintInput;
+use sensors::pictures::appearance::CameraImage;
+use sensors::pictures::painter::PaintInput;
 use world::draw::Draw;
 
 use calibration::held_out::TEST_SEED;

@@ -23,9 +23,9 @@ use nets::picture::{PictureNets, PictureSegmenter};
 use numeric::quantile::median;
 use scene::truth::OUTSIDE;
 use scene::{Camera, Class, Conditions, Frame, SceneBox, SensorRig, TruthPixel};
-use sensors::appearance::{Appearance, CameraImage, Quality};
-use sensors::painter::{NoisePrior, PaintInput, PaintOptions, Painter, native_px};
-use sensors::picture_hints::{HintedFrame, PictureHints};
+use sensors::pictures::appearance::{Appearance, CameraImage, Quality};
+use sensors::pictures::painter::{NoisePrior, PaintInput, PaintOptions, Painter, native_px};
+use sensors::pictures::picture_hints::{HintedFrame, PictureHints};
 use world::World;
 use world::draw::Draw;
 use world::voxelize::{Vertical, complete};
@@ -204,7 +204,7 @@ fn changes(before: &RenderedRig, after: &RenderedRig, [old, new]: [&[Arc<CameraI
 }
 
 /// Watches a painting without stopping it.
-pub(super) fn go_on(_: sensors::painter::PaintProgress<'_>) -> ControlFlow<()> {
+pub(super) fn go_on(_: sensors::pictures::painter::PaintProgress<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 

@@ -10,7 +10,7 @@ use calibration::held_out::TEST_SEED;
 use dataset::world_of;
 use metrics::sweep::SweepFigures;
 use scene::SensorRig;
-use sensors::truth;
+use sensors::lidar::truth;
 
 /// Figures of real sweeps.
 const TARGETS: &str = assets::statistics::LIDAR;

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::*;
-use crate::rays::CameraRays;
+use crate::raycast::rays::CameraRays;
 use scene::{Lens, ReadOut, Shutter};
 
 const SIZE: [u32; 2] = [240, 136];

@@ -1,0 +1,115 @@
+//! Places where something was cut out of a thing: there its remaining voxels are drawn instead of its solids.
+
+use std::collections::BTreeSet;
+
+use scene::background::ColumnLabels;
+use scene::{Class, VoxelGrid, VoxelPaint};
+
+/// A voxel: column and bin.
+pub type Voxel = [usize; 3];
+
+/// Largest share of a thing's voxels that may be missing beside its cuts: labels have no more of a bench.
+const MOST_MISSING: f64 = 0.35;
+/// Voxels around a cut that are drawn as voxels too.
+const AROUND: usize = 2;
+/// Most cuts of a thing; with more it stays in the field.
+const MOST: usize = 6;
+
+/// A cut: its lowest and its highest voxel, with those around.
+pub type Cut = [Voxel; 2];
+
+/// Voxels that a thing lacks.
+pub struct Missing {
+    /// All of them.
+    pub voxels: BTreeSet<Voxel>,
+    /// Those that were cleared by hand.
+    pub by_hand: BTreeSet<Voxel>,
+    /// All voxels that the thing has if nothing is missing.
+    whole: BTreeSet<Voxel>,
+    /// Columns of which nothing is there.
+    bare: BTreeSet<[usize; 2]>,
+}
+
+impl Missing {
+    /// Compares the voxels of a thing with those of the map.
+    pub fn new(columns: &ColumnLabels, occupancy: &VoxelGrid, painted: &VoxelPaint) -> Self {
+        let mut out = Self {
+            voxels: BTreeSet::new(),
+            by_hand: BTreeSet::new(),
+            whole: BTreeSet::new(),
+            bare: BTreeSet::new(),
+        };
+        for ([x, y], labels) in columns {
+            let (held, painted) = (occupancy.column(*x, *y), painted.column(*x, *y));
+            for z in (0..labels.len()).filter(|z| labels[*z] != Class::FREE) {
+                out.whole.insert([*x, *y, z]);
+                if held[z] == Class::FREE {
+                    out.voxels.insert([*x, *y, z]);
+                }
+                if painted[z] == Class::FREE {
+                    out.by_hand.insert([*x, *y, z]);
+                }
+            }
+            let own: Vec<usize> = (0..labels.len()).filter(|z| labels[*z] != Class::FREE).collect();
+            if own.len() > 1 && own.iter().all(|z| held[*z] == Class::FREE) {
+                out.bare.insert([*x, *y]);
+            }
+        }
+        out
+    }
+
+    /// The cuts of a thing on a map of `[nx, ny, nz]` voxels: what was cleared by hand, missing pieces of two voxels each
+    /// way, and three bare columns or more beside one another; what is smaller are ragged edges. `None` if there are too many, or
+    /// if too much is missing beside them.
+    pub fn cuts(&self, size: Voxel) -> Option<Vec<Cut>> {
+        let is_block = |[x, y, z]: &Voxel| {
+            let corner = |k: usize| [x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)];
+            (0..8).all(|k| self.voxels.contains(&corner(k)))
+        };
+        let is_gap = |[x, y, _]: &Voxel| {
+            let around = (0..9).map(|k| [(x + k / 3).wrapping_sub(1), (y + k % 3).wrapping_sub(1)]);
+            self.bare.contains(&[*x, *y]) && around.filter(|c| self.bare.contains(c)).count() > 2
+        };
+        let missing = self.voxels.iter().filter(|v| is_block(v) || is_gap(v));
+        let begin = self.by_hand.iter().chain(missing);
+        let begin: BTreeSet<Voxel> = begin.copied().collect();
+        let (mut seen, mut cuts) = (BTreeSet::new(), Vec::new());
+        for start in begin {
+            if !seen.insert(start) {
+                continue;
+            }
+            let (mut low, mut high, mut open) = (start, start, vec![start]);
+            while let Some(v) = open.pop() {
+                for axis in 0..3 {
+                    (low[axis], high[axis]) = (low[axis].min(v[axis]), high[axis].max(v[axis]));
+                }
+                for k in (0..27).filter(|k| *k != 13) {
+                    let step = [k / 9, k / 3 % 3, k % 3];
+                    let near: [usize; 3] = std::array::from_fn(|i| (v[i] + step[i]).wrapping_sub(1));
+                    let lacks = self.voxels.contains(&near) || self.by_hand.contains(&near);
+                    if lacks && seen.insert(near) {
+                        open.push(near);
+                    }
+                }
+            }
+            if cuts.len() == MOST {
+                return None;
+            }
+            let low = low.map(|v| v.saturating_sub(AROUND));
+            let high = std::array::from_fn(|i| (high[i] + AROUND).min(size[i].saturating_sub(1)));
+            cuts.push([low, high]);
+        }
+        let left = |voxels: &BTreeSet<Voxel>| {
+            let left = voxels.iter().filter(|v| !cuts.iter().any(|cut| holds(cut, **v)));
+            left.count()
+        };
+        let (missing, whole) = (left(&self.voxels), left(&self.whole));
+        let is_there = whole > 0 && missing as f64 <= MOST_MISSING * whole as f64;
+        (is_there || self.whole.is_empty()).then_some(cuts)
+    }
+}
+
+/// True if a voxel lies in a cut.
+pub fn holds([low, high]: &Cut, voxel: Voxel) -> bool {
+    (0..3).all(|i| (low[i]..=high[i]).contains(&voxel[i]))
+}
