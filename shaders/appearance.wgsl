@@ -12,7 +12,7 @@ struct View {
     // Ego frame to where textures stay: quaternion, shift.
     turn: vec4f,
     shift: vec4f,
-    // Where the vehicle stands, x and y in m.
+    // Where the vehicle stands, x and y in m; height below which nothing is.
     vehicle: vec4f,
     // Voxels of the field along x and y, blocks along x and y.
     field: vec4u,

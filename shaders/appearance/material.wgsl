@@ -53,7 +53,7 @@ fn ground_surface(p: vec3f, normal: vec3f, fp: f32) -> Surface {
 }
 
 fn plant(a: vec3f, normal: vec3f, fp: f32) -> Surface {
-    var hue = mix(vec3f(0.050, 0.095, 0.022), vec3f(0.115, 0.135, 0.030), value2(a.xy * 0.16, 23u));
+    var hue = mix(vec3f(0.046, 0.082, 0.022), vec3f(0.082, 0.108, 0.030), value2(a.xy * 0.16, 23u));
     hue = mix(hue, vec3f(0.030, 0.065, 0.025), value2(a.xy * 0.07, 24u));
     let fine = visible(fp, 0.10);
     let leaf = value3(a * 9.0, 25u) * fine + 0.5 * (1.0 - fine);

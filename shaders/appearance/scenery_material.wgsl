@@ -128,7 +128,13 @@ fn facade_bay(from_wall: Surface, id: u32, kind: f32, bays: Bays, u: f32, row: f
         let warm = mix(vec3f(1.0, 0.70, 0.38), vec3f(0.85, 0.92, 1.0), ramp(0.26, 0.3, unit3(cell, 8u) * 0.4));
         let room = 0.55 + 0.45 * (1.0 - q.y / size.y) + 0.25 * (value2(f * 2.5 + column * 7.0, 9u) - 0.5);
         let night = ramp(0.1, 1.0, a_lamps());
-        out.emit = warm * (room * open * (1.0 - bars) * (0.15 + 0.55 * night) * select(1.0, 0.55, drawn));
+        let goods = value2(vec2f(f.x * 5.0 + column * 3.0, floor(f.y / 0.42) * 7.0), 11u);
+        let shelf = abs(abs(fraction(f.y / 0.42)) - 0.5);
+        var in_room = 1.0 - 0.65 * ramp(size.x * 0.55, size.x * 0.8, q.x);
+        if shop {
+            in_room = (0.25 + 0.75 * goods) * (1.0 - 0.6 * ramp(0.40, 0.47, shelf));
+        }
+        out.emit = warm * (room * in_room * open * (1.0 - bars) * (0.12 + 0.45 * night) * select(1.0, 0.55, drawn));
     }
     return out;
 }
@@ -161,7 +167,7 @@ fn walls_surface(a: u32, part: u32, walls: vec3f, p: vec3f, n: vec3f, q: vec3f, 
     } else if style < 4u {
         let row = floor(v / 0.075);
         let x = u / 0.25 + 0.5 * modulo(row, 2.0);
-        let joint = band(abs(v / 0.075 - row - 0.5) - 0.5, 0.08, fp / 0.075);
+        let joint = band(0.5 - abs(v / 0.075 - row - 0.5), 0.08, fp / 0.075);
         let tone = unit3(vec3i(i32(floor(x)), i32(row), 3), id);
         wall *= 1.0 + visible(fp, 0.09) * (0.40 * (tone - 0.5) - 0.16 * joint);
     } else {
@@ -171,7 +177,7 @@ fn walls_surface(a: u32, part: u32, walls: vec3f, p: vec3f, n: vec3f, q: vec3f, 
     if height < 2.4 {
         return out;
     }
-    let plinth = band(abs(v - 0.2), 0.3, fp);
+    let plinth = ramp(0.5 + fp * 0.5, 0.49 - fp * 0.5, v);
     out.albedo = mix(out.albedo, gray(0.16) * (0.8 + 0.4 * stain * 0.6), 0.75 * plinth);
     let cornice = band(abs(height - 0.16 - v), 0.16, fp);
     out.albedo = mix(out.albedo, gray(0.36), 0.55 * cornice);
@@ -200,7 +206,7 @@ fn concrete(color: vec3f, q: vec3f, n: vec3f, fp: f32) -> Surface {
 
 fn tiles(color: vec3f, id: u32, u: f32, p: vec3f, q: vec3f, n: vec3f, fp: f32) -> Surface {
     if n.z < 0.25 {
-        return concrete(mix(color, gray(0.4), 0.7), q, n, fp);
+        return concrete(wall_color(hash1(id, 1u) % 12u), q, n, fp);
     }
     let steep = sqrt(max(1.0 - n.z * n.z, 0.01));
     let row = floor(p.z / steep / 0.32);
@@ -217,13 +223,15 @@ fn tiles(color: vec3f, id: u32, u: f32, p: vec3f, q: vec3f, n: vec3f, fp: f32) -
 fn masonry(color: vec3f, id: u32, u: f32, p: vec3f, q: vec3f, n: vec3f, fp: f32) -> Surface {
     var c = color * (0.78 + 0.3 * value3(q * 0.9, 37u) + 0.12 * value3(q * 3.0, 38u));
     if n.z < 0.7 {
-        let row = floor(p.z / 0.19);
-        let x = u / 0.38 + 0.5 * (row % 2.0);
+let row = floor(p.z / 0.15);
+        let x = u / 0.32 + 0.5 * (row % 2.0);
         let tone = unit3(vec3i(i32(floor(x)), i32(row), 3), id);
         let joint = max(
-            band(abs(p.z / 0.19 - row - 0.5) - 0.5, 0.06, fp / 0.19), band(abs(x - floor(x) - 0.5) - 0.5, 0.03, fp / 0.38),
+            band(0.5 - abs(p.z / 0.15 - row - 0.5), 0.07, fp / 0.15), band(0.5 - abs(x - floor(x) - 0.5), 0.035, fp / 0.32),
         );
-        c *= 1.0 + visible(fp, 0.16) * (0.36 * (tone - 0.5) - 0.30 * joint);
+        let shown = visible(fp, 0.13);
+        c *= 1.0 + shown * (0.20 * (tone - 0.5) + 0.10 * (value3(q * 14.0, 41u) - 0.5));
+        c = mix(c, gray(0.24), 0.75 * joint * shown);
         c *= 1.0 - 0.22 * ramp(0.5, 0.1, p.z);
     }
     return matt(c, n);
@@ -233,7 +241,7 @@ fn boards(color: vec3f, id: u32, u: f32, p: vec3f, q: vec3f, n: vec3f, fp: f32) 
     let x = u / 0.13;
     let board = floor(x);
     let tone = unit3(vec3i(i32(board), 5, 5), id);
-    let gap = band(abs(x - board - 0.5) - 0.5, 0.06, fp / 0.13);
+    let gap = band(0.5 - abs(x - board - 0.5), 0.06, fp / 0.13);
     let grain = value3(q * vec3f(22.0, 22.0, 1.6), 39u) - 0.5;
     var c = color * (0.80 + 0.25 * value3(q * 0.8, 40u));
     c *= 1.0 + visible(fp, 0.11) * (0.40 * (tone - 0.5) - 0.75 * gap) + 0.30 * grain * visible(fp, 0.04);
@@ -249,7 +257,7 @@ fn metal(color: vec3f, q: vec3f, n: vec3f) -> Surface {
 
 fn pane(u: f32, p: vec3f, n: vec3f, fp: f32) -> Surface {
     let x = u / 1.2;
-    let bar = max(band(abs(x - floor(x) - 0.5) - 0.5, 0.035, fp / 1.2), band(abs(p.z - 0.95), 0.03, fp));
+    let bar = max(band(0.5 - abs(x - floor(x) - 0.5), 0.035, fp / 1.2), band(abs(p.z - 0.95), 0.03, fp));
     var s = matt(mix(vec3f(0.085, 0.105, 0.105), gray(0.11), bar), n);
     s.mirror = 0.08 * (1.0 - bar);
     s.gloss = 0.95;
@@ -368,7 +376,7 @@ fn scenery_surface(a: u32, part: u32, p: vec3f, n: vec3f, fp: f32) -> Surface {
         case 18u: { return lamp_surface(a, p, n); }
         case 19u: { return pane(u, p, n, fp); }
         case 6u: {
-            var s = metal(color, q, n);
+            var s = metal(select(color, color * 0.25, n.z > 0.7), q, n);
             s.mirror = 0.03;
             s.gloss = 0.5;
             return s;

@@ -21,7 +21,7 @@ fn openness(hit: Met, p: vec3f, n: vec3f) -> f32 {
         closed += at[k].w * field_dense(p + at[k].xyz);
     }
     var open = clamp(1.0 - closed, 0.12, 1.0);
-    if p.z < 2.5 {
+    if p.z - ground_base(p.xy) < 2.5 {
         let near = things_near(p.xy);
         for (var k = near.x; k < near.y; k++) {
             let i = words[section(12u) + k];

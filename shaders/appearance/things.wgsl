@@ -110,6 +110,31 @@ fn cast_part(part: u32, o: vec3f, d: vec3f, limit: f32) -> vec4f {
         }
         return none;
     }
+    if kind == 4u {
+        let radius = num(a + 8u);
+        let wide = num(a + 9u);
+        let hole = num(a + 10u);
+        let p = o - middle;
+        var out = none;
+        if abs(d.y) > 1e-6 {
+            let t = (-wide * sign(d.y) - p.y) / d.y;
+            let away = length(p.xz + d.xz * t);
+            if away >= hole && away <= radius && t > 1e-4 && t < limit {
+                out = vec4f(0.0, -sign(d.y), 0.0, t);
+            }
+        }
+        for (var k = 0; k < 2; k++) {
+            let r = select(hole, radius, k == 0);
+            let side = select(-1.0, 1.0, k == 0);
+            let roots = quadratic(dot(d.xz, d.xz), dot(p.xz, d.xz), dot(p.xz, p.xz) - r * r);
+            let t = select(roots.y, roots.x, k == 0);
+            let at = p + d * t;
+            if roots.z > 0.0 && abs(at.y) <= wide && t > 1e-4 && t < limit && (out.w < 0.0 || t < out.w) {
+                out = vec4f(vec3f(at.x, 0.0, at.z) * (side / r), t);
+            }
+        }
+        return out;
+    }
     let height = num(a + 8u);
     let bottom = num(a + 9u);
     let top = num(a + 10u);

@@ -28,7 +28,7 @@ fn trace(o: vec3f, d: vec3f, limit: f32, mode: u32) -> Met {
     let from_m = blocks_from_m();
     var t0 = 0.0;
     var t1 = hit.t;
-    let low = vec3f(from_m, -0.4);
+    let low = vec3f(from_m, view.vehicle.z);
     let high = vec3f(from_m + vec2f(n) * BLOCK_M, highest_m());
     for (var a = 0u; a < 3u; a++) {
         if abs(d[a]) < 1e-9 {

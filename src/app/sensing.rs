@@ -30,6 +30,7 @@ use sensors::lidar::caster::Caster;
 use sensors::lidar::learned::Drops;
 use sensors::lidar::learned_caster::{LearnedCaster, Sampled};
 use sensors::lidar::rolling;
+use sensors::lidar::scenery::SceneryShapes;
 use sensors::lidar::shaped::onto_shapes;
 use sensors::radar;
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
@@ -425,7 +426,7 @@ impl SensorCache {
         if wanted.lidar == LidarModel::Learned
             && let Some(mut sweep) = self.learned(scene, wanted.lost_echoes)
         {
-            onto_shapes(&mut sweep, scene.frame(), &scene.rig, scene.seed);
+            onto_shapes(&mut sweep, scene.frame(), &scene.rig, scene.seed, None);
             return sweep;
         }
         let (frame, rig) = (scene.frame(), &scene.rig);
@@ -439,7 +440,10 @@ impl SensorCache {
         }
         self.lidar
             .as_ref()
-            .map(|(_, caster)| caster.shaped(frame, rig, scene.seed))
+            .map(|(_, caster)| {
+                let scenery = SceneryShapes::from_scene(scene);
+                caster.shaped(frame, rig, scene.seed, scenery.as_ref())
+            })
             .unwrap_or_default()
     }
 

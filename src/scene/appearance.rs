@@ -165,6 +165,8 @@ pub enum AppearanceSection {
     CrossingCount,
     /// Linear colour of each class, three words.
     Calm,
+    /// 1 if the ground is not level, then its heights `[x][y]`, then the lowest and highest of each block.
+    Relief,
 }
 
 /// How many entries [`AppearanceData::at`] has.
@@ -188,6 +190,8 @@ pub struct AppearanceData {
     pub shift_m: [f32; 3],
     /// Place of the vehicle, m: rain and snow fall around it.
     pub vehicle_m: [f32; 2],
+    /// Height below which nothing is, m.
+    pub lowest_m: f32,
     /// Seed that varies textures.
     pub seed: u32,
 }

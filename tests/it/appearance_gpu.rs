@@ -65,6 +65,12 @@ fn pictures_agree_with_the_processor() {
     assert!(background.len() > 20, "{} things", background.len());
     let mut far = Vec::new();
     let unknown = Background::default();
+    let slopes = frame
+        .layout
+        .relief
+        .heights_m()
+        .map_or(0.0, |all| all.iter().fold(0.0, |a, h| h.abs().max(a)));
+    assert!(slopes > 0.5, "the ground is not level: {slopes} m");
     for (name, time, weather, things) in [
         ("day, things", TimeOfDay::Day, Weather::Clear, &background),
         ("night, things", TimeOfDay::Night, Weather::Clear, &background),

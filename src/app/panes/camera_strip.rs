@@ -116,8 +116,29 @@ impl<'a> CamerasInput<'a> {
     }
 }
 
+/// Share of the largest possible width of pictures for which they stand in longer rows.
+const LONG_ROWS: f32 = 0.88;
+/// Distance between pictures, points.
+const GAP: f32 = 6.0;
+
+/// Number of pictures in a row, and their width, points, so that they are about as large as the room allows.
+fn rows_of(count: usize, room: egui::Vec2) -> (usize, f32) {
+    let width = |columns: usize| {
+        let (wide, high) = (columns as f32, count.div_ceil(columns) as f32);
+        let by_height = (room.y - GAP * (high - 1.0)) / high * 16.0 / 9.0;
+        ((room.x - GAP * (wide - 1.0)) / wide).min(by_height)
+    };
+    let largest = (1..=count.max(1)).map(width).fold(f32::NEG_INFINITY, f32::max);
+    // Long rows are read more easily than high columns.
+    let columns = (1..=count.max(1))
+        .rev()
+        .find(|n| width(*n) >= LONG_ROWS * largest);
+    let columns = columns.unwrap_or(1);
+    (columns, width(columns).max(40.0))
+}
+
 impl CameraStrip {
-    /// Draws the pictures in a row.
+    /// Draws the pictures, in a row or, where there is room, in several.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -132,17 +153,17 @@ impl CameraStrip {
         let shown: Vec<usize> = (0..cameras.len())
             .filter(|i| !state.cameras.is_hidden(*i))
             .collect();
-        let count = shown.len().max(1) as f32;
-        let gap = 6.0;
         let room = ui.available_size();
-        let width = ((room.x - gap * (count - 1.0)) / count)
-            .min(room.y * 16.0 / 9.0)
-            .max(40.0);
-        let used = width * count + gap * (count - 1.0);
+        let (columns, width) = rows_of(shown.len(), room);
+        let used = width * columns as f32 + GAP * (columns as f32 - 1.0);
         let left = ui.max_rect().left() + ((room.x - used) / 2.0).max(0.0);
         let top = ui.cursor().top();
         for (place, &i) in shown.iter().enumerate() {
-            let at = pos2(left + place as f32 * (width + gap), top);
+            let (column, row) = ((place % columns) as f32, (place / columns) as f32);
+            let at = pos2(
+                left + column * (width + GAP),
+                top + row * (width * 9.0 / 16.0 + GAP),
+            );
             let rect = Rect::from_min_size(at, vec2(width, width * 9.0 / 16.0));
             let hovered = self.picture(ui, rect, i, input, state, commands);
             if let Some(part) = hovered {
@@ -535,6 +556,22 @@ pub fn thousands(n: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pictures_stand_in_as_many_rows_as_make_them_large() {
+        assert_eq!(rows_of(6, vec2(1500.0, 160.0)).0, 6, "a strip");
+        assert_eq!(
+            rows_of(6, vec2(1400.0, 850.0)).0,
+            3,
+            "a pane that fills the window"
+        );
+        assert_eq!(rows_of(6, vec2(300.0, 900.0)).0, 1, "a narrow column");
+        assert_eq!(rows_of(1, vec2(800.0, 450.0)), (1, 800.0));
+        for room in [vec2(0.0, 0.0), vec2(-5.0, 300.0), vec2(f32::NAN, 10.0)] {
+            let (columns, width) = rows_of(6, room);
+            assert!(columns >= 1 && width >= 40.0, "{room}: {columns} {width}");
+        }
+    }
 
     #[test]
     fn names_and_numbers_for_people() {

@@ -10,6 +10,7 @@ use crate::wire::{LidarDeviceType, LidarRenderRequest, LidarRenderReturn};
 use scene::{LidarPattern, Pose, Scene, SensorRig};
 use sensors::lidar;
 use sensors::lidar::learned::{self, Drops};
+use sensors::lidar::scenery::SceneryShapes;
 use sensors::lidar::shaped::onto_shapes;
 
 /// Parts of a spin. While one of them is swept, things stand still and the LiDAR moves on straight.
@@ -95,6 +96,10 @@ impl Spin<'_> {
         let columns = self.pattern.columns_in_sector();
         let end_from_world = self.sensor.end.inverse();
         let mut out = LidarRenderReturn::default();
+        let scenery = match renderer.net {
+            Some(_) => None,
+            None => SceneryShapes::from_scene(self.scene),
+        };
         for part in 0..parts {
             let [from, to] = [part, part + 1].map(|i| columns * i / parts);
             let shares = [part, part + 1].map(|i| f64::from(i) / f64::from(parts));
@@ -108,7 +113,7 @@ impl Spin<'_> {
                     .map_err(|e| Status::internal(format!("the LiDAR network: {e}")))?,
                 None => lidar::rig_sweep(grid, &rig).unwrap_or_default(),
             };
-            onto_shapes(&mut sweep, &frame, &rig, self.scene.seed);
+            onto_shapes(&mut sweep, &frame, &rig, self.scene.seed, scenery.as_ref());
             for point in &sweep.points {
                 let p = DVec3::from_array(point.position_in_ego.map(f64::from));
                 let p = end_from_world.apply(p).as_vec3();

@@ -50,7 +50,12 @@ impl GpuView {
             air: appearance.air,
             turn: appearance.turn,
             shift: [x, y, z, 0.0],
-            vehicle: [appearance.vehicle_m[0], appearance.vehicle_m[1], 0.0, 0.0],
+            vehicle: [
+                appearance.vehicle_m[0],
+                appearance.vehicle_m[1],
+                appearance.lowest_m,
+                0.0,
+            ],
             field: [shape.nx, shape.ny, blocks_x, blocks_y].map(|n| n as u32),
             bins: [bins_x as u32, bins_y as u32, 0, 0],
             low: [

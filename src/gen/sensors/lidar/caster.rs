@@ -5,6 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::beyond::border::Border;
+use crate::lidar::scenery::SceneryShapes;
 use crate::lidar::shaped;
 use crate::lidar::surroundings::{Height, SurroundingHits};
 use crate::lidar::{EgoBox, Rays, look_through};
@@ -168,9 +169,15 @@ impl Caster {
 
     /// The returns on the shapes of boxes ([`shaped::onto_shapes`]); the frame has the voxels that were cast last, `seed` is the
     /// scene's.
-    pub fn shaped(&self, frame: &Frame, rig: &SensorRig, seed: u64) -> LidarSweep {
+    pub fn shaped(
+        &self,
+        frame: &Frame,
+        rig: &SensorRig,
+        seed: u64,
+        scenery: Option<&SceneryShapes>,
+    ) -> LidarSweep {
         let mut sweep = self.sweep();
-        shaped::place(&mut sweep, frame, rig, seed, Some(&self.masks));
+        shaped::place(&mut sweep, (frame, scenery), rig, seed, Some(&self.masks));
         sweep
     }
 

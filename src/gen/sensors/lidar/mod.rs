@@ -8,6 +8,7 @@ pub mod material;
 pub mod observed;
 pub mod own_body;
 pub mod rolling;
+pub mod scenery;
 pub mod shaped;
 pub mod surroundings;
 mod texture;

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use crate::lidar;
 use crate::lidar::learned::{self, Drops};
+use crate::lidar::scenery::SceneryShapes;
 use crate::lidar::shaped::onto_shapes;
 use nets::ModelError;
 use nets::lidar::LidarNet;
@@ -19,9 +20,10 @@ const AROUND_M: f64 = scene::Lattice::OCC3D.voxel_m();
 /// The exact sweep of a scene's first LiDAR ([`lidar::rig_sweep`]) with returns on the shapes of boxes ([`onto_shapes`]), as
 /// [`sweep`] makes it; empty if the rig has none.
 pub fn exact(scene: &Scene) -> LidarSweep {
+    let scenery = SceneryShapes::from_scene(scene);
     let made: Result<_, std::convert::Infallible> = sweep(scene, |s| {
         let mut sweep = lidar::rig_sweep(&s.frame().occupancy, &s.rig).unwrap_or_default();
-        onto_shapes(&mut sweep, s.frame(), &s.rig, s.seed);
+        onto_shapes(&mut sweep, s.frame(), &s.rig, s.seed, scenery.as_ref());
         Ok(sweep)
     });
     made.unwrap_or_default()
@@ -39,7 +41,7 @@ pub fn of_voxels(scene: &Scene) -> LidarSweep {
 pub fn learned(net: &LidarNet, scene: &Scene, drops: Drops) -> Result<LidarSweep, ModelError> {
     sweep(scene, |s| {
         let mut sweep = learned::rig_sweep(net, &s.frame().occupancy, &s.rig, drops)?;
-        onto_shapes(&mut sweep, s.frame(), &s.rig, s.seed);
+        onto_shapes(&mut sweep, s.frame(), &s.rig, s.seed, None);
         Ok(sweep)
     })
 }

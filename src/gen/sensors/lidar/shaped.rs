@@ -1,4 +1,4 @@
-//! Returns on the shapes of boxes: rays are cast through voxels of 0.4 m, which stick out of the boxes that they stand
+//! Returns on the shapes of boxes and scenery: rays are cast through voxels of 0.4 m, which stick out of the boxes that they stand
 //! for. Here a return on a box's voxels becomes the return on the box's solids, those that pictures show, and lies
 //! within the box.
 
@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::lidar::scenery::SceneryShapes;
 use crate::lidar::{EgoBox, look_through};
 use crate::pictures::march::solids::SolidIndex;
 use crate::raycast::ColumnMasks;
@@ -40,26 +41,34 @@ const RAYS: usize = 512;
 /// stands in the frame's coordinates. A ray that passes the solids of a box goes on to what is behind. A return is left
 /// out if the ray finds nothing there, or if it is an echo of the network, whose strength there is unknown. A return
 /// from behind the solids of a box moves onto them. Boxes whose voxels are their own, and classes without solids, keep
-/// their voxels as far as they are within the box. `seed` is the scene's: it varies the solids.
-pub fn onto_shapes(sweep: &mut LidarSweep, frame: &Frame, rig: &SensorRig, seed: u64) {
-    place(sweep, frame, rig, seed, None);
+/// their voxels as far as they are within the box. `seed` is the scene's: it varies the solids. Returns of an exact sweep on
+/// the voxels of scenery become those on its solids in the same way.
+pub fn onto_shapes(
+    sweep: &mut LidarSweep,
+    frame: &Frame,
+    rig: &SensorRig,
+    seed: u64,
+    scenery: Option<&SceneryShapes>,
+) {
+    place(sweep, (frame, scenery), rig, seed, None);
 }
 
 /// Places returns as [`onto_shapes`] does, with the masks of the frame's voxels, those in the own vehicle left out; the
 /// masks are made here if `None`.
 pub(super) fn place(
     sweep: &mut LidarSweep,
-    frame: &Frame,
+    (frame, scenery): (&Frame, Option<&SceneryShapes>),
     rig: &SensorRig,
     seed: u64,
     known: Option<&ColumnMasks>,
 ) {
     let Some(pattern) = rig.lidars.first() else { return };
     let boxes: Vec<&SceneBox> = frame.boxes.values().filter(|b| b.problem().is_none()).collect();
-    if boxes.is_empty() || sweep.points.is_empty() {
+    let scenery = scenery.filter(|_| !sweep.physical);
+    if boxes.is_empty() && scenery.is_none() || sweep.points.is_empty() {
         return;
     }
-    let shapes = ShapedBoxes::new(frame, &boxes, seed);
+    let shapes = ShapedBoxes::new(frame, &boxes, scenery, seed);
     let physical = sweep.physical;
     let masks = (!physical).then(|| match known {
         Some(masks) => Cow::Borrowed(masks),
@@ -130,6 +139,7 @@ struct ShapedBoxes<'a> {
     solids: SolidIndex,
     /// Classes of the boxes, one bit each.
     classes: u32,
+    scenery: Option<&'a SceneryShapes>,
 }
 
 struct Shaped<'a> {
@@ -147,7 +157,7 @@ enum VoxelOwner<'a> {
 }
 
 impl<'a> ShapedBoxes<'a> {
-    fn new(frame: &Frame, boxes: &[&'a SceneBox], seed: u64) -> Self {
+    fn new(frame: &Frame, boxes: &[&'a SceneBox], scenery: Option<&'a SceneryShapes>, seed: u64) -> Self {
         let extent = frame.extent();
         let mut parts: Vec<Solid> = Vec::new();
         let mut has_solids = |b: &SceneBox| {
@@ -176,12 +186,16 @@ impl<'a> ShapedBoxes<'a> {
             solids: SolidIndex::of_boxes(extent, solid, seed),
             classes: boxes.iter().fold(0, |bits, b| bits | 1 << b.of.class.id()),
             boxes,
+            scenery,
         }
     }
 
     /// Owner of a voxel that was met at a height, m. `None` if this is more than `below_m` below the box: there labels
     /// go down to their ground.
     fn owner(&self, [x, y, z]: [usize; 3], label: u8, met_m: f64, below_m: f64) -> Option<VoxelOwner<'_>> {
+        if self.scenery.is_some_and(|s| s.stands_for([x, y, z], met_m)) {
+            return Some(VoxelOwner::Solids);
+        }
         if label >= Class::FREE || self.classes >> label & 1 == 0 {
             return None;
         }
@@ -205,8 +219,18 @@ impl<'a> ShapedBoxes<'a> {
         }
     }
 
-    /// Hit of a ray on a solid within the solid's box, nearer than `limit_m`: distance, m, and class.
+    /// Hit of a ray on a solid, nearer than `limit_m`: distance, m, and class.
     fn on_solid(&self, ray: &ReturnRay, limit_m: f64) -> Option<(f64, Class)> {
+        let on_box = self.on_box(ray, limit_m);
+        let limit_m = on_box.map_or(limit_m, |(range_m, _)| range_m);
+        let scenery = self
+            .scenery
+            .and_then(|s| s.cast(ray.origin, ray.direction, limit_m));
+        scenery.or(on_box)
+    }
+
+    /// Hit of a ray on a solid of a box within that box, nearer than `limit_m`: distance, m, and class.
+    fn on_box(&self, ray: &ReturnRay, limit_m: f64) -> Option<(f64, Class)> {
         let hit = self.solids.cast(ray.origin, ray.direction, limit_m)?;
         let b = self.boxes[*self.by_id.get(&hit.box_id?)?].of;
         let [from, to] = through(b, ray)?;
@@ -397,7 +421,7 @@ mod tests {
         println!("outside of their boxes: {out} of {all} as voxels");
         assert!(out * 5 > all && all > 300, "{out} of {all}: voxels stick out");
         let mut sweep = voxels.clone();
-        onto_shapes(&mut sweep, &frame, &rig, 1);
+        onto_shapes(&mut sweep, &frame, &rig, 1, None);
         let [out, after] = outside(&sweep, &frame);
         assert_eq!(out, 0);
         assert!(after * 2 > all, "{after} of {all} are left");
@@ -419,7 +443,7 @@ mod tests {
             ..frame.clone()
         };
         let mut same = voxels.clone();
-        onto_shapes(&mut same, &bare, &rig, 1);
+        onto_shapes(&mut same, &bare, &rig, 1, None);
         assert_eq!(same, voxels);
     }
 
@@ -429,7 +453,7 @@ mod tests {
         let mut sweep = lidar::rig_sweep(&frame.occupancy, &rig).expect("a LiDAR");
         sweep.physical = true;
         let before = outside(&sweep, &frame);
-        onto_shapes(&mut sweep, &frame, &rig, 1);
+        onto_shapes(&mut sweep, &frame, &rig, 1, None);
         let after = outside(&sweep, &frame);
         assert!(before[0] > 0 && after[0] == 0, "{before:?} {after:?}");
         assert!(after[1] * 2 > before[1]);
@@ -439,11 +463,11 @@ mod tests {
     fn a_vehicle_elsewhere_on_the_map_sees_the_same() {
         let (frame, rig) = (frame(&boxes()), SensorRig::default());
         let mut here = lidar::rig_sweep(&frame.occupancy, &rig).expect("a LiDAR");
-        onto_shapes(&mut here, &frame, &rig, 1);
+        onto_shapes(&mut here, &frame, &rig, 1, None);
         // From the other side of the car, where the vehicle stands turned round.
         let there = rig.standing_at(&Pose::planar(26.0, 1.0, std::f64::consts::PI));
         let mut seen = lidar::rig_sweep(&frame.occupancy, &there).expect("a LiDAR");
-        onto_shapes(&mut seen, &frame, &there, 1);
+        onto_shapes(&mut seen, &frame, &there, 1, None);
         assert_eq!(outside(&seen, &frame)[0], 0);
         let cars = |s: &LidarSweep| s.points.iter().filter(|p| p.class == Class::Car).count();
         assert!(
@@ -467,7 +491,7 @@ mod tests {
         for physical in [false, true] {
             let mut sweep = voxels.clone();
             sweep.physical = physical;
-            onto_shapes(&mut sweep, &frame, &rig, 1);
+            onto_shapes(&mut sweep, &frame, &rig, 1, None);
             assert_eq!(outside(&sweep, &frame)[0], 0);
             // What lay within the box is where it was.
             let inside = |p: &&LidarPoint| {

@@ -7,3 +7,4 @@ pub mod mpi;
 pub mod painter;
 pub mod perspective;
 pub mod picture_hints;
+pub mod scenery;

@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use glam::{Vec2, Vec3};
 
 use super::noise::{floor, ramp, value2};
+use super::relief::GroundRelief;
 use crate::pictures::march::ground::GroundHeightField as Columns;
 use scene::appearance::{AppearanceData, AppearanceSection, HIGHEST_M, KERB_M, PER_M};
 use scene::{BevLayer, BevLayout, Class, Extent};
@@ -25,6 +26,8 @@ pub struct SmoothGround {
     share: Vec<[f32; 4]>,
     /// True for columns with nothing but road around, which are level.
     level: Vec<bool>,
+    /// Heights below the kerbs; `None` if they are 0 everywhere.
+    relief: Option<GroundRelief>,
 }
 
 /// The ground at a point.
@@ -106,7 +109,19 @@ impl SmoothGround {
             next: [if nx > 1 { ny } else { 0 }, usize::from(ny > 1)],
             share,
             level,
+            relief: GroundRelief::new(layout),
         }
+    }
+
+    /// Height of the ground below its kerbs, m.
+    #[inline]
+    pub fn base_m(&self, p: Vec2) -> f32 {
+        self.relief.as_ref().map_or(0.0, |relief| relief.at(p))
+    }
+
+    /// Lowest height of the ground, m.
+    pub fn lowest_m(&self) -> f32 {
+        self.relief.as_ref().map_or(0.0, GroundRelief::lowest_m)
     }
 
     /// Packs the ground for the graphics card.
@@ -116,6 +131,11 @@ impl SmoothGround {
             self.share.as_flattened().iter().map(|v| v.to_bits()),
         );
         out.push(AppearanceSection::Level, self.level.iter().map(|l| u32::from(*l)));
+        let relief = self.relief.iter().flat_map(GroundRelief::words);
+        out.push(
+            AppearanceSection::Relief,
+            std::iter::once(u32::from(self.relief.is_some())).chain(relief),
+        );
     }
 
     /// True if there is nothing but level road within a metre of a point.
@@ -162,12 +182,24 @@ impl SmoothGround {
         GroundAt {
             share,
             inside_road_m,
-            height_m: height,
+            height_m: self.base_m(p) + height,
         }
     }
 
     /// Where a ray meets the ground, m; the normal follows from [`Self::normal`].
     pub fn cast(&self, o: Vec3, d: Vec3, limit: f32, anchor: &impl Fn(Vec3) -> Vec3) -> Option<f32> {
+        if let Some(relief) = &self.relief {
+            let above = |t: f32| {
+                let p = o + d * t;
+                let over = p.z - relief.at(p.truncate());
+                // Kerbs count where they can be seen.
+                match over > HIGHEST_M || t > 60.0 {
+                    true => over,
+                    false => p.z - self.at(p.truncate(), anchor(p).truncate()).height_m,
+                }
+            };
+            return relief.cast((o, d), limit, &above);
+        }
         if d.z >= -1e-5 {
             return None;
         }
@@ -209,14 +241,18 @@ impl SmoothGround {
 
     /// Normal of the ground.
     pub fn normal(&self, p: Vec3, anchor: &impl Fn(Vec3) -> Vec3) -> Vec3 {
+        let slope = self.relief.as_ref().map_or(Vec2::ZERO, |r| r.slope(p.truncate()));
         if self.is_level(p.truncate()) {
-            return Vec3::Z;
+            return (-slope).extend(1.0).normalize();
         }
         let h = 0.03;
-        let height = |d: Vec3| self.at((p + d).truncate(), anchor(p + d).truncate()).height_m;
+        let height = |d: Vec3| {
+            let q = (p + d).truncate();
+            self.at(q, anchor(p + d).truncate()).height_m - self.base_m(q)
+        };
         Vec3::new(
-            height(-Vec3::X * h) - height(Vec3::X * h),
-            height(-Vec3::Y * h) - height(Vec3::Y * h),
+            height(-Vec3::X * h) - height(Vec3::X * h) - 2.0 * h * slope.x,
+            height(-Vec3::Y * h) - height(Vec3::Y * h) - 2.0 * h * slope.y,
             2.0 * h,
         )
         .normalize()

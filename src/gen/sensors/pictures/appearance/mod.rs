@@ -9,6 +9,7 @@ mod noise;
 mod pack;
 mod prepared;
 mod probe;
+mod relief;
 mod render;
 mod scenery;
 mod shade;

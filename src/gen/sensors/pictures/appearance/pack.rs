@@ -29,6 +29,7 @@ impl Appearance {
             turn: turn.to_array(),
             shift_m: shift.to_array(),
             vehicle_m: self.vehicle.to_array(),
+            lowest_m: self.lowest_m(),
             seed: self.seed,
             ..AppearanceData::default()
         };
@@ -154,6 +155,9 @@ fn pack_part(part: &ObjectPart, material: PartMaterial, out: &mut Vec<u32>, plan
             planes.extend(all.iter().flat_map(|p| p.to_array().map(f32::to_bits)));
         }
         ObjectPart::Wheel(c, radius, half) => put(1, &bits(&[c.x, c.y, c.z, *radius, *half])),
+        ObjectPart::Ring(c, radius, half, hole) => {
+            put(4, &bits(&[c.x, c.y, c.z, *radius, *half, *hole]));
+        }
         ObjectPart::Round(c, r) => put(2, &bits(&[c.x, c.y, c.z, r.x, r.y, r.z])),
         ObjectPart::Cone(f, height, bottom, top) => put(3, &bits(&[f.x, f.y, f.z, *height, *bottom, *top])),
     }

@@ -5,11 +5,12 @@ use glam::{Quat, Vec2, Vec3};
 use super::field::OccupancyField;
 use super::field::owners::Owners;
 use super::ground::SmoothGround;
-use super::scenery::SceneryInput;
+use super::scenery::DrawnScenery;
 use super::sky::Air;
 use super::things::{DrawnObject, PartMaterial};
 use crate::pictures::march::paint::RoadMarkings;
 use crate::pictures::march::{GroundHeight, ground, remove_voxels};
+use crate::pictures::scenery::SceneryInput;
 use crate::raycast::rays::CameraRay;
 use scene::appearance::{BLOCK_M, FAR_M, FieldShape};
 use scene::{Background, Conditions, Extent, Frame, Lattice, Pose, SceneBox, SensorRig};
@@ -95,6 +96,8 @@ pub struct Appearance {
     pub(super) vehicle: Vec2,
     /// Height above which nothing stands, m.
     highest: f32,
+    /// Height below which nothing is, m.
+    lowest: f32,
 }
 
 impl Appearance {
@@ -124,8 +127,9 @@ impl Appearance {
             occupancy: &occupancy,
             painted: &frame.painted.crop(extent),
             layout: &layout,
+            inferred: frame.inferred.background,
         };
-        let scenery = scenery.draw(&mut grid, seed);
+        let scenery = DrawnScenery::new(scenery, &mut grid, seed);
         let owners = Owners::new(&scenery.in_field, &layout, &FieldShape::from_extent(extent));
         let field = OccupancyField::new(&grid, &owners, seed);
         let ground = SmoothGround::new(&columns, &layout);
@@ -143,7 +147,7 @@ impl Appearance {
             // A thing does not stand in the pavement.
             let p = thing.foot.truncate();
             let height = ground.at(p, p).height_m;
-            if thing.foot.z > -0.3 && !thing.is_scenery() {
+            if thing.foot.z > ground.base_m(p) - 0.3 && !thing.is_scenery() {
                 thing.foot.z = thing.foot.z.max(height);
             }
             let drift = thing.velocity.truncate().length() * rolls_s;
@@ -160,6 +164,7 @@ impl Appearance {
         let lamps = lamps(&air, &field, &things, rig);
         Self {
             highest: field.highest_m().max(tallest) + 0.1,
+            lowest: ground.lowest_m() - 0.4,
             field,
             ground,
             things,
@@ -188,6 +193,11 @@ impl Appearance {
     /// Things near each block.
     pub(super) fn lists(&self) -> impl Iterator<Item = &[u32]> {
         self.lists.iter().map(Vec::as_slice)
+    }
+
+    /// Height below which nothing is, m.
+    pub(super) fn lowest_m(&self) -> f32 {
+        self.lowest
     }
 
     /// Height above which nothing stands, m.
@@ -287,7 +297,7 @@ impl Appearance {
         let bounds = [
             (from.x, from.x + size[0]),
             (from.y, from.y + size[1]),
-            (-0.4, self.highest),
+            (self.lowest, self.highest),
         ];
         for (axis, (lo, hi)) in bounds.into_iter().enumerate() {
             if d[axis].abs() < 1e-9 {

@@ -257,7 +257,7 @@ impl Appearance {
             closed = closed * 0.9 + 0.10 * (f(Vec3::Z * 0.9) + f(Vec3::Z * 1.8));
         }
         let mut open = (1.0 - closed).clamp(0.12, 1.0);
-        if p.z < 2.5 {
+        if p.z - self.ground.base_m(p.truncate()) < 2.5 {
             for &i in self.things_near(p.truncate()) {
                 let thing = &self.things[i as usize];
                 let q = thing.to_local(thing.seen_from(p, hit.after_s));

@@ -75,13 +75,15 @@ pub fn split(grid: &VoxelGrid, height: GroundHeight) -> (VoxelGrid, GroundHeight
                 continue;
             }
             let mut upper = *column;
+            let mut on = 0;
             if let Some(bin) = (0..Lattice::OCC3D.bins()).rev().find(|z| is_ground(column[*z])) {
                 ground.set(extent.index(x, y), top_of(bin), column[bin]);
+                on = bin;
                 for label in upper.iter_mut().filter(|l| is_ground(**l)) {
                     *label = Class::FREE;
                 }
             }
-            unsmear(&mut upper);
+            unsmear(&mut upper, on);
             if upper != [Class::FREE; Lattice::OCC3D.bins()] {
                 *out.window_column_mut(x, y) = upper;
             }
@@ -98,15 +100,20 @@ pub fn top_of(bin: usize) -> f64 {
     }
 }
 
-/// Removes the two lowest voxels of every run that hangs in the air, and the voxels below the ground.
-fn unsmear(column: &mut [u8; Lattice::OCC3D.bins()]) {
+/// Removes the two lowest voxels of every run that hangs in the air, and the voxels below the ground, which is labelled in the
+/// bin `ground` and lies two bins higher: of what stands on it one voxel is below.
+fn unsmear(column: &mut [u8; Lattice::OCC3D.bins()], ground: usize) {
     let labels = *column;
     // A run from bin 1 stands on a pavement.
     for z in SMEAR..Lattice::OCC3D.bins() {
         let begins = labels[z] != Class::FREE && labels[z - 1] == Class::FREE;
         let run = labels[z..].iter().take_while(|l| **l != Class::FREE).count();
+        let below = match z == ground + 1 {
+            true => SMEAR - 1,
+            false => SMEAR,
+        };
         if begins && run > SMEAR {
-            column[z..z + SMEAR].fill(Class::FREE);
+            column[z..z + below].fill(Class::FREE);
         }
     }
     column[..SMEAR].fill(Class::FREE);

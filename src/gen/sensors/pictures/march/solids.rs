@@ -14,7 +14,7 @@ const BIN_COLUMNS: usize = 10;
 /// Solids of boxes; only those over the grid are seen.
 #[derive(Clone, Debug, Default)]
 pub struct SolidIndex {
-    solids: Vec<(Solid, BoxId)>,
+    solids: Vec<(Solid, Option<BoxId>)>,
     groups: Vec<BoxSolids>,
     /// Lower corner of the grid, m.
     low: DVec2,
@@ -86,13 +86,26 @@ impl InView {
 impl SolidIndex {
     /// The solids of these boxes over a grid; boxes with a problem are left out.
     pub fn of_boxes<'a>(extent: Extent, boxes: impl Iterator<Item = &'a SceneBox>, seed: u64) -> Self {
-        let mut solids: Vec<(Solid, BoxId)> = Vec::new();
+        let group = |b: &SceneBox| {
+            let mut solids = Vec::new();
+            objects::object(b, seed, &mut solids);
+            (solids, Some(b.id), b.velocity_mps.extend(0.0))
+        };
+        Self::new(extent, boxes.filter(|b| b.problem().is_none()).map(group))
+    }
+
+    /// Solids that stand still, in groups that lie together, over a grid.
+    pub fn of_groups(extent: Extent, groups: impl Iterator<Item = Vec<Solid>>) -> Self {
+        Self::new(extent, groups.map(|solids| (solids, None, DVec3::ZERO)))
+    }
+
+    /// Groups of solids: their box and its velocity, m/s.
+    fn new(extent: Extent, all: impl Iterator<Item = (Vec<Solid>, Option<BoxId>, DVec3)>) -> Self {
+        let mut solids: Vec<(Solid, Option<BoxId>)> = Vec::new();
         let mut groups = Vec::new();
-        let mut some = Vec::new();
-        for b in boxes.filter(|b| b.problem().is_none()) {
-            objects::object(b, seed, &mut some);
+        for (some, id, velocity) in all {
             let first = solids.len();
-            solids.extend(some.drain(..).map(|s| (s, b.id)));
+            solids.extend(some.into_iter().map(|s| (s, id)));
             let reach = |s: &Solid| (s.center - s.reach(), s.center + s.reach());
             let parts = || solids[first..].iter().map(|(s, _)| reach(s));
             let low = parts().fold(DVec3::INFINITY, |m, (lo, _)| m.min(lo));
@@ -104,7 +117,7 @@ impl SolidIndex {
                     high,
                     middle: (low + high).truncate() / 2.0,
                     radius_m2: ((high - low).truncate() / 2.0 + 1e-3).length_squared(),
-                    velocity: b.velocity_mps.extend(0.0),
+                    velocity,
                 });
             }
         }
@@ -213,7 +226,7 @@ impl SolidIndex {
                 *hit = Some(SolidHit {
                     t_m: t,
                     solid,
-                    box_id: Some(*id),
+                    box_id: *id,
                     origin,
                 });
             }

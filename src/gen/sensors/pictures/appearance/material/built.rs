@@ -30,7 +30,7 @@ impl Appearance {
 
     fn plant(&self, a: Vec3, normal: Vec3, fp: f32) -> LitSurface {
         let tree = value2(a.truncate() * 0.16, 23);
-        let hue = Vec3::new(0.050, 0.095, 0.022).lerp(Vec3::new(0.115, 0.135, 0.030), tree);
+        let hue = Vec3::new(0.046, 0.082, 0.022).lerp(Vec3::new(0.082, 0.108, 0.030), tree);
         let hue = hue.lerp(Vec3::new(0.030, 0.065, 0.025), value2(a.truncate() * 0.07, 24));
         let fine = visible(fp, 0.10);
         let leaf = value3(a * 9.0, 25) * fine + 0.5 * (1.0 - fine);

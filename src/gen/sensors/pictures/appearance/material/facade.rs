@@ -92,7 +92,7 @@ impl Appearance {
         } else if style < BRICKS {
             let row = (v / 0.075).floor();
             let x = u / 0.25 + 0.5 * row.rem_euclid(2.0);
-            let joint = band((v / 0.075 - row - 0.5).abs() - 0.5, 0.08, fp / 0.075);
+            let joint = band(0.5 - (v / 0.075 - row - 0.5).abs(), 0.08, fp / 0.075);
             let tone = unit3(IVec3::new(x.floor() as i32, row as i32, 3), t.id);
             wall *= 1.0 + visible(fp, 0.09) * (0.40 * (tone - 0.5) - 0.16 * joint);
         } else {
@@ -102,7 +102,7 @@ impl Appearance {
         if height < 2.4 {
             return out;
         }
-        let plinth = band((v - 0.2).abs(), 0.3, fp);
+        let plinth = ramp(0.5 + fp * 0.5, 0.49 - fp * 0.5, v);
         out.albedo = out
             .albedo
             .lerp(gray(0.16) * (0.8 + 0.4 * stain * 0.6), 0.75 * plinth);
@@ -208,7 +208,17 @@ impl Appearance {
                 0.55 + 0.45 * (1.0 - q.y / half.y) + 0.25 * (value2(f * 2.5 + cell.x as f32 * 7.0, 9) - 0.5);
             let night = ramp(0.1, 1.0, self.air.lamps);
             let through = if drawn { 0.55 } else { 1.0 };
-            out.emit = warm * (room * open * (1.0 - bars) * (0.15 + 0.55 * night) * through);
+            // Curtains beside a window; shelves and what lies on them in a shop.
+            let goods = value2(
+                Vec2::new(f.x * 5.0 + cell.x as f32 * 3.0, (f.y / 0.42).floor() * 7.0),
+                11,
+            );
+            let shelf = ((f.y / 0.42).fract().abs() - 0.5).abs();
+            let in_room = match shop {
+                true => (0.25 + 0.75 * goods) * (1.0 - 0.6 * ramp(0.40, 0.47, shelf)),
+                false => 1.0 - 0.65 * ramp(half.x * 0.55, half.x * 0.8, q.x),
+            };
+            out.emit = warm * (room * in_room * open * (1.0 - bars) * (0.12 + 0.45 * night) * through);
         }
     }
 }

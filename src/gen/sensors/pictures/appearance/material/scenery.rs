@@ -6,6 +6,7 @@ use glam::{IVec3, Vec2, Vec3};
 use super::super::noise::{hash1, ramp, unit, unit3, value2, value3};
 use super::super::prepared::Appearance;
 use super::super::things::{DrawnObject, ObjectPart, PartMaterial, rgb};
+use super::facade::{WALLS, wall_color};
 use super::{LitSurface, band, gray, visible};
 
 impl Appearance {
@@ -34,6 +35,8 @@ impl Appearance {
             PartMaterial::Pane => pane(u, p, n, fp),
             PartMaterial::Metal(color) => metal(color, q, n),
             PartMaterial::Plain(color) => {
+                // The opening of a bin.
+                let color = if n.z > 0.7 { color * 0.25 } else { color };
                 let mut s = metal(color, q, n);
                 (s.mirror, s.gloss) = (0.03, 0.5);
                 s
@@ -91,7 +94,8 @@ fn gravel(q: Vec3, n: Vec3, fp: f32) -> LitSurface {
 /// A tiled roof: rows across the slope, each tile of its own tone; its gable ends are rendered.
 fn tiles(color: Vec3, (id, u): (u32, f32), p: Vec3, q: Vec3, n: Vec3, fp: f32) -> LitSurface {
     if n.z < 0.25 {
-        return concrete(color.lerp(gray(0.4), 0.7), q, n, fp);
+        // The gable belongs to the walls below it.
+        return concrete(wall_color(hash1(id, 1) % WALLS), q, n, fp);
     }
     let steep = (1.0 - n.z * n.z).max(0.01).sqrt();
     let row = (p.z / steep / 0.32).floor();
@@ -110,15 +114,17 @@ fn masonry(color: Vec3, (id, u): (u32, f32), p: Vec3, q: Vec3, n: Vec3, fp: f32)
     let stain = 0.78 + 0.3 * value3(q * 0.9, 37) + 0.12 * value3(q * 3.0, 38);
     let mut c = color * stain;
     if n.z < 0.7 {
-        let row = (p.z / 0.19).floor();
-        let x = u / 0.38 + 0.5 * (row % 2.0);
+        let row = (p.z / 0.15).floor();
+        let x = u / 0.32 + 0.5 * (row % 2.0);
         let tone = unit3(IVec3::new(x.floor() as i32, row as i32, 3), id);
-        let joint = band((p.z / 0.19 - row - 0.5).abs() - 0.5, 0.06, fp / 0.19).max(band(
-            (x - x.floor() - 0.5).abs() - 0.5,
-            0.03,
-            fp / 0.38,
+        let joint = band(0.5 - (p.z / 0.15 - row - 0.5).abs(), 0.07, fp / 0.15).max(band(
+            0.5 - (x - x.floor() - 0.5).abs(),
+            0.035,
+            fp / 0.32,
         ));
-        c *= 1.0 + visible(fp, 0.16) * (0.36 * (tone - 0.5) - 0.30 * joint);
+        let shown = visible(fp, 0.13);
+        c *= 1.0 + shown * (0.20 * (tone - 0.5) + 0.10 * (value3(q * 14.0, 41) - 0.5));
+        c = c.lerp(gray(0.24), 0.75 * joint * shown);
         c *= 1.0 - 0.22 * ramp(0.5, 0.1, p.z);
     }
     LitSurface::matt(c, n)
@@ -129,7 +135,7 @@ fn boards(color: Vec3, (id, u): (u32, f32), p: Vec3, q: Vec3, n: Vec3, fp: f32) 
     let x = u / 0.13;
     let board = x.floor();
     let tone = unit3(IVec3::new(board as i32, 5, 5), id);
-    let gap = band((x - board - 0.5).abs() - 0.5, 0.06, fp / 0.13);
+    let gap = band(0.5 - (x - board - 0.5).abs(), 0.06, fp / 0.13);
     let grain = value3(q * Vec3::new(22.0, 22.0, 1.6), 39) - 0.5;
     let c = color * (0.80 + 0.25 * value3(q * 0.8, 40));
     let c =
@@ -154,7 +160,7 @@ fn metal(color: Vec3, q: Vec3, n: Vec3) -> LitSurface {
 fn pane(u: f32, p: Vec3, n: Vec3, fp: f32) -> LitSurface {
     let x = u / 1.2;
     let bar =
-        band((x - x.floor() - 0.5).abs() - 0.5, 0.035, fp / 1.2).max(band((p.z - 0.95).abs(), 0.03, fp));
+        band(0.5 - (x - x.floor() - 0.5).abs(), 0.035, fp / 1.2).max(band((p.z - 0.95).abs(), 0.03, fp));
     let mut s = LitSurface::matt(Vec3::new(0.085, 0.105, 0.105).lerp(gray(0.11), bar), n);
     (s.mirror, s.gloss) = (0.08 * (1.0 - bar), 0.95);
     s

@@ -90,7 +90,7 @@ fn rays_end_on_the_solids_at_their_true_heights() {
     }
     assert!(met > 1000, "{met} rays");
     // The map ends 5.4 m above the ground.
-    assert!(highest > 27.0, "{highest} m");
+    assert!(highest > 26.9, "{highest} m");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The parts that objects are made of, and where rays meet them.
 
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 
 /// A part in box coordinates: x forward, y left, z up from the bottom of the box.
 #[derive(Clone, Debug)]
@@ -9,6 +9,8 @@ pub enum ObjectPart {
     Convex(Vec<Vec4>),
     /// A wheel: middle, radius, half width; its axis is y.
     Wheel(Vec3, f32, f32),
+    /// A wheel of spokes that are too thin to see: middle, radius, half width, radius of the hole; its axis is y.
+    Ring(Vec3, f32, f32, f32),
     /// An ellipsoid: middle and radii.
     Round(Vec3, Vec3),
     /// An upright cone or cylinder: foot, height, radii at the foot and at the top.
@@ -80,6 +82,34 @@ impl ObjectPart {
                     return None;
                 }
                 (near <= far && near > 1e-4 && near < limit).then_some((near, normal))
+            }
+            ObjectPart::Ring(c, r, half, hole) => {
+                let o = o - *c;
+                let mut best: Option<(f32, Vec3)> = None;
+                let mut consider = |t: f32, normal: Vec3| {
+                    if t > 1e-4 && t < limit && best.is_none_or(|b| t < b.0) {
+                        best = Some((t, normal));
+                    }
+                };
+                if d.y.abs() > 1e-6 {
+                    let t = (-half * d.y.signum() - o.y) / d.y;
+                    let away = Vec2::new(o.x + d.x * t, o.z + d.z * t).length();
+                    if (*hole..=*r).contains(&away) {
+                        consider(t, -Vec3::Y * d.y.signum());
+                    }
+                }
+                // The tyre from outside, and from inside through the hole.
+                for (radius, side) in [(*r, 1.0), (*hole, -1.0)] {
+                    let (a, b) = (d.x * d.x + d.z * d.z, o.x * d.x + o.z * d.z);
+                    let c = o.x * o.x + o.z * o.z - radius * radius;
+                    if let Some((t0, t1)) = quadratic(a, b, c) {
+                        let t = if side > 0.0 { t0 } else { t1 };
+                        if (o.y + d.y * t).abs() <= *half {
+                            consider(t, Vec3::new(o.x + d.x * t, 0.0, o.z + d.z * t) * (side / radius));
+                        }
+                    }
+                }
+                best
             }
             ObjectPart::Round(c, r) => {
                 let (p, q) = ((o - *c) / *r, d / *r);

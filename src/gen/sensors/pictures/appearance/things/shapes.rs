@@ -180,8 +180,16 @@ fn two_wheeler(b: &mut ObjectBuilder, class: Class, id: u32, pick: f32) {
     let (r, w) = if motor { (0.3f32, 0.07) } else { (0.33, 0.02) };
     let r = r.min(s.z * 0.3);
     for x in [-0.5 * s.x + r, 0.5 * s.x - r] {
-        b.parts
-            .push((ObjectPart::Wheel(Vec3::new(x, 0.0, r), r, w), PartMaterial::Wheel));
+        let middle = Vec3::new(x, 0.0, r);
+        let wheel = match motor {
+            true => ObjectPart::Wheel(middle, r, w),
+            false => ObjectPart::Ring(middle, r, w, r - 0.045),
+        };
+        b.parts.push((wheel, PartMaterial::Wheel));
+        if !motor {
+            b.parts
+                .push((ObjectPart::Wheel(middle, 0.035, 0.05), PartMaterial::Dark));
+        }
     }
     if motor {
         b.block([-0.3, -0.16, 0.26], [0.28, 0.16, 0.52], 0.08, PartMaterial::Body);

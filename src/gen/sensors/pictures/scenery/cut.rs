@@ -6,20 +6,22 @@ use scene::background::ColumnLabels;
 use scene::{Class, VoxelGrid, VoxelPaint};
 
 /// A voxel: column and bin.
-pub type Voxel = [usize; 3];
+pub(super) type Voxel = [usize; 3];
 
 /// Largest share of a thing's voxels that may be missing beside its cuts: labels have no more of a bench.
 const MOST_MISSING: f64 = 0.35;
+/// Least intersection over union of an inferred thing and the voxels.
+const LEAST_IOU: f64 = 0.8;
 /// Voxels around a cut that are drawn as voxels too.
 const AROUND: usize = 2;
 /// Most cuts of a thing; with more it stays in the field.
 const MOST: usize = 6;
 
 /// A cut: its lowest and its highest voxel, with those around.
-pub type Cut = [Voxel; 2];
+pub(super) type Cut = [Voxel; 2];
 
 /// Voxels that a thing lacks.
-pub struct Missing {
+pub(super) struct Missing {
     /// All of them.
     pub voxels: BTreeSet<Voxel>,
     /// Those that were cleared by hand.
@@ -56,6 +58,26 @@ impl Missing {
             }
         }
         out
+    }
+
+    /// True if a thing and the man-made voxels within two of it are the same but for a fifth of all (intersection over
+    /// union).
+    pub fn explains(&self, occupancy: &VoxelGrid) -> bool {
+        let size = occupancy.extent().shape();
+        let mut around = BTreeSet::new();
+        for v in &self.whole {
+            for k in 0..125 {
+                let step = [k / 25, k / 5 % 5, k % 5];
+                let near: [usize; 3] = std::array::from_fn(|i| (v[i] + step[i]).wrapping_sub(AROUND));
+                if (0..3).all(|i| near[i] < size[i]) && !self.whole.contains(&near) {
+                    around.insert(near);
+                }
+            }
+        }
+        let made = |[x, y, z]: &Voxel| occupancy.get(*x, *y, *z) == Class::Manmade.id();
+        let beside = around.iter().filter(|v| made(v)).count();
+        let shared = self.whole.len() - self.voxels.len();
+        shared as f64 >= LEAST_IOU * (self.whole.len() + beside) as f64
     }
 
     /// The cuts of a thing on a map of `[nx, ny, nz]` voxels: what was cleared by hand, missing pieces of two voxels each

@@ -1,0 +1,140 @@
+//! Scenery that the voxels show: things whose voxels are there, so that their solids can be drawn and cast instead of them.
+//! Around a place where something was cut out of a thing its voxels stay; a thing that is mostly missing stays voxels.
+
+mod cut;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use cut::{Cut, Missing};
+use scene::background::{ColumnLabels, LineKind, in_extent};
+use scene::grid::NOT_PAINTED;
+use scene::{Background, BevLayout, Class, Extent, Form, Thing, VoxelGrid, VoxelPaint};
+
+/// Content of a map that scenery is compared with.
+#[derive(Clone, Copy)]
+pub struct SceneryInput<'a> {
+    /// All things.
+    pub background: &'a Background,
+    /// Labels of the map.
+    pub occupancy: &'a VoxelGrid,
+    /// Voxels painted by hand, of the same map.
+    pub painted: &'a VoxelPaint,
+    /// Layout of the same map.
+    pub layout: &'a BevLayout,
+    /// True if the things were inferred from the voxels: only those that explain them well stand for them.
+    pub inferred: bool,
+}
+
+/// A thing beside the map.
+pub struct ShownThing {
+    /// The thing.
+    pub thing: Thing,
+    columns: ColumnLabels,
+    cuts: Option<Vec<Cut>>,
+}
+
+/// The scenery of a map beside its voxels.
+pub struct ShownScenery {
+    extent: Extent,
+    things: Vec<ShownThing>,
+}
+
+impl ShownThing {
+    /// Upright boxes in which its voxels stay, lower and upper corner in m; empty if its solids stand for all of it, `None`
+    /// if they stand for nothing.
+    pub fn cuts_m(&self, extent: Extent) -> Option<Vec<[DVec3; 2]>> {
+        let half = DVec3::splat(extent.voxel_m() / 2.0);
+        let corner = |[x, y, z]: [usize; 3], up: f64| extent.center(x, y, z) + half * up;
+        let cuts = self.cuts.as_ref()?.iter();
+        Some(
+            cuts.map(|[low, high]| [corner(*low, -1.0), corner(*high, 1.0)])
+                .collect(),
+        )
+    }
+}
+
+impl ShownScenery {
+    /// Compares the things that are made by people and carry no traffic with the voxels of a map.
+    pub fn new(input: SceneryInput<'_>) -> Self {
+        let extent = input.layout.extent();
+        let things = in_extent(extent, input.background.iter().filter(|t| is_solid(&t.form)));
+        let compare = |thing: Thing| {
+            let columns = thing.columns(input.layout);
+            let missing = Missing::new(&columns, input.occupancy, input.painted);
+            let cuts = missing.cuts(extent.shape());
+            let cuts = cuts.filter(|_| !input.inferred || missing.explains(input.occupancy));
+            ShownThing { thing, columns, cuts }
+        };
+        Self {
+            extent,
+            things: things.into_par_iter().map(compare).collect(),
+        }
+    }
+
+    /// Those alone whose solids stand for all of their voxels.
+    pub fn of_whole_things(mut self) -> Self {
+        let whole = |shown: &ShownThing| shown.cuts.as_ref().is_some_and(Vec::is_empty);
+        // The others still keep their own voxels.
+        self.things
+            .iter_mut()
+            .filter(|s| !whole(s))
+            .for_each(|s| s.cuts = None);
+        self
+    }
+
+    /// All of them.
+    pub fn things(&self) -> &[ShownThing] {
+        &self.things
+    }
+
+    /// Voxels that solids stand for, a bit for each bin of each column `[x][y]`: those of the things, and strays of their
+    /// class within a voxel of them, but nothing that was painted, belongs to another thing or lies around a cut.
+    pub fn stood_for(&self, occupancy: &VoxelGrid, painted: &VoxelPaint) -> Vec<u32> {
+        let extent = self.extent;
+        let mut own = vec![0u32; extent.columns()];
+        let (mut near, mut kept) = (own.clone(), own.clone());
+        for ShownThing { columns, cuts, .. } in &self.things {
+            for ([x, y], labels) in columns {
+                let bits = |keep: &dyn Fn(usize) -> bool| {
+                    let bins = (0..labels.len()).filter(|z| labels[*z] != Class::FREE && keep(*z));
+                    bins.fold(0u32, |mask, z| mask | 1 << z)
+                };
+                let stays = |z: usize| match cuts {
+                    None => true,
+                    Some(cuts) => cuts.iter().any(|cut| cut::holds(cut, [*x, *y, z])),
+                };
+                let mask = bits(&|z| !stays(z));
+                kept[extent.index(*x, *y)] |= bits(&stays);
+                own[extent.index(*x, *y)] |= mask;
+                let grown = mask | mask << 1 | mask >> 1;
+                for x in x.saturating_sub(1)..=(x + 1).min(extent.nx() - 1) {
+                    for y in y.saturating_sub(1)..=(y + 1).min(extent.ny() - 1) {
+                        near[extent.index(x, y)] |= grown;
+                    }
+                }
+            }
+        }
+        let is_made = |label: u8| label == Class::Manmade.id() || label == Class::Others.id();
+        for [x, y] in extent.all_columns() {
+            let i = extent.index(x, y);
+            let wanted = near[i] & !kept[i] | own[i];
+            if wanted == 0 {
+                continue;
+            }
+            let (held, painted) = (occupancy.column(x, y), painted.column(x, y));
+            let goes = |z: &usize| wanted >> z & 1 == 1 && is_made(held[*z]) && painted[*z] == NOT_PAINTED;
+            own[i] = (0..held.len()).filter(goes).fold(0, |mask, z| mask | 1 << z);
+        }
+        own
+    }
+}
+
+/// True for forms whose solids stand for their voxels.
+fn is_solid(form: &Form) -> bool {
+    match form {
+        Form::Building(_) | Form::Post(_) => true,
+        Form::Line(line) => line.kind != LineKind::Hedge,
+        Form::Tree(_) | Form::Shrubs(_) | Form::Bridge(_) => false,
+    }
+}
