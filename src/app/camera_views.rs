@@ -348,7 +348,7 @@ pub fn paint_input(scene: &Scene) -> PaintInput<'_> {
 
 /// The current frame for exact rays; see [`cameras::march_scene`].
 pub fn march(scene: &Scene, shapes: bool) -> MarchScene {
-    cameras::march_scene(scene.frame(), shapes, scene.seed)
+    cameras::march_scene(scene.frame(), &scene.background, shapes, scene.seed)
 }
 
 /// The picture of one camera.

@@ -30,8 +30,8 @@ use sensors::lidar::caster::Caster;
 use sensors::lidar::learned::Drops;
 use sensors::lidar::learned_caster::{LearnedCaster, Sampled};
 use sensors::lidar::rolling;
-use sensors::lidar::scenery::SceneryShapes;
 use sensors::lidar::shaped::onto_shapes;
+use sensors::pictures::scenery::SceneryShapes;
 use sensors::radar;
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 

@@ -10,8 +10,8 @@ use crate::wire::{LidarDeviceType, LidarRenderRequest, LidarRenderReturn};
 use scene::{LidarPattern, Pose, Scene, SensorRig};
 use sensors::lidar;
 use sensors::lidar::learned::{self, Drops};
-use sensors::lidar::scenery::SceneryShapes;
 use sensors::lidar::shaped::onto_shapes;
+use sensors::pictures::scenery::SceneryShapes;
 
 /// Parts of a spin. While one of them is swept, things stand still and the LiDAR moves on straight.
 const PARTS: u32 = 8;

@@ -4,11 +4,12 @@ use std::borrow::Cow;
 
 use super::{CameraError, CameraPicture, Card, PreparedCameras, RenderOptions};
 use crate::pictures::march::{GroundHeight, MarchOptions, MarchScene};
-use scene::{Camera, Frame};
+use crate::pictures::scenery::SceneryShapes;
+use scene::{Background, Camera, Frame};
 
-/// A frame for exact rays. With `shapes`, boxes have solids and stand on the road at its physical height. Without them
+/// A frame for exact rays. With `shapes`, boxes and scenery have solids and stand on the road at its physical height. Without them
 /// voxels are taken as they are labelled, the road two bins lower. `seed` varies the shapes.
-pub fn march_scene(frame: &Frame, shapes: bool, seed: u64) -> MarchScene {
+pub fn march_scene(frame: &Frame, background: &Background, shapes: bool, seed: u64) -> MarchScene {
     let options = MarchOptions {
         ground: match shapes {
             true => GroundHeight::Physical,
@@ -23,7 +24,8 @@ pub fn march_scene(frame: &Frame, shapes: bool, seed: u64) -> MarchScene {
     if shapes && !frame.own_shapes.is_empty() {
         boxes.to_mut().retain(|id, _| !frame.own_shapes.contains_key(id));
     }
-    MarchScene::new(&frame.occupancy, &frame.layout, &boxes, &options)
+    let scenery = shapes.then(|| SceneryShapes::new(frame, background)).flatten();
+    MarchScene::new(&frame.occupancy, &frame.layout, &boxes, &options).with_scenery(scenery)
 }
 
 /// A frame made ready for rays.

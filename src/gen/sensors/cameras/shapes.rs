@@ -1,4 +1,4 @@
-//! Classes and depths by exact rays to the voxels, boxes as the shapes that they stand for.
+//! Classes and depths by exact rays to the voxels, boxes and scenery as the shapes that they stand for.
 
 use super::view::MAP_VIEWS;
 use super::{CameraInput, CameraSource, CameraSourceDescription, Needs, PreparedCameras, SourceId, marched};
@@ -15,12 +15,13 @@ impl CameraSource for ShapeMaps {
         &CameraSourceDescription {
             id: ID,
             title: "Shapes",
-            hint: "exact rays; boxes as the shapes they stand for",
+            hint: "exact rays; boxes and scenery as the shapes they stand for",
             views: MAP_VIEWS,
             needs: Needs {
                 occupancy: true,
                 layout: true,
                 boxes: true,
+                background: true,
                 ..Needs::NONE
             },
             ground: GroundHeight::Physical,
@@ -31,7 +32,7 @@ impl CameraSource for ShapeMaps {
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
-        let scene = marched::march_scene(input.frame, true, input.conditions.seed);
+        let scene = marched::march_scene(input.frame, input.background, true, input.conditions.seed);
         Box::new(marched::PreparedMarch(scene))
     }
 }

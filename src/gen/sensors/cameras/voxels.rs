@@ -30,7 +30,7 @@ impl CameraSource for VoxelCameraSource {
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
-        let scene = marched::march_scene(input.frame, false, input.conditions.seed);
+        let scene = marched::march_scene(input.frame, input.background, false, input.conditions.seed);
         Box::new(marched::PreparedMarch(scene))
     }
 }

@@ -5,10 +5,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::beyond::border::Border;
-use crate::lidar::scenery::SceneryShapes;
 use crate::lidar::shaped;
 use crate::lidar::surroundings::{Height, SurroundingHits};
 use crate::lidar::{EgoBox, Rays, look_through};
+use crate::pictures::scenery::SceneryShapes;
 use crate::raycast::{ColumnMasks, LANES, Packet, PacketHit};
 use scene::{Class, Extent, Frame, Lattice, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
 

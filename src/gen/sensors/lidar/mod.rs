@@ -8,7 +8,8 @@ pub mod material;
 pub mod observed;
 pub mod own_body;
 pub mod rolling;
-pub mod scenery;
+#[cfg(test)]
+mod scenery_tests;
 pub mod shaped;
 pub mod surroundings;
 mod texture;

@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use crate::lidar;
 use crate::lidar::learned::{self, Drops};
-use crate::lidar::scenery::SceneryShapes;
 use crate::lidar::shaped::onto_shapes;
+use crate::pictures::scenery::SceneryShapes;
 use nets::ModelError;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene, SceneBox};

@@ -8,9 +8,9 @@ use std::collections::HashMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::lidar::scenery::SceneryShapes;
 use crate::lidar::{EgoBox, look_through};
 use crate::pictures::march::solids::SolidIndex;
+use crate::pictures::scenery::SceneryShapes;
 use crate::raycast::ColumnMasks;
 use scene::raster::box_cells;
 use scene::solid::Solid;
@@ -226,7 +226,7 @@ impl<'a> ShapedBoxes<'a> {
         let scenery = self
             .scenery
             .and_then(|s| s.cast(ray.origin, ray.direction, limit_m));
-        scenery.or(on_box)
+        scenery.map(|hit| (hit.t_m, hit.solid.class)).or(on_box)
     }
 
     /// Hit of a ray on a solid of a box within that box, nearer than `limit_m`: distance, m, and class.

@@ -12,6 +12,7 @@ use std::ops::Range;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::scenery::SceneryShapes;
 use crate::raycast::ColumnMasks;
 pub use crate::raycast::rays::CameraRays;
 use crate::raycast::units::Units;
@@ -65,6 +66,7 @@ pub struct MarchScene {
     masks: ColumnMasks,
     ground: GroundHeightField,
     solids: SolidIndex,
+    scenery: Option<SceneryShapes>,
     paint: RoadMarkings,
 }
 
@@ -118,8 +120,19 @@ impl MarchScene {
             grid,
             ground,
             solids: SolidIndex::of_boxes(extent, drawn.into_iter(), options.seed),
+            scenery: None,
             paint,
         }
+    }
+
+    /// Casts solids of scenery of the same map instead of the voxels that they stand for.
+    pub fn with_scenery(mut self, scenery: Option<SceneryShapes>) -> Self {
+        if let Some(scenery) = &scenery {
+            scenery.remove_from(&mut self.grid);
+            self.masks = ColumnMasks::from_grid(&self.grid);
+        }
+        self.scenery = scenery;
+        self
     }
 
     /// The first surface along a ray of the ego frame. `direction` need not have unit length; `None`
@@ -152,6 +165,15 @@ impl MarchScene {
             best = s.t_m / Lattice::OCC3D.voxel_m();
             let id = s.solid.class.id();
             hit = Some((id, s.solid.normal_at(s.origin + unit * s.t_m), s.box_id));
+        }
+        let scenery = self.scenery.as_ref();
+        if let Some(s) = scenery.and_then(|s| s.cast(origin_in_ego, unit, best * Lattice::OCC3D.voxel_m())) {
+            best = s.t_m / Lattice::OCC3D.voxel_m();
+            hit = Some((
+                s.solid.class.id(),
+                s.solid.normal_at(s.origin + unit * s.t_m),
+                None,
+            ));
         }
         // Last, since it costs most and ends at the hit found so far. A voxel at exactly that distance does not replace
         // it.

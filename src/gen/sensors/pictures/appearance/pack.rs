@@ -80,7 +80,7 @@ impl Appearance {
             AppearanceSection::ListStarts,
             starts(lists.iter().map(|l| l.len())),
         );
-        out.push(AppearanceSection::Lists, lists.concat().into_iter());
+        out.push(AppearanceSection::Lists, lists.concat());
     }
 }
 

@@ -10,10 +10,14 @@ pub(super) type Voxel = [usize; 3];
 
 /// Largest share of a thing's voxels that may be missing beside its cuts: labels have no more of a bench.
 const MOST_MISSING: f64 = 0.35;
+/// Distance of the voxels beside a thing that it should explain.
+const BESIDE: usize = 2;
 /// Least intersection over union of an inferred thing and the voxels.
 const LEAST_IOU: f64 = 0.8;
-/// Voxels around a cut that are drawn as voxels too.
-const AROUND: usize = 2;
+/// Voxels around a cut in which solids are left out, and farther voxels that stay, so that both overlap.
+const AROUND: usize = 1;
+/// See [`AROUND`].
+const OVERLAP: usize = 2;
 /// Most cuts of a thing; with more it stays in the field.
 const MOST: usize = 6;
 
@@ -68,7 +72,7 @@ impl Missing {
         for v in &self.whole {
             for k in 0..125 {
                 let step = [k / 25, k / 5 % 5, k % 5];
-                let near: [usize; 3] = std::array::from_fn(|i| (v[i] + step[i]).wrapping_sub(AROUND));
+                let near: [usize; 3] = std::array::from_fn(|i| (v[i] + step[i]).wrapping_sub(BESIDE));
                 if (0..3).all(|i| near[i] < size[i]) && !self.whole.contains(&near) {
                     around.insert(near);
                 }
@@ -131,7 +135,7 @@ impl Missing {
     }
 }
 
-/// True if a voxel lies in a cut.
+/// True if a voxel lies in a cut or around it, so that it stays.
 pub fn holds([low, high]: &Cut, voxel: Voxel) -> bool {
-    (0..3).all(|i| (low[i]..=high[i]).contains(&voxel[i]))
+    (0..3).all(|i| (low[i].saturating_sub(OVERLAP)..=high[i] + OVERLAP).contains(&voxel[i]))
 }

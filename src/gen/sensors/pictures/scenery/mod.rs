@@ -2,6 +2,7 @@
 //! Around a place where something was cut out of a thing its voxels stay; a thing that is mostly missing stays voxels.
 
 mod cut;
+mod shapes;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -10,6 +11,7 @@ use cut::{Cut, Missing};
 use scene::background::{ColumnLabels, LineKind, in_extent};
 use scene::grid::NOT_PAINTED;
 use scene::{Background, BevLayout, Class, Extent, Form, Thing, VoxelGrid, VoxelPaint};
+pub use shapes::SceneryShapes;
 
 /// Content of a map that scenery is compared with.
 #[derive(Clone, Copy)]
