@@ -130,7 +130,8 @@ impl Appearance {
             inferred: frame.inferred.background,
         };
         let scenery = DrawnScenery::new(scenery, &mut grid, seed);
-        let owners = Owners::new(&scenery.in_field, &layout, &FieldShape::from_extent(extent));
+        let shape = FieldShape::from_extent(extent);
+        let owners = Owners::new(&scenery.in_field, &scenery.cut, &layout, &shape);
         let field = OccupancyField::new(&grid, &owners, seed);
         let ground = SmoothGround::new(&columns, &layout);
         let mut things: Vec<DrawnObject> = boxes

@@ -49,8 +49,14 @@ impl ShownThing {
         let half = DVec3::splat(extent.voxel_m() / 2.0);
         let corner = |[x, y, z]: [usize; 3], up: f64| extent.center(x, y, z) + half * up;
         let cuts = self.cuts.as_ref()?.iter();
+        let top = extent.nz() - 1;
+        let upper = |high: [usize; 3]| match high[2] == top {
+            // What was cut up to the top of the map goes on above it.
+            true => corner(high, 1.0).with_z(1e6),
+            false => corner(high, 1.0),
+        };
         Some(
-            cuts.map(|[low, high]| [corner(*low, -1.0), corner(*high, 1.0)])
+            cuts.map(|[low, high]| [corner(*low, -1.0), upper(*high)])
                 .collect(),
         )
     }

@@ -43,6 +43,8 @@ impl SceneryShapes {
         let solids = |thing: &scene::Thing| {
             let mut solids = Vec::new();
             thing.solids(&|p| layout.relief.height_m(p), &mut solids);
+            // Fences are of boards, as pictures show them.
+            solids.iter_mut().for_each(|solid| solid.porosity = 0.0);
             solids
         };
         let groups = whole().map(|shown| solids(&shown.thing));

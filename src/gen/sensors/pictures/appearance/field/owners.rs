@@ -1,15 +1,20 @@
 //! Owners of columns of man-made voxels: the thing of the scenery that each column belongs to. A column with an owner
 //! looks as that thing does, whatever else stands, comes or goes around it.
 
+use std::collections::BTreeSet;
+
 use glam::{DVec2, Vec2};
 
 use scene::appearance::FieldShape;
 use scene::background::in_extent;
 use scene::raster::{disc_cells, line_cells, polygon_cells};
-use scene::{Background, BevLayout, Class, Extent, Form, Lattice, Thing};
+use scene::{Background, BevLayout, Class, Extent, Form, Lattice, Thing, ThingId};
 
 /// Margin around a thing's ground plan within which voxels are its own too, m: labels and networks are not exact.
 const MARGIN_M: f64 = Lattice::OCC3D.voxel_m();
+
+/// Columns of a wall without windows, too many for a post.
+const BARE_WALL: u32 = 20;
 
 /// Look of a thing of man-made voxels.
 #[derive(Clone, Copy, Debug)]
@@ -44,8 +49,14 @@ pub struct Owners {
 }
 
 impl Owners {
-    /// Finds the owners among the things of a background, on the ground of a layout that covers the field's map.
-    pub fn new(background: &Background, layout: &BevLayout, shape: &FieldShape) -> Self {
+    /// Finds the owners among the things of a background, on the ground of a layout that covers the field's map. Of the `cut`
+    /// ones bare walls are shown.
+    pub fn new(
+        background: &Background,
+        cut: &BTreeSet<ThingId>,
+        layout: &BevLayout,
+        shape: &FieldShape,
+    ) -> Self {
         let extent = shape.extent;
         let made = |t: &Thing| t.form.class() == Class::Manmade;
         let things: Vec<Thing> = in_extent(extent, background.iter().filter(|t| made(t)));
@@ -69,7 +80,10 @@ impl Owners {
                         columns += 1;
                     });
                     if let (Form::Building(_), Some(form)) = (&thing.form, &mut all[i].form) {
-                        form.columns = columns;
+                        form.columns = match cut.contains(&thing.id) {
+                            true => BARE_WALL,
+                            false => columns,
+                        };
                     }
                 }
             }
@@ -106,7 +120,11 @@ fn owner(thing: &Thing, layout: &BevLayout) -> ColumnOwner {
     let mut solids = Vec::new();
     thing.solids(&|p| layout.relief.height_m(p), &mut solids);
     let tops = solids.iter().map(|s| s.center.z + s.reach().z);
-    let top_m = tops.fold(f64::NEG_INFINITY, f64::max);
+    let top_m = match form {
+        // Its walls alone: the field has no roof to put on them.
+        Form::Building(b) => layout.relief.height_m(middle_m) + b.height_m,
+        _ => tops.fold(f64::NEG_INFINITY, f64::max),
+    };
     let width_m = 2.0 * form.overhang_m();
     ColumnOwner {
         look: thing.look,

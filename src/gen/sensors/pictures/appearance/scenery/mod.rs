@@ -16,6 +16,8 @@ pub struct DrawnScenery {
     pub objects: Vec<DrawnObject>,
     /// Things of which the field draws all or a part.
     pub in_field: Background,
+    /// Those of them of which something was cut out.
+    pub cut: BTreeSet<ThingId>,
 }
 
 impl DrawnScenery {
@@ -44,8 +46,10 @@ impl DrawnScenery {
         };
         let whole = |shown: &&ShownThing| shown.cuts_m(extent).is_some_and(|cuts| cuts.is_empty());
         let whole: BTreeSet<ThingId> = shown.things().iter().filter(whole).map(|s| s.thing.id).collect();
+        let cut = |shown: &&ShownThing| shown.cuts_m(extent).is_some_and(|cuts| !cuts.is_empty());
         Self {
             objects: shown.things().iter().flat_map(objects).collect(),
+            cut: shown.things().iter().filter(cut).map(|s| s.thing.id).collect(),
             in_field: input
                 .background
                 .iter()
