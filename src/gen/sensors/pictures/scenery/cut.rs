@@ -25,30 +25,33 @@ const MOST: usize = 6;
 pub(super) type Cut = [Voxel; 2];
 
 /// Voxels that a thing lacks.
-pub(super) struct Missing {
+pub(super) struct Missing<'a> {
+    /// All voxels that the thing has if nothing is missing.
+    columns: &'a ColumnLabels,
     /// All of them.
     pub voxels: BTreeSet<Voxel>,
     /// Those that were cleared by hand.
     pub by_hand: BTreeSet<Voxel>,
-    /// All voxels that the thing has if nothing is missing.
-    whole: BTreeSet<Voxel>,
+    /// Number of voxels that the thing has if nothing is missing.
+    whole: usize,
     /// Columns of which nothing is there.
     bare: BTreeSet<[usize; 2]>,
 }
 
-impl Missing {
+impl<'a> Missing<'a> {
     /// Compares the voxels of a thing with those of the map.
-    pub fn new(columns: &ColumnLabels, occupancy: &VoxelGrid, painted: &VoxelPaint) -> Self {
+    pub fn new(columns: &'a ColumnLabels, occupancy: &VoxelGrid, painted: &VoxelPaint) -> Self {
         let mut out = Self {
             voxels: BTreeSet::new(),
             by_hand: BTreeSet::new(),
-            whole: BTreeSet::new(),
+            columns,
+            whole: 0,
             bare: BTreeSet::new(),
         };
         for ([x, y], labels) in columns {
             let (held, painted) = (occupancy.column(*x, *y), painted.column(*x, *y));
             for z in (0..labels.len()).filter(|z| labels[*z] != Class::FREE) {
-                out.whole.insert([*x, *y, z]);
+                out.whole += 1;
                 if held[z] == Class::FREE {
                     out.voxels.insert([*x, *y, z]);
                 }
@@ -64,24 +67,33 @@ impl Missing {
         out
     }
 
+    /// All voxels that the thing has if nothing is missing.
+    fn whole(&self) -> impl Iterator<Item = Voxel> {
+        self.columns.iter().flat_map(|([x, y], labels)| {
+            let own = (0..labels.len()).filter(|z| labels[*z] != Class::FREE);
+            own.map(|z| [*x, *y, z])
+        })
+    }
+
     /// True if a thing and the man-made voxels within two of it are the same but for a fifth of all (intersection over
     /// union).
     pub fn explains(&self, occupancy: &VoxelGrid) -> bool {
         let size = occupancy.extent().shape();
+        let whole: BTreeSet<Voxel> = self.whole().collect();
         let mut around = BTreeSet::new();
-        for v in &self.whole {
+        for v in &whole {
             for k in 0..125 {
                 let step = [k / 25, k / 5 % 5, k % 5];
                 let near: [usize; 3] = std::array::from_fn(|i| (v[i] + step[i]).wrapping_sub(BESIDE));
-                if (0..3).all(|i| near[i] < size[i]) && !self.whole.contains(&near) {
+                if (0..3).all(|i| near[i] < size[i]) && !whole.contains(&near) {
                     around.insert(near);
                 }
             }
         }
         let made = |[x, y, z]: &Voxel| occupancy.get(*x, *y, *z) == Class::Manmade.id();
         let beside = around.iter().filter(|v| made(v)).count();
-        let shared = self.whole.len() - self.voxels.len();
-        shared as f64 >= LEAST_IOU * (self.whole.len() + beside) as f64
+        let shared = self.whole - self.voxels.len();
+        shared as f64 >= LEAST_IOU * (self.whole + beside) as f64
     }
 
     /// The cuts of a thing on a map of `[nx, ny, nz]` voxels: what was cleared by hand, missing pieces of two voxels each
@@ -125,13 +137,16 @@ impl Missing {
             let high = std::array::from_fn(|i| (high[i] + AROUND).min(size[i].saturating_sub(1)));
             cuts.push([low, high]);
         }
-        let left = |voxels: &BTreeSet<Voxel>| {
-            let left = voxels.iter().filter(|v| !cuts.iter().any(|cut| holds(cut, **v)));
-            left.count()
+        let is_left = |v: &Voxel| !cuts.iter().any(|cut| holds(cut, *v));
+        let (missing, whole) = match cuts.is_empty() {
+            true => (self.voxels.len(), self.whole),
+            false => (
+                self.voxels.iter().filter(|v| is_left(v)).count(),
+                self.whole().filter(is_left).count(),
+            ),
         };
-        let (missing, whole) = (left(&self.voxels), left(&self.whole));
         let is_there = whole > 0 && missing as f64 <= MOST_MISSING * whole as f64;
-        (is_there || self.whole.is_empty()).then_some(cuts)
+        (is_there || self.whole == 0).then_some(cuts)
     }
 }
 
