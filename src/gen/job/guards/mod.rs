@@ -1,5 +1,5 @@
 //! Guards: corrections of what the networks made, so that a result does what the user asked for and nothing else. Each is a
-//! file and a row of [`GUARDS`], which run in this order.
+//! function and a row of [`GUARDS`], which run in this order.
 
 pub mod clear;
 pub mod grounded;

@@ -1,5 +1,5 @@
-//! `eval near`: surfaces within 25 m that the pictures show, beside those of the analytic worlds that the scenes were made
-//! from: walls, posts and fences pixel by pixel. Drawn as things, and, for comparison, as if only the voxels were known.
+//! `eval near`: surfaces within 25 m that the pictures show, beside the solids of the scene's things on the ground that the
+//! scene knows: walls, posts and fences pixel by pixel. Drawn as things, and, for comparison, as if only the voxels were known.
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;

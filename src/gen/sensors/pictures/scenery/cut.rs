@@ -28,7 +28,7 @@ pub(super) type Cut = [Voxel; 2];
 pub(super) struct Missing<'a> {
     /// All voxels that the thing has if nothing is missing.
     columns: &'a ColumnLabels,
-    /// All of them.
+    /// Those that are missing.
     pub voxels: BTreeSet<Voxel>,
     /// Those that were cleared by hand.
     pub by_hand: BTreeSet<Voxel>,

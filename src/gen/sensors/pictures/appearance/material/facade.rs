@@ -1,5 +1,5 @@
 //! Facades: walls with windows in bays and storeys, doors, shops, glass fronts and halls. A wall knows its own length, so bays
-//! are centred on it and no window comes near a corner. `thing_material.wgsl` has the same formulas.
+//! are centred on it and no window comes near a corner. `scenery_material.wgsl` has the same formulas.
 
 use glam::{IVec3, Vec2, Vec3, Vec4};
 

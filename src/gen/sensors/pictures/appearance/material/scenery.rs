@@ -1,5 +1,5 @@
 //! Scenery: roofs, masonry, boards, concrete, metal, signs, lights, panes. Patterns are anchored in the thing and varied by
-//! its number, so that nothing else changes its look. `thing_material.wgsl` has the same formulas.
+//! its number, so that nothing else changes its look. `scenery_material.wgsl` has the same formulas.
 
 use glam::{IVec3, Vec2, Vec3};
 
