@@ -96,6 +96,10 @@ fn relief_cast(o: vec3f, d: vec3f, limit: f32) -> f32 {
     if !(t0 < t1) {
         return relief_beyond(o, d, 0.0, limit);
     }
+    let before_map = relief_beyond(o, d, 0.0, t0);
+    if before_map < t0 {
+        return before_map;
+    }
     let level = length(d.xy);
     let q = (o.xy - low_m()) / block_m;
     let qd = d.xy / block_m;

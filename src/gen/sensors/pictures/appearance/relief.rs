@@ -107,6 +107,10 @@ impl GroundRelief {
         if !crosses {
             return self.beyond((o, d), 0.0, limit);
         }
+        // From outside the map a ray may meet the ground before it.
+        if let Some(before) = self.beyond((o, d), 0.0, t0) {
+            return Some(before);
+        }
         let flat = d.truncate().length();
         let block_m = BLOCK as f32 * VOXEL_M;
         let (q, qd) = ((o.truncate() - self.low) / block_m, d.truncate() / block_m);
@@ -171,4 +175,38 @@ fn refine(mut out: f32, mut within: f32, above: &impl Fn(f32) -> f32) -> f32 {
         }
     }
     within
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::Relief;
+
+    /// From inside the map, from outside over ground that goes on as at the border, and past it.
+    #[test]
+    fn rays_meet_a_slope_wherever_they_begin() {
+        let mut layout = BevLayout::default();
+        layout.relief = Relief::from_fn(layout.extent(), |p| p.x * 0.05);
+        let relief = GroundRelief::new(&layout).expect("a slope");
+        let met = |o: Vec3, d: Vec3| {
+            let above = |t: f32| o.z + d.z * t - relief.at((o + d * t).truncate());
+            relief.cast((o, d), 200.0, &above).map(|t| o + d * t)
+        };
+        for (x, z) in [(-60.0, 0.5), (-60.0, 3.0), (0.0, 1.5), (60.0, 4.0)] {
+            for way in [
+                Vec3::new(1.0, 0.1, -0.1),
+                Vec3::new(-1.0, 0.1, -0.1),
+                Vec3::new(1.0, 0.0, 0.02),
+            ] {
+                let (o, d) = (Vec3::new(x, 3.0, z), way.normalize());
+                match met(o, d) {
+                    Some(p) => assert!((p.z - relief.at(p.truncate())).abs() < 0.02, "{o} {d}: {p}"),
+                    None => assert!(d.z > 0.0, "{o} {d}: no ground"),
+                }
+            }
+        }
+        // Before the map begins, 40 m from its middle.
+        let near = met(Vec3::new(-60.0, 0.0, -1.0), Vec3::new(1.0, 0.0, -0.2).normalize());
+        assert!(near.is_some_and(|p| p.x < -54.0), "{near:?}");
+    }
 }

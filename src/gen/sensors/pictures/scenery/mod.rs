@@ -98,15 +98,15 @@ impl ShownScenery {
 
     /// Voxels that solids stand for, a bit for each bin of each column `[x][y]`: those of the things, and strays of their
     /// class within a voxel of them, but nothing that was painted, belongs to another thing or lies around a cut.
-    pub fn stood_for(&self, occupancy: &VoxelGrid, painted: &VoxelPaint) -> Vec<u32> {
+    pub fn stood_for(&self, occupancy: &VoxelGrid, painted: &VoxelPaint) -> Vec<u64> {
         let extent = self.extent;
-        let mut own = vec![0u32; extent.columns()];
+        let mut own = vec![0u64; extent.columns()];
         let (mut near, mut kept) = (own.clone(), own.clone());
         for ShownThing { columns, cuts, .. } in &self.things {
             for ([x, y], labels) in columns {
                 let bits = |keep: &dyn Fn(usize) -> bool| {
                     let bins = (0..labels.len()).filter(|z| labels[*z] != Class::FREE && keep(*z));
-                    bins.fold(0u32, |mask, z| mask | 1 << z)
+                    bins.fold(0u64, |mask, z| mask | 1 << z)
                 };
                 let stays = |z: usize| match cuts {
                     None => true,

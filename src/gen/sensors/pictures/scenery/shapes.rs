@@ -10,7 +10,7 @@ use scene::{Background, Class, Extent, Frame, Scene, VoxelGrid};
 pub struct SceneryShapes {
     extent: Extent,
     /// A bit for each bin of each column.
-    stood_for: Vec<u32>,
+    stood_for: Vec<u64>,
     /// Height of the ground in each column, m: below it labels go down to their ground.
     ground_m: Vec<f32>,
     solids: SolidIndex,

@@ -381,3 +381,45 @@ fn wall_kind(b: &Building) -> WallKind {
         _ => WallKind::Windows,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area_m2(outline: &[DVec2]) -> f64 {
+        let edges = outline.iter().zip(outline.iter().cycle().skip(1));
+        edges.map(|(a, b)| a.perp_dot(*b)).sum::<f64>() / 2.0
+    }
+
+    /// Files of roads and buildings give corners on straight walls.
+    #[test]
+    fn pieces_of_an_outline_cover_it() {
+        let corners = [
+            [0, 0],
+            [4, 0],
+            [8, 0],
+            [8, 6],
+            [6, 6],
+            [6, 2],
+            [4, 2],
+            [2, 2],
+            [2, 4],
+            [2, 6],
+            [0, 6],
+            [0, 3],
+        ];
+        for n in [12, 10, 8, 4] {
+            let outline: Vec<DVec2> = corners[..n]
+                .iter()
+                .map(|c| DVec2::new(c[0].into(), c[1].into()))
+                .collect();
+            let pieces = convex_pieces(&outline);
+            let all: f64 = pieces.iter().map(|p| area_m2(p)).sum();
+            assert!(
+                (all - area_m2(&outline)).abs() < 1e-9,
+                "{n} corners: {all} of {}",
+                area_m2(&outline)
+            );
+        }
+    }
+}
