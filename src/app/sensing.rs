@@ -441,7 +441,7 @@ impl SensorCache {
         self.lidar
             .as_ref()
             .map(|(_, caster)| {
-                let scenery = SceneryShapes::from_scene(scene);
+                let scenery = SceneryShapes::of_lidars(scene);
                 caster.shaped(frame, rig, scene.seed, scenery.as_ref())
             })
             .unwrap_or_default()

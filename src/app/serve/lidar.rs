@@ -98,7 +98,11 @@ impl Spin<'_> {
         let mut out = LidarRenderReturn::default();
         let scenery = match renderer.net {
             Some(_) => None,
-            None => SceneryShapes::from_scene(self.scene),
+            None => {
+                let reach =
+                    [self.sensor.start, self.sensor.end].map(|p| (p.translation_m, self.pattern.max_range_m));
+                SceneryShapes::within(self.scene.frame(), &self.scene.background, &reach)
+            }
         };
         for part in 0..parts {
             let [from, to] = [part, part + 1].map(|i| columns * i / parts);

@@ -20,7 +20,7 @@ const AROUND_M: f64 = scene::Lattice::OCC3D.voxel_m();
 /// The exact sweep of a scene's first LiDAR ([`lidar::rig_sweep`]) with returns on the shapes of boxes ([`onto_shapes`]), as
 /// [`sweep`] makes it; empty if the rig has none.
 pub fn exact(scene: &Scene) -> LidarSweep {
-    let scenery = SceneryShapes::from_scene(scene);
+    let scenery = SceneryShapes::of_lidars(scene);
     let made: Result<_, std::convert::Infallible> = sweep(scene, |s| {
         let mut sweep = lidar::rig_sweep(&s.frame().occupancy, &s.rig).unwrap_or_default();
         onto_shapes(&mut sweep, s.frame(), &s.rig, s.seed, scenery.as_ref());

@@ -254,7 +254,10 @@ impl<'a> ShapedBoxes<'a> {
                 ReturnPlacement::At(range_m, class)
             });
         }
-        let max_t = pattern.max_range_m / Lattice::OCC3D.voxel_m();
+        // Voxels behind the solid need not be looked through.
+        let solid = self.on_solid(ray, pattern.max_range_m);
+        let limit_m = solid.map_or(pattern.max_range_m, |(range_m, _)| range_m);
+        let max_t = limit_m / Lattice::OCC3D.voxel_m();
         let (mut from, mut behind) = (0.0, None);
         for _ in 0..MOST_VOXELS {
             let start = origin + ray.direction * from;
@@ -282,12 +285,11 @@ impl<'a> ShapedBoxes<'a> {
             }
             from = out.max(t) + OUT;
         }
-        let limit_m = behind.map_or(pattern.max_range_m, |(range_m, _)| range_m);
-        if let Some((range_m, class)) = self.on_solid(ray, limit_m) {
-            return ReturnPlacement::At(range_m, class);
-        }
-        behind.map_or(ReturnPlacement::Nothing, |(range_m, label)| {
-            ReturnPlacement::At(range_m, Class::from_id(label).unwrap_or(Class::Others))
+        let behind = behind.filter(|(range_m, _)| *range_m < limit_m);
+        let behind = behind.map(|(range_m, label)| (range_m, Class::from_id(label).unwrap_or(Class::Others)));
+        let met = behind.or(solid);
+        met.map_or(ReturnPlacement::Nothing, |(range_m, class)| {
+            ReturnPlacement::At(range_m, class)
         })
     }
 

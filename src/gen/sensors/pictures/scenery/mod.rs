@@ -4,6 +4,8 @@
 mod cut;
 mod shapes;
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -96,12 +98,11 @@ impl ShownScenery {
         &self.things
     }
 
-    /// Voxels that solids stand for, a bit for each bin of each column `[x][y]`: those of the things, and strays of their
+    /// Voxels that solids stand for, a bit for each bin, by the index of their column: those of the things, and strays of their
     /// class within a voxel of them, but nothing that was painted, belongs to another thing or lies around a cut.
-    pub fn stood_for(&self, occupancy: &VoxelGrid, painted: &VoxelPaint) -> Vec<u64> {
+    pub fn stood_for(&self, occupancy: &VoxelGrid, painted: &VoxelPaint) -> HashMap<usize, u64> {
         let extent = self.extent;
-        let mut own = vec![0u64; extent.columns()];
-        let (mut near, mut kept) = (own.clone(), own.clone());
+        let mut masks: HashMap<usize, ColumnMask> = HashMap::new();
         for ShownThing { columns, cuts, .. } in &self.things {
             for ([x, y], labels) in columns {
                 let bits = |keep: &dyn Fn(usize) -> bool| {
@@ -112,30 +113,43 @@ impl ShownScenery {
                     None => true,
                     Some(cuts) => cuts.iter().any(|cut| cut::holds(cut, [*x, *y, z])),
                 };
-                let mask = bits(&|z| !stays(z));
-                kept[extent.index(*x, *y)] |= bits(&stays);
-                own[extent.index(*x, *y)] |= mask;
-                let grown = mask | mask << 1 | mask >> 1;
+                let own = bits(&|z| !stays(z));
+                let here = masks.entry(extent.index(*x, *y)).or_default();
+                here.own |= own;
+                here.kept |= bits(&stays);
+                if own == 0 {
+                    continue;
+                }
+                let grown = own | own << 1 | own >> 1;
                 for x in x.saturating_sub(1)..=(x + 1).min(extent.nx() - 1) {
                     for y in y.saturating_sub(1)..=(y + 1).min(extent.ny() - 1) {
-                        near[extent.index(x, y)] |= grown;
+                        masks.entry(extent.index(x, y)).or_default().near |= grown;
                     }
                 }
             }
         }
         let is_made = |label: u8| label == Class::Manmade.id() || label == Class::Others.id();
-        for [x, y] in extent.all_columns() {
-            let i = extent.index(x, y);
-            let wanted = near[i] & !kept[i] | own[i];
-            if wanted == 0 {
-                continue;
-            }
+        let goes = |(i, mask): (usize, ColumnMask)| {
+            let [x, y] = extent.column(i);
+            let wanted = mask.near & !mask.kept | mask.own;
             let (held, painted) = (occupancy.column(x, y), painted.column(x, y));
             let goes = |z: &usize| wanted >> z & 1 == 1 && is_made(held[*z]) && painted[*z] == NOT_PAINTED;
-            own[i] = (0..held.len()).filter(goes).fold(0, |mask, z| mask | 1 << z);
-        }
-        own
+            let bits = (0..held.len()).filter(goes).fold(0, |mask, z| mask | 1 << z);
+            (bits != 0).then_some((i, bits))
+        };
+        masks.into_iter().filter_map(goes).collect()
     }
+}
+
+/// Voxels of a column, a bit for each bin.
+#[derive(Clone, Copy, Default)]
+struct ColumnMask {
+    /// Those of things that solids stand for.
+    own: u64,
+    /// Those, and the ones beside them.
+    near: u64,
+    /// Those of things that stay voxels.
+    kept: u64,
 }
 
 /// True for forms whose solids stand for their voxels.

@@ -1,25 +1,46 @@
 //! Scenery as exact rays meet it: the solids of things whose voxels are there, instead of those voxels.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 
 use super::{SceneryInput, ShownScenery};
 use crate::pictures::march::solids::{SolidHit, SolidIndex};
-use scene::{Background, Class, Extent, Frame, Scene, VoxelGrid};
+use scene::{Background, Class, Extent, Frame, Relief, Scene, Thing, VoxelGrid};
+
+/// Way of a vehicle during one turn of its LiDAR, m.
+const MOVES_M: f64 = 10.0;
 
 /// Solids of a map's scenery, and the voxels that they stand for.
 pub struct SceneryShapes {
     extent: Extent,
-    /// A bit for each bin of each column.
-    stood_for: Vec<u64>,
-    /// Height of the ground in each column, m: below it labels go down to their ground.
-    ground_m: Vec<f32>,
+    /// A bit for each bin, by column.
+    stood_for: HashMap<usize, u64>,
+    /// Ground below which labels go down to theirs.
+    relief: Relief,
     solids: SolidIndex,
 }
 
 impl SceneryShapes {
-    /// The scenery of a scene's frame; `None` if nothing can stand for its voxels.
-    pub fn from_scene(scene: &Scene) -> Option<Self> {
-        Self::new(scene.frame(), &scene.background)
+    /// The scenery that the LiDARs of a scene's rig can reach, which stands in the frame's coordinates; `None` if there is
+    /// none that can stand for its voxels.
+    pub fn of_lidars(scene: &Scene) -> Option<Self> {
+        let lidars = scene.rig.lidars.iter();
+        let reach = lidars.map(|l| (l.ego_from_sensor().translation_m, l.max_range_m));
+        Self::within(scene.frame(), &scene.background, &reach.collect::<Vec<_>>())
+    }
+
+    /// The scenery of a frame within some distances of some places, m.
+    pub fn within(frame: &Frame, background: &Background, reach: &[(DVec3, f64)]) -> Option<Self> {
+        let is_near = |thing: &&Thing| {
+            let (low, high) = thing.form.bounds_m();
+            let near = |(at, reach_m): &(DVec3, f64)| {
+                let at = at.truncate();
+                at.clamp(low, high).distance(at) <= reach_m + MOVES_M
+            };
+            reach.iter().any(near)
+        };
+        Self::new(frame, &background.iter().filter(is_near).cloned().collect())
     }
 
     /// The scenery of a frame; `None` if nothing can stand for its voxels. Things of which something was cut out stay voxels.
@@ -40,7 +61,7 @@ impl SceneryShapes {
                 .filter(|shown| shown.cuts_m(extent).is_some())
         };
         whole().next()?;
-        let solids = |thing: &scene::Thing| {
+        let solids = |thing: &Thing| {
             let mut solids = Vec::new();
             thing.solids(&|p| layout.relief.height_m(p), &mut solids);
             // Fences are of boards, as pictures show them.
@@ -48,29 +69,23 @@ impl SceneryShapes {
             solids
         };
         let groups = whole().map(|shown| solids(&shown.thing));
-        let height = |[x, y]: [usize; 2]| layout.relief.column_m(x, y) as f32;
         Some(Self {
             extent,
             stood_for: shown.stood_for(&frame.occupancy, &frame.painted),
-            ground_m: extent.all_columns().map(height).collect(),
+            relief: layout.relief.clone(),
             solids: SolidIndex::of_groups(extent, groups),
         })
     }
 
     /// True if solids stand for a voxel that was met at a height, m.
     pub(crate) fn stands_for(&self, [x, y, z]: [usize; 3], met_m: f64) -> bool {
-        let i = self.extent.index(x, y);
-        let mask = self.stood_for.get(i).copied().unwrap_or(0);
-        mask >> z & 1 == 1 && met_m >= f64::from(self.ground_m[i])
+        let mask = self.stood_for.get(&self.extent.index(x, y)).copied();
+        mask.unwrap_or(0) >> z & 1 == 1 && met_m >= self.relief.column_m(x, y)
     }
 
     /// Removes the voxels that solids stand for from a grid of the same map, as far as they are above the ground.
     pub(crate) fn remove_from(&self, grid: &mut VoxelGrid) {
-        for [x, y] in self
-            .extent
-            .all_columns()
-            .filter(|[x, y]| self.stood_for[self.extent.index(*x, *y)] != 0)
-        {
+        for [x, y] in self.stood_for.keys().map(|i| self.extent.column(*i)) {
             for z in 0..self.extent.nz() {
                 if self.stands_for([x, y, z], self.extent.center(x, y, z).z) {
                     grid.set(x, y, z, Class::FREE);

@@ -26,11 +26,8 @@ impl DrawnScenery {
         let extent = input.layout.extent();
         let shown = ShownScenery::new(input);
         let goes = shown.stood_for(input.occupancy, input.painted);
-        for [x, y] in extent
-            .all_columns()
-            .filter(|[x, y]| goes[extent.index(*x, *y)] != 0)
-        {
-            let mask = goes[extent.index(x, y)];
+        for (i, mask) in goes {
+            let [x, y] = extent.column(i);
             for z in (0..extent.nz()).filter(|z| mask >> z & 1 == 1) {
                 standing.set(x, y, z, Class::FREE);
             }

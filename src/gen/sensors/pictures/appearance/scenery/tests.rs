@@ -195,3 +195,26 @@ fn outlines_that_are_not_convex_are_met_as_they_are() {
         );
     }
 }
+
+#[test]
+fn inferred_things_must_explain_the_voxels_around_them_too() {
+    let background = things();
+    let mut frame = frame_of(&background);
+    frame.inferred.background = true;
+    let ahead = Vec3::new(1.0, 0.0, 0.1);
+    let is_solid = |frame: &Frame| {
+        let hit = hit(&appearance(frame, &background), ahead).expect("a house stands there");
+        matches!(hit.what, SurfaceKind::Thing(..))
+    };
+    assert!(is_solid(&frame));
+    // Two more rows of voxels all around: the house that was inferred is too small.
+    let extent = frame.extent();
+    let near = |[x, y]: &[usize; 2]| {
+        let p = extent.center(*x, *y, 0).truncate();
+        (p.x - 16.0).abs() < 4.9 && p.y.abs() < 6.9
+    };
+    for [x, y] in extent.all_columns().filter(near) {
+        (1..extent.nz()).for_each(|z| frame.occupancy.set(x, y, z, Class::Manmade.id()));
+    }
+    assert!(!is_solid(&frame));
+}
