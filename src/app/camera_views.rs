@@ -333,6 +333,7 @@ pub fn camera_input(scene: &Scene, detail: Detail) -> CameraInput<'_> {
         conditions: scene.conditions,
         detail,
         paint: None,
+        cache: None,
     }
 }
 
@@ -378,6 +379,27 @@ impl CameraView {
             self.shown = Some((view.id, Arc::new(colors(&self.picture, view.id, 0.0))));
         }
         self
+    }
+
+    /// True if the picture is at least so many pixels wide.
+    pub fn is_wide(&self, width: u32) -> bool {
+        match &*self.picture {
+            CameraPicture::Maps(maps) => maps.width >= width as usize,
+            CameraPicture::Planes(image) => image.width >= width as usize,
+            CameraPicture::Layout(map) => map.width >= width as usize,
+            CameraPicture::Picture(image) => image.width >= width as usize,
+        }
+    }
+
+    /// Memory that it takes, bytes; `None` for pictures that take too much to be kept.
+    pub fn bytes(&self) -> Option<usize> {
+        const SHOWN: usize = size_of::<Color32>();
+        match &*self.picture {
+            // A class, and four planes of distances and shares.
+            CameraPicture::Maps(maps) => Some(maps.width * maps.height * (1 + 4 * 4 + SHOWN)),
+            CameraPicture::Picture(image) => Some(image.rgba.len() + image.width * image.height * SHOWN),
+            CameraPicture::Planes(_) | CameraPicture::Layout(_) => None,
+        }
     }
 
     /// The picture in the colours of a view; `plane_m` is the depth of the plane that is shown.

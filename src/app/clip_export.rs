@@ -7,10 +7,10 @@ use anyhow::{Context, bail};
 use formats::video::{VideoKind, VideoWriter};
 use scene::Scene;
 use sensors::cameras::{
-    self, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions, SourceId, ViewId, bounds,
-    learned,
+    self, CameraInput, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions, SourceId, ViewId,
+    bounds, learned,
 };
-use sensors::pictures::appearance::Quality;
+use sensors::pictures::appearance::{AppearanceCache, Quality};
 use sensors::pictures::painter::{CameraPainter, PaintWith};
 use viewport::ViewCamera;
 
@@ -145,7 +145,7 @@ enum ClipRenderer {
     },
     Bev,
     Map([u32; 2]),
-    Cameras(ClipOptions, Option<Box<dyn CameraPainter>>),
+    Cameras(ClipOptions, Option<Box<dyn CameraPainter>>, AppearanceCache),
 }
 
 /// Approximate height of the bird's-eye picture, px; it decides the pixels per cell.
@@ -187,7 +187,11 @@ impl ClipRenderer {
                     None => PaintWish::default().open(),
                 };
                 let with: Option<PaintWith> = options.paints().then(with).transpose()?;
-                Self::Cameras(options.clone(), with.map(|with| with.painter(false)))
+                Self::Cameras(
+                    options.clone(),
+                    with.map(|with| with.painter(false)),
+                    AppearanceCache::default(),
+                )
             }
         })
     }
@@ -236,7 +240,7 @@ impl ClipRenderer {
                     ..CaptureOptions::default()
                 },
             ),
-            Self::Cameras(options, painter) => pictures(scene, options, painter.as_deref_mut()),
+            Self::Cameras(options, painter, cache) => pictures(scene, options, painter.as_deref_mut(), cache),
         }
     }
 }
@@ -245,6 +249,7 @@ fn pictures(
     scene: &Scene,
     options: &ClipOptions,
     painter: Option<&mut (dyn CameraPainter + 'static)>,
+    cache: &AppearanceCache,
 ) -> anyhow::Result<RgbaPicture> {
     let ClipView::Cameras { view, source, camera } = &options.view else {
         bail!("no view of cameras");
@@ -267,7 +272,11 @@ fn pictures(
         return sheet(row.collect());
     }
     let source = cameras::source_of(*view, *source);
-    let ready = PreparedSource::new(source, &camera_input(&scene, Detail::Full));
+    let input = CameraInput {
+        cache: Some(cache),
+        ..camera_input(&scene, Detail::Full)
+    };
+    let ready = PreparedSource::new(source, &input);
     let render = RenderOptions {
         size: options.size,
         quality: Quality::Full,

@@ -62,6 +62,8 @@ impl Default for Playback {
 const LONGEST_TICK_S: f64 = 0.5;
 /// Time between two updates of the sensors while it plays, s: at least, and at most if the ones before are not done.
 const SENSORS_EVERY_S: [f64; 2] = [0.03, 0.5];
+/// Least and most time between two moments of a clip that sensors show while it plays, ms.
+const SENSED_EVERY_MS: [u32; 2] = [25, 400];
 
 impl Playback {
     /// Speeds to choose from.
@@ -86,6 +88,12 @@ impl Playback {
             self.sensed_s = self.playing.then_some(now_s);
         }
         due
+    }
+
+    /// Time between two moments of the clip that sensors show while it plays, ms: a tenth of a second on the clock, within limits.
+    pub fn sensed_every_ms(&self) -> u32 {
+        let [least_ms, most_ms] = SENSED_EVERY_MS;
+        ((100.0 * self.speed).round() as u32).clamp(least_ms, most_ms)
     }
 
     /// The moment to show now, s; `None` if it is still `shown_s`.

@@ -4,6 +4,7 @@
 mod others;
 mod painting;
 mod playing;
+mod reel;
 #[cfg(test)]
 mod tests;
 mod views;
@@ -31,13 +32,15 @@ use sensors::lidar::learned::Drops;
 use sensors::lidar::learned_caster::{LearnedCaster, Sampled};
 use sensors::lidar::rolling;
 use sensors::lidar::shaped::onto_shapes;
+use sensors::pictures::appearance::AppearanceCache;
 use sensors::pictures::scenery::SceneryShapes;
 use sensors::radar;
-use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
 pub use painting::PaintStage;
 use painting::Painting;
-use views::Views;
+use playing::Playing;
+use reel::{Moment, Reel, moment};
+use views::{Views, detail};
 
 /// Most rays whose samples are shown; more would cover the map.
 const SHOWN_RAYS: usize = 400;
@@ -52,8 +55,12 @@ pub enum Haste {
     Rest,
     /// The scene is about to change: small pictures.
     Preview,
-    /// A clip plays: small pictures, of as many cameras as there is time for.
-    Play,
+    /// A clip plays: small pictures, of as many cameras as there is time for, of moments that are multiples of so many
+    /// milliseconds of the clip. Moments that come again are shown at once.
+    Play {
+        /// Time between two moments, ms.
+        every_ms: u32,
+    },
 }
 
 /// A request to sense a scene.
@@ -66,7 +73,7 @@ struct SensingRequest {
 
 /// News from the thread.
 enum SensingEvent {
-    Lidar(SceneRev, Pose, LidarSweep, Option<Sampled>),
+    Lidar(SceneRev, Pose, Arc<LidarSweep>, Option<Sampled>),
     Radar(SceneRev, Vec<RadarScan>),
     Cameras(SceneRev, Wanted, Vec<CameraView>),
     /// Pictures of another source than the strip's.
@@ -80,6 +87,8 @@ enum SensingEvent {
 pub struct Sensing {
     worker: Worker<SensingRequest, SensingEvent>,
     asked: Option<(SceneRev, Wanted, Haste)>,
+    /// State, content and moment that were requested last while a clip played.
+    played: Option<(SceneRev, Wanted, Moment)>,
     /// The last job that ended.
     ended: JobId,
     lidar: Option<(SceneRev, Arc<LidarSweep>)>,
@@ -124,6 +133,7 @@ impl Sensing {
             painting: Worker::start("painting", move || Painting::new(stops), wake.clone())?,
             worker: Worker::start("sensing", senses, wake)?,
             asked: None,
+            played: None,
             ended: JobId(0),
             lidar: None,
             swept_at: Pose::IDENTITY,
@@ -161,7 +171,7 @@ impl Sensing {
         self.worker.cancel();
         self.painting.cancel();
         self.forgotten = [self.worker.newest().0, self.painting.newest().0];
-        (self.asked, self.lidar, self.radar, self.sampled) = (None, None, None, None);
+        (self.asked, self.played, self.lidar, self.radar, self.sampled) = (None, None, None, None, None);
         (self.cameras, self.painted, self.stage) = (None, None, None);
         self.others.clear();
         self.version += 1;
@@ -211,6 +221,18 @@ impl Sensing {
             return;
         }
         self.asked = Some((scene.rev, wanted, haste));
+        let mut scene = scene.clone();
+        if let Haste::Play { every_ms } = haste {
+            let every_s = f64::from(every_ms.max(1)) / 1000.0;
+            let at_s = (scene.time_s() / every_s).round() * every_s;
+            let played = Some((scene.content(), wanted, moment(at_s)));
+            if std::mem::replace(&mut self.played, played) == played {
+                return;
+            }
+            Arc::make_mut(&mut scene).show(at_s);
+        } else {
+            self.played = None;
+        }
         let scene = match scene.with_rig_in_world() {
             Cow::Borrowed(_) => scene.clone(),
             Cow::Owned(placed) => Arc::new(placed),
@@ -239,7 +261,7 @@ impl Sensing {
         {
             match news {
                 SensingEvent::Lidar(rev, pose, sweep, sampled) => {
-                    self.lidar = Some((rev, Arc::new(sweep)));
+                    self.lidar = Some((rev, sweep));
                     self.swept_at = pose;
                     self.sampled = sampled;
                     self.version += 1;
@@ -359,7 +381,8 @@ impl Product for Senses {
     type Update = SensingEvent;
 
     fn make(&mut self, request: &SensingRequest, ctx: &Ctx<'_, SensingEvent>) -> SensingEvent {
-        if request.haste != Haste::Play && !std::mem::replace(&mut self.rested, false) {
+        let plays = matches!(request.haste, Haste::Play { .. });
+        if !plays && !std::mem::replace(&mut self.rested, false) {
             std::thread::sleep(self.grace);
             if ctx.should_stop() {
                 self.rested = true;
@@ -412,10 +435,18 @@ struct SensorCache {
     scanned: Option<SceneRev>,
     /// Time of the last sweep or scan.
     ranged: Option<Instant>,
-    /// The pictures of a clip that plays, with its state, and the number of the camera that comes next.
-    playing: Option<(SceneRev, PicturesKey, Vec<CameraView>, usize)>,
+    /// What a clip that plays shows, with its state.
+    playing: Option<(SceneRev, PicturesKey, Playing)>,
+    /// Pictures of moments that were played, by state, source and camera.
+    pictures: Reel<(SceneRev, SourceId), CameraView>,
+    /// Sweeps of moments that were played.
+    sweeps: Reel<(SceneRev, LidarModel, bool), Arc<LidarSweep>>,
+    /// Scenery as the last sweep met it.
+    scenery: Option<SceneryShapes>,
     /// The graphics card, looked for when a source that can use it is requested; `None` inside if there is none.
     graphics: Option<Option<Graphics>>,
+    /// Parts of pictures that the next moment shares.
+    appearance: AppearanceCache,
 }
 
 impl SensorCache {
@@ -438,12 +469,10 @@ impl SensorCache {
                 *lidar = rig.lidars.first().map(|pattern| (rig.clone(), cast(pattern)));
             }
         }
+        self.scenery = SceneryShapes::of_lidars(scene, self.scenery.as_ref());
         self.lidar
             .as_ref()
-            .map(|(_, caster)| {
-                let scenery = SceneryShapes::of_lidars(scene);
-                caster.shaped(frame, rig, scene.seed, scenery.as_ref())
-            })
+            .map(|(_, caster)| caster.shaped(frame, rig, scene.seed, self.scenery.as_ref()))
             .unwrap_or_default()
     }
 
@@ -454,7 +483,10 @@ impl SensorCache {
             LidarModel::Exact => None,
         };
         let learned = net.and_then(|net| rolling::learned(&net, scene, drops(wanted.lost_echoes)).ok());
-        learned.unwrap_or_else(|| rolling::exact(scene))
+        learned.unwrap_or_else(|| {
+            self.scenery = SceneryShapes::of_lidars(scene, self.scenery.as_ref());
+            rolling::exact_with(scene, self.scenery.as_ref())
+        })
     }
 
     fn net(&mut self) -> Option<Arc<LidarNet>> {
@@ -492,12 +524,27 @@ fn sense(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
     let SensingRequest { scene, wanted, haste } = request;
     let swept = (scene.rev, wanted.lidar, wanted.lost_echoes);
     let lately = |at: Instant| at.elapsed().as_secs_f64() < SWEEPS_EVERY_S;
-    let ranges = *haste != Haste::Play || !kept.ranged.is_some_and(lately);
+    let plays = matches!(haste, Haste::Play { .. });
+    let (at, of) = (
+        moment(scene.time_s()),
+        (scene.content(), wanted.lidar, wanted.lost_echoes),
+    );
+    // Where the network sampled its rays is told of a scene at rest.
+    let again = plays || wanted.lidar == LidarModel::Exact;
+    if let Some(sweep) = kept.sweeps.get(&of, at, 0).filter(|_| again).cloned() {
+        let pose = scene.frame().world_from_ego;
+        ctx.tell(SensingEvent::Lidar(scene.rev, pose, sweep, None));
+        kept.swept = Some(swept);
+    }
+    let ranges = !plays || !kept.ranged.is_some_and(lately);
     if ranges {
         kept.ranged = Some(Instant::now());
     }
     if ranges && kept.swept != Some(swept) {
-        let sweep = kept.sweep(scene, wanted);
+        let sweep = Arc::new(kept.sweep(scene, wanted));
+        if plays {
+            kept.sweeps.put(of, (at, 0), sweep.clone(), sweep.bytes());
+        }
         let learned = kept
             .learned
             .as_ref()
@@ -515,7 +562,7 @@ fn sense(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
     let painted = wanted.camera_source().id() == learned::ID;
     let goes_on = match haste {
         _ if painted => true,
-        Haste::Play => {
+        Haste::Play { .. } => {
             playing::play(request, kept, ctx);
             true
         }
@@ -533,10 +580,11 @@ fn strip(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
     let rig = &scene.rig;
     let key = (scene.rev, wanted.pictures());
     let source = wanted.camera_source();
-    let mut of_scene = Views::new(source, scene, &mut kept.graphics);
+    let mut of_scene = Views::new(source, scene, &mut kept.graphics, &kept.appearance);
+    let (at, of) = (moment(scene.time_s()), (scene.content(), source.id()));
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
     let mut render = |quick: bool| -> Option<Vec<CameraView>> {
-        let size = if quick { PREVIEW_SIZE } else { VIEW_SIZE };
+        let (size, quality) = detail(quick);
         let mut views = Vec::with_capacity(rig.cameras.len());
         for i in (0..rig.cameras.len()).filter(shown) {
             // Full pictures give way to a newer scene. Previews do not: they are quick, and otherwise the strip would
@@ -544,7 +592,11 @@ fn strip(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
             if !quick && ctx.should_stop() {
                 return None;
             }
-            views.push(of_scene.view(i, size, quick)?);
+            let played = kept.pictures.get(&of, at, i).filter(|_| quick).cloned();
+            views.push(match played {
+                Some(view) => view,
+                None => of_scene.view(i, size, quality)?,
+            });
         }
         Some(views)
     };

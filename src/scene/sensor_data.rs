@@ -189,6 +189,11 @@ pub struct LidarSweep {
 }
 
 impl LidarSweep {
+    /// Memory that its points take, bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.points)
+    }
+
     /// Gives the points in another frame.
     pub fn place(&mut self, to_from_here: &super::Pose) {
         if *to_from_here == super::Pose::IDENTITY {

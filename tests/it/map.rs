@@ -266,6 +266,7 @@ fn the_window_is_one_part_of_a_larger_map() {
         conditions: Conditions::default(),
         detail: Detail::Full,
         paint: None,
+        cache: None,
     };
     let options = RenderOptions {
         size: [400, 225],

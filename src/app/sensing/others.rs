@@ -3,9 +3,8 @@
 use runtime::worker::Ctx;
 use scene::SceneRev;
 use sensors::cameras::{SourceId, learned};
-use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
-use super::views::Views;
+use super::views::{Views, detail};
 use super::{Haste, SensingEvent, SensingRequest, SensorCache};
 use crate::camera_views::CameraView;
 
@@ -15,17 +14,17 @@ pub(super) fn other_sources(request: &SensingRequest, kept: &mut SensorCache, ct
     let preview = *haste != Haste::Rest;
     for (id, mask) in wanted.others.iter().filter(|(id, _)| *id != learned::ID) {
         let source = sensors::cameras::source(id).unwrap_or(&sensors::cameras::shapes::ShapeMaps);
-        let mut of_scene = Views::new(source, scene, &mut kept.graphics);
+        let mut of_scene = Views::new(source, scene, &mut kept.graphics, &kept.appearance);
         let is_known = |o: &&(SceneRev, SourceId, u32, _)| (o.0, o.1, o.2) == (scene.rev, id, mask);
         let known = kept.others.iter().find(is_known).map(|(.., views)| views.clone());
         let mut render = |quick: bool| -> Option<Vec<CameraView>> {
-            let size = if quick { PREVIEW_SIZE } else { VIEW_SIZE };
+            let (size, quality) = detail(quick);
             let mut views = Vec::new();
             for i in (0..scene.rig.cameras.len().min(32)).filter(|i| mask >> i & 1 == 1) {
                 if !quick && ctx.should_stop() {
                     return None;
                 }
-                views.push(of_scene.view(i, size, quick)?);
+                views.push(of_scene.view(i, size, quality)?);
             }
             Some(views)
         };

@@ -164,19 +164,33 @@ fn a_painting_is_told_step_by_step_and_can_be_stopped() {
     );
 }
 
+/// The scene as a clip of 2 s.
+fn clip_of(mut scene: Scene) -> Scene {
+    let length = scene::Edit::SetLength {
+        length_s: 2.0,
+        rate_hz: Some(10.0),
+    };
+    editor::apply_all(&[length], &mut scene).expect("a clip");
+    scene
+}
+
 #[test]
 fn while_a_clip_plays_all_cameras_come_in_turns_and_none_of_another_scene() {
     let scene_of = |seed| {
         let world = World::random(seed);
         let occupancy = draft::draft(&world.layout, world.boxes.values());
         let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
-        Scene::single("test", frame, Arc::default(), seed)
+        clip_of(Scene::single("test", frame, Arc::default(), seed))
     };
-    let (mut first, second) = (scene_of(3), scene_of(4));
+    let (first, second) = (scene_of(3), scene_of(4));
     let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
     let start = Instant::now();
     let sense = |sensing: &mut Sensing, scene: &Scene| {
-        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), Haste::Play);
+        sensing.ask(
+            &Arc::new(scene.clone()),
+            Wanted::default(),
+            Haste::Play { every_ms: 100 },
+        );
         while !sensing.is_idle() {
             assert!(start.elapsed() < Duration::from_secs(120), "no news");
             std::thread::sleep(Duration::from_millis(2));
@@ -184,15 +198,55 @@ fn while_a_clip_plays_all_cameras_come_in_turns_and_none_of_another_scene() {
         }
         sensing.cameras().expect("pictures").clone()
     };
-    // Each moment has a new revision; after as many as there are cameras all were shown.
+    // After as many moments as there are cameras all were shown.
     let mut shown = sense(&mut sensing, &first);
-    for _ in 0..6 {
-        first.rev = SceneRev::fresh();
-        shown = sense(&mut sensing, &first);
+    for i in 1..=6 {
+        shown = sense(&mut sensing, &first.at(0.1 * f64::from(i)));
     }
     let cameras: Vec<usize> = shown.iter().map(|v| v.camera).collect();
     assert_eq!(cameras, [0, 1, 2, 3, 4, 5]);
     let others = sense(&mut sensing, &second);
     let from_before = |view: &CameraView| shown.iter().any(|v| Arc::ptr_eq(&v.picture, &view.picture));
     assert!(!others.is_empty() && !others.iter().any(from_before));
+}
+
+/// What was drawn of a moment is shown again when the clip comes back to it, and at no other moment.
+#[test]
+fn a_clip_that_plays_again_shows_the_pictures_and_sweeps_of_before() {
+    let world = World::random(3);
+    let occupancy = draft::draft(&world.layout, world.boxes.values());
+    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
+    let scene = clip_of(Scene::single("test", frame, Arc::default(), 3));
+    let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
+    let wanted = Wanted {
+        source: cameras::pictures::ID,
+        large: Some((cameras::pictures::ID, 2)),
+        ..Wanted::default()
+    };
+    let start = Instant::now();
+    let mut sense = |time_s: f64, haste: Haste| {
+        sensing.ask(&Arc::new(scene.at(time_s)), wanted, haste);
+        while !sensing.is_idle() {
+            assert!(start.elapsed() < Duration::from_secs(120), "no news");
+            std::thread::sleep(Duration::from_millis(2));
+            sensing.drain();
+        }
+        let views = sensing.cameras().expect("pictures").clone();
+        let large = views
+            .iter()
+            .find(|v| v.camera == 2)
+            .expect("the large one")
+            .clone();
+        (large, sensing.lidar().expect("a sweep").clone())
+    };
+    let plays = Haste::Play { every_ms: 100 };
+    let (first, swept) = sense(0.52, plays);
+    assert!(first.is_wide(playing::PLAYING_SIZE[0]));
+    let (later, _) = sense(0.61, plays);
+    assert!(!Arc::ptr_eq(&first.picture, &later.picture));
+    let (again, swept_again) = sense(0.48, plays);
+    assert!(Arc::ptr_eq(&first.picture, &again.picture) && Arc::ptr_eq(&swept, &swept_again));
+    // At rest the pictures are full ones.
+    let (rest, _) = sense(0.5, Haste::Rest);
+    assert!(!Arc::ptr_eq(&first.picture, &rest.picture));
 }

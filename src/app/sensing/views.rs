@@ -2,8 +2,11 @@
 
 use runtime::worker::Ctx;
 use scene::Scene;
-use sensors::cameras::{CameraSource, Card, Detail, PreparedSource, RenderContext, RenderOptions};
-use sensors::pictures::appearance::Quality;
+use sensors::cameras::{
+    CameraInput, CameraSource, Card, Detail, PreparedSource, RenderContext, RenderOptions,
+};
+use sensors::pictures::appearance::{AppearanceCache, Quality};
+use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
 use super::SensingEvent;
 use crate::camera_views::{CameraView, LARGE_SIZE, camera_input};
@@ -14,7 +17,16 @@ pub(super) struct Views<'a> {
     source: &'static dyn CameraSource,
     scene: &'a Scene,
     graphics: &'a mut Option<Option<Graphics>>,
+    cache: &'a AppearanceCache,
     ready: Option<(PreparedSource<'a>, bool)>,
+}
+
+/// Size and effort of pictures: coarse ones, or those of a scene at rest.
+pub(super) fn detail(quick: bool) -> ([u32; 2], Quality) {
+    match quick {
+        true => (PREVIEW_SIZE, Quality::Preview),
+        false => (VIEW_SIZE, Quality::Full),
+    }
 }
 
 impl<'a> Views<'a> {
@@ -22,21 +34,27 @@ impl<'a> Views<'a> {
         source: &'static dyn CameraSource,
         scene: &'a Scene,
         graphics: &'a mut Option<Option<Graphics>>,
+        cache: &'a AppearanceCache,
     ) -> Self {
         Self {
             source,
             scene,
             graphics,
+            cache,
             ready: None,
         }
     }
 
     /// The view of one camera; `None` without such a camera, or where the picture is too large for the bounds.
-    pub(super) fn view(&mut self, camera: usize, size: [u32; 2], quick: bool) -> Option<CameraView> {
-        let (scene, source) = (self.scene, self.source);
+    pub(super) fn view(&mut self, camera: usize, size: [u32; 2], quality: Quality) -> Option<CameraView> {
+        let (scene, source, cache) = (self.scene, self.source, self.cache);
         let graphics = &mut *self.graphics;
         let (ready, on_card) = self.ready.get_or_insert_with(|| {
-            let ready = PreparedSource::new(source, &camera_input(scene, Detail::Live));
+            let input = CameraInput {
+                cache: Some(cache),
+                ..camera_input(scene, Detail::Live)
+            };
+            let ready = PreparedSource::new(source, &input);
             let on_card = ready.upload_to(|| {
                 let card = graphics.get_or_insert_with(Graphics::find).as_mut();
                 card.map(|card| card as &mut dyn Card)
@@ -44,10 +62,7 @@ impl<'a> Views<'a> {
             (ready, on_card)
         });
         let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| *on_card);
-        let options = RenderOptions {
-            size,
-            quality: if quick { Quality::Preview } else { Quality::Full },
-        };
+        let options = RenderOptions { size, quality };
         let context = RenderContext {
             card: card.map(|card| card as &mut dyn Card),
             ..RenderContext::processor()
@@ -69,7 +84,7 @@ impl<'a> Views<'a> {
         if ctx.should_stop() {
             return None;
         }
-        let large = self.view(camera, LARGE_SIZE, false)?;
+        let large = self.view(camera, LARGE_SIZE, Quality::Full)?;
         let mut views = views.to_vec();
         *views.get_mut(place)? = large;
         Some(views)

@@ -9,7 +9,7 @@ use crate::recent::Recent;
 use crate::scenes::Scenes;
 use nets::lidar::LidarNet;
 use scene::{Frame, Scene, SceneRev, SensorRig};
-use sensors::pictures::appearance::Appearance;
+use sensors::pictures::appearance::{Appearance, AppearanceCache};
 
 /// How sweeps come about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,6 +28,8 @@ pub struct Renderer {
     /// The network of sweeps; none where they are exact.
     pub net: Option<Arc<LidarNet>>,
     prepared: Recent<Prepared, Arc<Appearance>>,
+    /// Parts of the moment prepared last that the next one shares.
+    cache: AppearanceCache,
 }
 
 /// Key of an appearance: all inputs that it depends on, with numbers by their bits.
@@ -54,6 +56,7 @@ impl Renderer {
             scenes: Scenes::list(paths, scenes)?,
             net,
             prepared: Recent::new(moments),
+            cache: AppearanceCache::default(),
         })
     }
 
@@ -79,11 +82,12 @@ impl Renderer {
         if let Some(ready) = self.prepared.get(&key) {
             return Ok(ready);
         }
-        let ready = Arc::new(Appearance::with_things(
+        let ready = Arc::new(Appearance::with_cache(
             &*frame()?,
             &scene.background,
             rig,
             &scene.conditions,
+            &self.cache,
         ));
         self.prepared.put(key, ready.clone());
         Ok(ready)

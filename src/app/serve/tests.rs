@@ -45,6 +45,7 @@ fn rendered(scene: &Scene, camera: usize, size: [u32; 2]) -> Vec<u8> {
         conditions: scene.conditions,
         detail: Detail::Full,
         paint: None,
+        cache: None,
     };
     let options = RenderOptions {
         size,

@@ -38,7 +38,9 @@ impl SceneloomApp {
         // Small pictures while the scene changes: large ones take as long as the generation itself.
         let changes = self.document.is_dragging() || self.generation.live.running.is_some();
         let haste = match self.state.playback.playing {
-            true => Haste::Play,
+            true => Haste::Play {
+                every_ms: self.state.playback.sensed_every_ms(),
+            },
             false if changes => Haste::Preview,
             false => Haste::Rest,
         };

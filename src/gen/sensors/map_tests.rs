@@ -83,6 +83,7 @@ fn picture(name: &str, grid: &VoxelGrid) -> CameraPicture {
         conditions: Conditions::default(),
         detail: Detail::Live,
         paint: None,
+        cache: None,
     };
     let options = RenderOptions {
         size: SIZE,

@@ -24,7 +24,7 @@ pub use view::{Knob, SourceId, SourceView, ViewId};
 
 use rayon::prelude::*;
 
-use crate::pictures::appearance::{Appearance, CameraImage, Quality};
+use crate::pictures::appearance::{Appearance, AppearanceCache, CameraImage, Quality};
 use crate::pictures::march::GroundHeight;
 use crate::pictures::painter::PaintWith;
 use crate::splat::cloud::GaussianCloud;
@@ -127,6 +127,17 @@ pub struct CameraInput<'a> {
     pub detail: Detail,
     /// Networks that paint learned pictures; the weights that ship if `None`.
     pub paint: Option<&'a PaintWith>,
+    /// Parts of the moment before that the next one shares; `None` if all are made anew.
+    pub cache: Option<&'a AppearanceCache>,
+}
+
+impl CameraInput<'_> {
+    /// The frame ready for the analytic renderer.
+    pub fn appearance(&self) -> Appearance {
+        let own = AppearanceCache::default();
+        let cache = self.cache.unwrap_or(&own);
+        Appearance::with_cache(self.frame, self.background, self.rig, &self.conditions, cache)
+    }
 }
 
 /// Options of rendering one picture.

@@ -59,12 +59,8 @@ impl CameraSource for Normals {
             seed: input.conditions.seed,
             ..Conditions::default()
         };
-        Box::new(PreparedNormals(Appearance::with_things(
-            input.frame,
-            input.background,
-            input.rig,
-            &conditions,
-        )))
+        let input = CameraInput { conditions, ..*input };
+        Box::new(PreparedNormals(input.appearance()))
     }
 }
 

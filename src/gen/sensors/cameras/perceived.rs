@@ -47,7 +47,7 @@ impl CameraSource for PerceivedClasses {
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
         Box::new(PreparedPerception {
-            appearance: Appearance::with_things(input.frame, input.background, input.rig, &input.conditions),
+            appearance: input.appearance(),
             frame: input.frame,
         })
     }

@@ -39,12 +39,7 @@ impl CameraSource for PictureSource {
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
-        Box::new(PreparedPictures(Appearance::with_things(
-            input.frame,
-            input.background,
-            input.rig,
-            &input.conditions,
-        )))
+        Box::new(PreparedPictures(input.appearance()))
     }
 }
 

@@ -48,6 +48,7 @@ fn rgba_beside(
         conditions,
         detail: Detail::Full,
         paint: None,
+        cache: None,
     };
     let options = RenderOptions {
         size: [80, 45],
@@ -73,6 +74,7 @@ fn drawn(
         conditions,
         detail: Detail::Full,
         paint: None,
+        cache: None,
     };
     let options = RenderOptions {
         size,
@@ -179,6 +181,7 @@ fn every_source_keeps_the_bounds_and_stops_when_cancelled() {
             conditions: Conditions::default(),
             detail: Detail::Live,
             paint: None,
+            cache: None,
         };
         let options = RenderOptions {
             size: [16, 9],
@@ -213,6 +216,7 @@ fn small_pictures_side_by_side_are_those_one_after_another() {
             conditions: Conditions::default(),
             detail: Detail::Full,
             paint: None,
+            cache: None,
         };
         let ready = PreparedSource::new(*source, &input);
         assert!(ready.side_by_side(&options) >= rig.cameras.len(), "{name}");

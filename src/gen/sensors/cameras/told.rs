@@ -39,7 +39,7 @@ impl CameraSource for TruthCameraSource {
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
         Box::new(PreparedSurfaceTruth {
-            appearance: Appearance::with_things(input.frame, input.background, input.rig, &input.conditions),
+            appearance: input.appearance(),
             frame: input.frame,
         })
     }

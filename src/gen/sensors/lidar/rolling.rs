@@ -20,10 +20,14 @@ const AROUND_M: f64 = scene::Lattice::OCC3D.voxel_m();
 /// The exact sweep of a scene's first LiDAR ([`lidar::rig_sweep`]) with returns on the shapes of boxes ([`onto_shapes`]), as
 /// [`sweep`] makes it; empty if the rig has none.
 pub fn exact(scene: &Scene) -> LidarSweep {
-    let scenery = SceneryShapes::of_lidars(scene);
+    exact_with(scene, SceneryShapes::of_lidars(scene, None).as_ref())
+}
+
+/// The sweep of [`exact`], with the scenery that the scene's LiDARs can reach.
+pub fn exact_with(scene: &Scene, scenery: Option<&SceneryShapes>) -> LidarSweep {
     let made: Result<_, std::convert::Infallible> = sweep(scene, |s| {
         let mut sweep = lidar::rig_sweep(&s.frame().occupancy, &s.rig).unwrap_or_default();
-        onto_shapes(&mut sweep, s.frame(), &s.rig, s.seed, scenery.as_ref());
+        onto_shapes(&mut sweep, s.frame(), &s.rig, s.seed, scenery);
         Ok(sweep)
     });
     made.unwrap_or_default()

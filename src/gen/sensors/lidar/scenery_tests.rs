@@ -62,7 +62,7 @@ fn returns_lie_on_the_walls_and_not_on_their_voxels() {
     // Without its things a scene is swept as its voxels are.
     let mut unknown = scene.clone();
     unknown.background = Default::default();
-    assert!(SceneryShapes::of_lidars(&unknown).is_none());
+    assert!(SceneryShapes::of_lidars(&unknown, None).is_none());
     assert_eq!(
         rolling::exact(&unknown).points,
         rig_sweep(&scene.frame().occupancy, &scene.rig)

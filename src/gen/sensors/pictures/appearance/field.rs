@@ -238,16 +238,21 @@ impl OccupancyField {
         self.label[self.shape.at(x, y, z)]
     }
 
-    /// The field with the roughness of leaves where plants are; `p` is in the ego frame, `anchor` takes it to the frame
-    /// in which textures are anchored.
+    /// True if the field, with the roughness of leaves where plants are, is solid at a point `p` of the ego frame, which is `q`
+    /// in the field and whose smooth value is known. `anchor` takes it to the frame in which textures are anchored.
     #[inline]
-    fn rough(&self, p: Vec3, anchor: &impl Fn(Vec3) -> Vec3) -> f32 {
-        let q = self.to_field(p);
-        let value = self.blend(q, q.map(floor));
-        if value > 0.1 && self.label_near(q) == Class::Vegetation.id() {
-            return value + leaves(anchor(p)) * LEAVES;
+    fn is_solid_with_leaves(&self, value: f32, (p, q): (Vec3, Vec3), anchor: &impl Fn(Vec3) -> Vec3) -> bool {
+        if value <= 0.1 || self.label_near(q) != Class::Vegetation.id() {
+            return value > SURFACE;
         }
-        value
+        // Clumps alone decide for most points, whatever the leaves are there.
+        let p = anchor(p);
+        let clumps = clumps(p);
+        let [least, most] = [0.0, 1.0].map(|leaf| value + rough(clumps, leaf) * LEAVES);
+        if least > SURFACE + 1e-3 || most < SURFACE - 1e-3 {
+            return least > SURFACE;
+        }
+        value + leaves(p) * LEAVES > SURFACE
     }
 
     /// Outward normal at a surface point: the field's gradient, leaves included.
@@ -327,17 +332,17 @@ impl OccupancyField {
                     let p = o + d * k;
                     let q = self.to_field(p);
                     if q.z >= 0.0 && q.z < (NZ - 1) as f32 && mask >> (q.z as u32) & 1 == 1 {
-                        let value = |p: Vec3| {
-                            if leaves {
-                                self.rough(p, anchor)
-                            } else {
-                                let q = self.to_field(p);
-                                self.blend(q, q.map(floor))
+                        let solid = |p: Vec3| {
+                            let q = self.to_field(p);
+                            let value = self.blend(q, q.map(floor));
+                            match leaves {
+                                true => self.is_solid_with_leaves(value, (p, q), anchor),
+                                false => value > SURFACE,
                             }
                         };
-                        if self.inside(q) && value(p) > SURFACE {
+                        if self.inside(q) && solid(p) {
                             return Some(self.refine(o, d, (k - step).max(0.0), k, |p| {
-                                self.inside(self.to_field(p)) && value(p) > SURFACE
+                                self.inside(self.to_field(p)) && solid(p)
                             }));
                         }
                     }
@@ -385,5 +390,16 @@ impl OccupancyField {
 /// Roughness of leaves in -0.5..0.5: clumps and leaves.
 #[inline]
 fn leaves(p: Vec3) -> f32 {
-    0.62 * value3(p * 2.6, 71) + 0.38 * value3(p * 8.5, 72) - 0.5
+    rough(clumps(p), value3(p * 8.5, 72))
+}
+
+#[inline]
+fn clumps(p: Vec3) -> f32 {
+    value3(p * 2.6, 71)
+}
+
+/// Roughness of a clump and a leaf, each in 0..1.
+#[inline]
+fn rough(clump: f32, leaf: f32) -> f32 {
+    0.62 * clump + 0.38 * leaf - 0.5
 }

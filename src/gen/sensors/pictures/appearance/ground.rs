@@ -215,7 +215,10 @@ impl SmoothGround {
         }
         let above = |t: f32| {
             let p = o + d * t;
-            p.z - self.at(p.truncate(), anchor(p).truncate()).height_m
+            match self.is_level(p.truncate()) {
+                true => p.z,
+                false => p.z - self.at(p.truncate(), anchor(p).truncate()).height_m,
+            }
         };
         // The height of a kerb cannot be seen from far away.
         let steps = ((t1 - t0) / 0.12).ceil().clamp(2.0, 14.0);

@@ -14,11 +14,14 @@ mod render;
 mod scenery;
 mod shade;
 mod sky;
+mod sparse;
+mod still;
 mod things;
 mod truth;
 
 pub use prepared::Appearance;
 pub(crate) use probe::Probe;
+pub use still::AppearanceCache;
 pub use truth::NextMoment;
 
 use glam::Vec3;
@@ -28,6 +31,8 @@ use scene::Conditions;
 /// Effort for a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Quality {
+    /// Every second pixel; those between take the mean of their neighbours where these show the same. For clips that play.
+    Play,
     /// One sample per pixel: live.
     Preview,
     /// Four samples wherever a pixel differs from its neighbours.
@@ -55,6 +60,8 @@ pub fn light_direction(conditions: &Conditions) -> Vec3 {
 
 #[cfg(test)]
 mod looks_tests;
+#[cfg(test)]
+mod still_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::noise::{hash3, ramp, unit, unit3};
 use super::prepared::Appearance;
 use super::shade::{ShadedSample, VisibleSurface};
+use super::sparse;
 use super::truth::{NextMoment, Teller, usable};
 use super::{CameraImage, Quality};
 use crate::raycast::rays::{CameraRay, CameraRays};
@@ -84,9 +85,14 @@ impl Appearance {
         };
         let (teller, told) = truth.unzip();
         let told = told.unwrap_or_default();
+        // The truth is told for every pixel.
+        let sparse = quality == Quality::Play && teller.is_none();
         let mut samples = vec![ShadedSample::default(); w * h];
         let row_of = |y: usize, row: &mut [ShadedSample], mut told: Option<&mut [TruthPixel]>| {
             for (x, out) in row.iter_mut().enumerate() {
+                if sparse && sparse::is_between(x, y) {
+                    continue;
+                }
                 let uv = (x as f64 + 0.5, y as f64 + 0.5);
                 let Some((sample, seen, ray)) = at(uv.0, uv.1) else {
                     continue;
@@ -100,13 +106,17 @@ impl Appearance {
         if !samples.is_empty() {
             each_row(w, &mut samples, &mut *told, row_of);
         }
+        if sparse {
+            let sample = |x: usize, y: usize| at(x as f64 + 0.5, y as f64 + 0.5).map(|(sample, ..)| sample);
+            sparse::fill(&mut samples, w, |c| self.tone(c), sample);
+        }
         let mut light: Vec<Vec3> = samples.iter().map(|s| s.color).collect();
         if quality == Quality::Full && w > 1 && h > 1 {
             // Clamped, so that a single spark does not fill a pixel with steps.
             let limit = Vec3::splat(5.0 / self.air.exposure);
             let rough = |x: usize, y: usize| {
                 let s = &samples[y * w + x];
-                let tone = |c: Vec3| (c.element_sum() * self.air.exposure).sqrt();
+                let tone = |c: Vec3| self.tone(c);
                 let near = [
                     (x.wrapping_sub(1), y),
                     (x + 1, y),
@@ -144,6 +154,11 @@ impl Appearance {
             each_row(w, &mut light, &mut *told, row_of);
         }
         light
+    }
+
+    /// Brightness as it is seen, for comparing pixels.
+    fn tone(&self, c: Vec3) -> f32 {
+        (c.element_sum() * self.air.exposure).sqrt()
     }
 
     /// The picture of light that was computed elsewhere, `width * height` linear colours: glare, exposure, tone.

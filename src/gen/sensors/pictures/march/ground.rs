@@ -138,6 +138,12 @@ impl GroundHeightField {
         })
     }
 
+    /// True if [`Self::at`] gives the same everywhere.
+    pub fn is_as(&self, other: &Self) -> bool {
+        let bits = |of: &Self| of.top.iter().map(|top| top.to_bits()).collect::<Vec<_>>();
+        self.extent == other.extent && self.class == other.class && bits(self) == bits(other)
+    }
+
     /// Marks a column whose ground an object hid, for [`Self::fill_wanted`].
     pub fn want(&mut self, x: usize, y: usize) {
         if let Some(wanted) = self.wanted.get_mut(self.extent.index(x, y)) {

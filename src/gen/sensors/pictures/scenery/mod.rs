@@ -5,6 +5,7 @@ mod cut;
 mod shapes;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -34,17 +35,30 @@ pub struct SceneryInput<'a> {
 pub struct ShownThing {
     /// The thing.
     pub thing: Thing,
-    columns: ColumnLabels,
+    columns: Arc<ColumnLabels>,
     cuts: Option<Vec<Cut>>,
 }
 
 /// The scenery of a map beside its voxels.
 pub struct ShownScenery {
-    extent: Extent,
+    layout: BevLayout,
+    occupancy: VoxelGrid,
+    painted: VoxelPaint,
+    inferred: bool,
     things: Vec<ShownThing>,
 }
 
 impl ShownThing {
+    /// True if its solids stand for all of its voxels.
+    pub fn is_whole(&self) -> bool {
+        self.cuts.as_ref().is_some_and(Vec::is_empty)
+    }
+
+    /// True if its solids stand for its voxels but those around a cut.
+    pub fn is_cut(&self) -> bool {
+        self.cuts.as_ref().is_some_and(|cuts| !cuts.is_empty())
+    }
+
     /// Upright boxes in which its voxels stay, lower and upper corner in m; empty if its solids stand for all of it, `None`
     /// if they stand for nothing.
     pub fn cuts_m(&self, extent: Extent) -> Option<Vec<[DVec3; 2]>> {
@@ -65,32 +79,65 @@ impl ShownThing {
 }
 
 impl ShownScenery {
-    /// Compares the things that are made by people and carry no traffic with the voxels of a map.
-    pub fn new(input: SceneryInput<'_>) -> Self {
+    /// Compares the things that are made by people and carry no traffic with the voxels of a map. What is the same as in
+    /// `before` is taken from there.
+    pub fn new(input: SceneryInput<'_>, before: Option<&Self>) -> Self {
         let extent = input.layout.extent();
+        let before = before.filter(|b| b.layout == *input.layout && b.inferred == input.inferred);
         let things = in_extent(extent, input.background.iter().filter(|t| is_solid(&t.form)));
         let compare = |thing: Thing| {
-            let columns = thing.columns(input.layout);
+            let known = before.and_then(|b| Some(&b.things[b.place(&thing)?]));
+            let columns = known.map_or_else(|| Arc::new(thing.columns(input.layout)), |s| s.columns.clone());
+            if let (Some(before), Some(known)) = (before, known)
+                && before.held_the_same(&columns, input)
+            {
+                let cuts = known.cuts.clone();
+                return ShownThing { thing, columns, cuts };
+            }
             let missing = Missing::new(&columns, input.occupancy, input.painted);
             let cuts = missing.cuts(extent.shape());
             let cuts = cuts.filter(|_| !input.inferred || missing.explains(input.occupancy));
             ShownThing { thing, columns, cuts }
         };
         Self {
-            extent,
+            layout: input.layout.clone(),
+            occupancy: input.occupancy.clone(),
+            painted: input.painted.clone(),
+            inferred: input.inferred,
             things: things.into_par_iter().map(compare).collect(),
         }
     }
 
+    /// Place of the same thing among these.
+    fn place(&self, thing: &Thing) -> Option<usize> {
+        let at = self.things.binary_search_by_key(&thing.id, |s| s.thing.id).ok()?;
+        (self.things[at].thing == *thing).then_some(at)
+    }
+
+    /// True if what decides the cuts of a thing with these columns was the same.
+    fn held_the_same(&self, columns: &ColumnLabels, input: SceneryInput<'_>) -> bool {
+        let same = |[x, y]: &[usize; 2]| {
+            self.occupancy.column(*x, *y) == input.occupancy.column(*x, *y)
+                && self.painted.column(*x, *y) == input.painted.column(*x, *y)
+        };
+        // An inferred thing is also compared with what stands beside it.
+        !input.inferred && columns.keys().all(same)
+    }
+
     /// Those alone whose solids stand for all of their voxels.
     pub fn of_whole_things(mut self) -> Self {
-        let whole = |shown: &ShownThing| shown.cuts.as_ref().is_some_and(Vec::is_empty);
         // The others still keep their own voxels.
         self.things
             .iter_mut()
-            .filter(|s| !whole(s))
+            .filter(|s| !s.is_whole())
             .for_each(|s| s.cuts = None);
         self
+    }
+
+    /// Place among these of a thing that is shown in the same way.
+    pub fn place_of_same(&self, shown: &ShownThing) -> Option<usize> {
+        let at = self.place(&shown.thing)?;
+        (self.things[at].cuts == shown.cuts).then_some(at)
     }
 
     /// All of them.
@@ -101,10 +148,10 @@ impl ShownScenery {
     /// Voxels that solids stand for, a bit for each bin, by the index of their column: those of the things, and strays of their
     /// class within a voxel of them, but nothing that was painted, belongs to another thing or lies around a cut.
     pub fn stood_for(&self, occupancy: &VoxelGrid, painted: &VoxelPaint) -> HashMap<usize, u64> {
-        let extent = self.extent;
+        let extent = self.layout.extent();
         let mut masks: HashMap<usize, ColumnMask> = HashMap::new();
         for ShownThing { columns, cuts, .. } in &self.things {
-            for ([x, y], labels) in columns {
+            for ([x, y], labels) in columns.iter() {
                 let bits = |keep: &dyn Fn(usize) -> bool| {
                     let bins = (0..labels.len()).filter(|z| labels[*z] != Class::FREE && keep(*z));
                     bins.fold(0u64, |mask, z| mask | 1 << z)

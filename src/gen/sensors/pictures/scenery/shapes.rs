@@ -19,32 +19,30 @@ pub struct SceneryShapes {
     /// Ground below which labels go down to theirs.
     relief: Relief,
     solids: SolidIndex,
+    shown: ShownScenery,
 }
 
 impl SceneryShapes {
     /// The scenery that the LiDARs of a scene's rig can reach, which stands in the frame's coordinates; `None` if there is
-    /// none that can stand for its voxels.
-    pub fn of_lidars(scene: &Scene) -> Option<Self> {
+    /// none that can stand for its voxels. What is the same as in `before` is taken from there.
+    pub fn of_lidars(scene: &Scene, before: Option<&Self>) -> Option<Self> {
         let lidars = scene.rig.lidars.iter();
         let reach = lidars.map(|l| (l.ego_from_sensor().translation_m, l.max_range_m));
-        Self::within(scene.frame(), &scene.background, &reach.collect::<Vec<_>>())
+        let near = within(&scene.background, &reach.collect::<Vec<_>>());
+        Self::again(scene.frame(), &near, before)
     }
 
     /// The scenery of a frame within some distances of some places, m.
     pub fn within(frame: &Frame, background: &Background, reach: &[(DVec3, f64)]) -> Option<Self> {
-        let is_near = |thing: &&Thing| {
-            let (low, high) = thing.form.bounds_m();
-            let near = |(at, reach_m): &(DVec3, f64)| {
-                let at = at.truncate();
-                at.clamp(low, high).distance(at) <= reach_m + MOVES_M
-            };
-            reach.iter().any(near)
-        };
-        Self::new(frame, &background.iter().filter(is_near).cloned().collect())
+        Self::new(frame, &within(background, reach))
     }
 
     /// The scenery of a frame; `None` if nothing can stand for its voxels. Things of which something was cut out stay voxels.
     pub fn new(frame: &Frame, background: &Background) -> Option<Self> {
+        Self::again(frame, background, None)
+    }
+
+    fn again(frame: &Frame, background: &Background, before: Option<&Self>) -> Option<Self> {
         let (layout, extent) = (&frame.layout, frame.extent());
         let input = SceneryInput {
             background,
@@ -53,7 +51,7 @@ impl SceneryShapes {
             layout,
             inferred: frame.inferred.background,
         };
-        let shown = ShownScenery::new(input).of_whole_things();
+        let shown = ShownScenery::new(input, before.map(|b| &b.shown)).of_whole_things();
         let whole = || {
             shown
                 .things()
@@ -74,6 +72,7 @@ impl SceneryShapes {
             stood_for: shown.stood_for(&frame.occupancy, &frame.painted),
             relief: layout.relief.clone(),
             solids: SolidIndex::of_groups(extent, groups),
+            shown,
         })
     }
 
@@ -98,4 +97,17 @@ impl SceneryShapes {
     pub(crate) fn cast(&self, origin: DVec3, direction: DVec3, limit_m: f64) -> Option<SolidHit<'_>> {
         self.solids.cast(origin, direction, limit_m)
     }
+}
+
+/// The things within some distances of some places, m.
+fn within(background: &Background, reach: &[(DVec3, f64)]) -> Background {
+    let is_near = |thing: &&Thing| {
+        let (low, high) = thing.form.bounds_m();
+        let near = |(at, reach_m): &(DVec3, f64)| {
+            let at = at.truncate();
+            at.clamp(low, high).distance(at) <= reach_m + MOVES_M
+        };
+        reach.iter().any(near)
+    };
+    background.iter().filter(is_near).cloned().collect()
 }

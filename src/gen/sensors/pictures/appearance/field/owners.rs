@@ -17,7 +17,7 @@ const MARGIN_M: f64 = Lattice::OCC3D.voxel_m();
 const BARE_WALL: u32 = 20;
 
 /// Look of a thing of man-made voxels.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColumnOwner {
     /// See [`Thing::look`].
     pub look: u32,
@@ -26,7 +26,7 @@ pub struct ColumnOwner {
 }
 
 /// Properties of a thing's form that decide how it looks.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnForm {
     /// Direction of its walls, a unit vector; directions at right angles count alike.
     pub axis: Vec2,
@@ -39,7 +39,7 @@ pub struct OwnForm {
 }
 
 /// Things and the columns that they own.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Owners {
     /// Owners in the order of their ids.
     pub all: Vec<ColumnOwner>,
