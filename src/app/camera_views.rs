@@ -7,7 +7,7 @@ use egui::{Color32, ColorImage};
 
 use language::t;
 use scene::{RadarReturn, Scene};
-use sensors::cameras::{self, CameraInput, CameraSource, Detail, SourceId, ViewId};
+use sensors::cameras::{self, CameraInput, CameraSource, Detail, SourceId, SourceView, ViewId};
 use sensors::pictures::march::MarchScene;
 use sensors::pictures::painter::PaintInput;
 use viewport::LidarColorMode;
@@ -33,6 +33,15 @@ pub struct CamerasShown {
     pub enlarged: Option<usize>,
     /// Settings of panes of single cameras, by the index of the pane.
     pub own: BTreeMap<u8, OwnCamera>,
+    /// True if learned pictures are offered among the views.
+    pub offers_learned: bool,
+}
+
+/// The views that menus offer, with or without learned pictures, and always the `chosen` one.
+pub fn offered_views(learned: bool, chosen: ViewId) -> Vec<SourceView> {
+    let mut views = cameras::views();
+    views.retain(|view| learned || view.id == chosen || view.id != cameras::learned::VIEW.id);
+    views
 }
 
 /// Settings of the pane of one camera, where they differ from the strip's.
@@ -59,6 +68,7 @@ impl Default for CamerasShown {
             hidden: 0,
             enlarged: None,
             own: BTreeMap::new(),
+            offers_learned: false,
         }
     }
 }

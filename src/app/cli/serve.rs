@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::CommandResult;
 #[cfg(feature = "serve")]
-use ::serve::{Options, Server, ServerLidarModel};
+use ::serve::{Options, Quality, Server, ServerLidarModel};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -28,6 +28,10 @@ pub struct Serve {
     /// How LiDAR sweeps come about.
     #[arg(long, value_name = "MODEL", value_parser = ["learned", "exact"], default_value = "learned")]
     lidar: String,
+    /// Effort for pictures: full as `render` makes them, preview without smoothed edges, or play, which takes most pixels between
+    /// two that show the same from these.
+    #[arg(long, value_name = "EFFORT", value_parser = ["full", "preview", "play"], default_value = "full")]
+    pictures: String,
 }
 
 impl Serve {
@@ -41,6 +45,7 @@ impl Serve {
             waiting: _,
             keep: _,
             lidar: _,
+            pictures: _,
         } = self;
         Err(anyhow::anyhow!(
             "the renderer for simulators is not in this program; build it with cargo build --release --features serve"
@@ -58,6 +63,11 @@ impl Serve {
             lidar: match self.lidar.as_str() {
                 "exact" => ServerLidarModel::Exact,
                 _ => ServerLidarModel::Learned,
+            },
+            quality: match self.pictures.as_str() {
+                "play" => Quality::Play,
+                "preview" => Quality::Preview,
+                _ => Quality::Full,
             },
             ..Options::new(self.scenes)
         })?;

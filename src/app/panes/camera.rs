@@ -11,6 +11,7 @@ use super::conditions::conditions;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::camera_views::camera_label;
+use crate::camera_views::offered_views;
 use crate::command::{Command, FileCommand};
 use language::{t, tf};
 use sensors::cameras;
@@ -72,7 +73,11 @@ impl Pane for Camera {
         let rig = &cx.scene.rig;
         let count = rig.cameras.len();
         let (camera, view) = cx.state.cameras.of_pane(self.index, count);
-        let views = cameras::views();
+        let chosen = cx.state.cameras.own.get(&self.index).and_then(|own| own.view);
+        let views = offered_views(
+            cx.state.cameras.offers_learned,
+            chosen.unwrap_or(cx.state.cameras.view),
+        );
         let strip = cx.state.cameras.view;
         let own = cx.state.cameras.own.entry(self.index).or_default();
         let title = |id| views.iter().find(|v| v.id == id).map_or("", |v| v.title);

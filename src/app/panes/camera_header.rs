@@ -3,6 +3,7 @@
 use egui::Ui;
 
 use crate::camera_views::CamerasShown;
+use crate::camera_views::offered_views;
 use crate::command::{Command, ViewCommand, Window};
 use crate::sensing::PaintStage;
 use language::{t, tf};
@@ -115,7 +116,7 @@ pub fn header(
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
-        let views = cameras::views();
+        let views = offered_views(shown.offers_learned, shown.view);
         let choices: Vec<_> = views.iter().map(|v| (v.id, t(v.title), t(v.hint))).collect();
         let sources = cameras::sources_of(shown.view);
         let lit = shown.shown_source().about().needs.conditions;

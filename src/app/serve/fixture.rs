@@ -9,6 +9,7 @@ use crate::renderer::{Renderer, ServerLidarModel};
 use crate::wire::{ImageFormat, PosePair, RgbRenderRequest};
 use editor::{Apply, Edit};
 use scene::{Class, Frame, Pose, Scene, SensorRig, Template, draft};
+use sensors::pictures::appearance::Quality;
 use world::{template, traffic};
 
 /// A junction where nothing moves.
@@ -55,7 +56,7 @@ pub fn write(folder: &Path) {
 
 /// A renderer of a folder.
 pub fn renderer(folder: &Path, lidar: ServerLidarModel) -> Renderer {
-    Renderer::new(&[folder.to_owned()], 2, 2, lidar).expect("scenes")
+    Renderer::new(&[folder.to_owned()], 2, 2, (lidar, Quality::Full)).expect("scenes")
 }
 
 /// One pose for a whole frame.

@@ -34,4 +34,5 @@ mod tests;
 pub mod wire;
 
 pub use renderer::ServerLidarModel;
+pub use sensors::pictures::appearance::Quality;
 pub use server::{Options, Server};

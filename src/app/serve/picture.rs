@@ -14,7 +14,6 @@ use crate::renderer::Renderer;
 use crate::wire::{CameraSpec, RgbRenderRequest, RgbRenderReturn};
 use scene::rig::Carried;
 use scene::{Camera, Pose, Scene, SensorRig, Shutter};
-use sensors::pictures::appearance::Quality;
 
 /// The size that a request asks for, width and height: its own, or that of its lens where it tells none. Errors if there is none,
 /// or the picture would be too large.
@@ -64,7 +63,7 @@ pub fn render(renderer: &Renderer, request: &RgbRenderRequest) -> Result<RgbRend
     let view = asked.view(&scene, spec, size)?;
     let frame = || moment::frame(&scene, &asked.span, view.share, &asked.placed);
     let ready = renderer.appearance(&scene, asked.moment(&view), &view.rig, frame)?;
-    let image = ready.render(&view.camera, size[0], size[1], Quality::Full);
+    let image = ready.render(&view.camera, size[0], size[1], renderer.quality);
     let image_bytes = encode::pack(size, image.rgba, packing)?;
     Ok(RgbRenderReturn { image_bytes })
 }

@@ -9,7 +9,7 @@ use crate::recent::Recent;
 use crate::scenes::Scenes;
 use nets::lidar::LidarNet;
 use scene::{Frame, Scene, SceneRev, SensorRig};
-use sensors::pictures::appearance::{Appearance, AppearanceCache};
+use sensors::pictures::appearance::{Appearance, AppearanceCache, Quality};
 
 /// How sweeps come about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,6 +27,8 @@ pub struct Renderer {
     pub scenes: Scenes,
     /// The network of sweeps; none where they are exact.
     pub net: Option<Arc<LidarNet>>,
+    /// Effort for pictures.
+    pub quality: Quality,
     prepared: Recent<Prepared, Arc<Appearance>>,
     /// Parts of the moment prepared last that the next one shares.
     cache: AppearanceCache,
@@ -46,7 +48,7 @@ impl Renderer {
         paths: &[PathBuf],
         scenes: usize,
         moments: usize,
-        lidar: ServerLidarModel,
+        (lidar, quality): (ServerLidarModel, Quality),
     ) -> anyhow::Result<Self> {
         let net = match lidar {
             ServerLidarModel::Learned => Some(LidarNet::bundled().context("the LiDAR network")?),
@@ -55,6 +57,7 @@ impl Renderer {
         Ok(Self {
             scenes: Scenes::list(paths, scenes)?,
             net,
+            quality,
             prepared: Recent::new(moments),
             cache: AppearanceCache::default(),
         })

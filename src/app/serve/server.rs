@@ -19,6 +19,7 @@ use crate::gate::Gate;
 use crate::limits::{CALLERS, MOST_STREAMS};
 use crate::renderer::{Renderer, ServerLidarModel};
 use crate::service::Service;
+use sensors::pictures::appearance::Quality;
 
 /// A client that does not answer a ping for so long is gone.
 const PING_EVERY: Duration = Duration::from_secs(30);
@@ -41,10 +42,12 @@ pub struct Options {
     pub kept: usize,
     /// How sweeps come about.
     pub lidar: ServerLidarModel,
+    /// Effort for pictures.
+    pub quality: Quality,
 }
 
 impl Options {
-    /// Two jobs, 64 that wait, 4 scenes, learned sweeps, on the port that AlpaSim's runtime asks first.
+    /// Two jobs, 64 that wait, 4 scenes, learned sweeps, full pictures, on the port that AlpaSim's runtime asks first.
     pub fn new(scenes: Vec<PathBuf>) -> Self {
         Self {
             scenes,
@@ -53,6 +56,7 @@ impl Options {
             waiting: 64,
             kept: 4,
             lidar: ServerLidarModel::default(),
+            quality: Quality::Full,
         }
     }
 }
@@ -70,7 +74,12 @@ impl Server {
     pub fn bind(options: Options) -> anyhow::Result<Self> {
         let jobs = options.jobs.max(1);
         // One prepared moment per job: the cameras of a session ask for the same one after another.
-        let renderer = Renderer::new(&options.scenes, options.kept, jobs, options.lidar)?;
+        let renderer = Renderer::new(
+            &options.scenes,
+            options.kept,
+            jobs,
+            (options.lidar, options.quality),
+        )?;
         let scenes = renderer.scenes.len();
         Ok(Self {
             listener: callers::listen(options.listen)

@@ -334,6 +334,7 @@ impl SceneloomApp {
 
     /// Applies changed settings, and writes them within two seconds.
     fn keep_settings(&mut self, ctx: &egui::Context) {
+        self.state.cameras.offers_learned = self.preferences.settings.learned_pictures;
         if self.preferences.looks_changed() {
             theme::apply(ctx, self.preferences.settings.theme);
             language::choose(&self.preferences.settings.language);

@@ -54,6 +54,8 @@ pub struct Settings {
     pub brushes: Vec<SavedBrush>,
     /// Prompts that the user keeps, the newest first.
     pub kept_words: Vec<String>,
+    /// True if learned camera pictures, an experiment, are offered among the views.
+    pub learned_pictures: bool,
     /// How learned camera pictures are painted.
     pub painting: PaintWish,
     /// Limit of the history's memory, MB.
@@ -84,6 +86,7 @@ impl Default for Settings {
             bookmarks: BTreeMap::new(),
             brushes: Vec::new(),
             kept_words: Vec::new(),
+            learned_pictures: false,
             painting: PaintWish::default(),
             history_mb: (Document::LIMIT_BYTES >> 20) as u32,
             assistants: false,

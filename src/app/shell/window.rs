@@ -255,6 +255,7 @@ impl SceneloomApp {
             keymap: &self.preferences.keymap,
             recent: &self.preferences.settings.recent,
             scene,
+            learned: self.preferences.settings.learned_pictures,
         };
         self.overlays.palette.show(ui, &known, commands);
         self.overlays
@@ -266,7 +267,8 @@ impl SceneloomApp {
             guests: &self.guests,
         };
         settings_ui(ui, choices, &mut self.state.windows, commands);
-        capture_ui(ui, &mut self.state.windows.capture, scene, commands);
+        let learned = self.preferences.settings.learned_pictures;
+        capture_ui(ui, &mut self.state.windows.capture, (scene, learned), commands);
         start_ui(
             ui,
             &mut self.preferences.settings,

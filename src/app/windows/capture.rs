@@ -3,11 +3,11 @@
 use egui::{DragValue, Ui, Window};
 
 use crate::camera_views::camera_label;
+use crate::camera_views::offered_views;
 use crate::capture::{CaptureOptions, Subject};
 use crate::command::{Command, FileCommand};
 use language::{t, tf};
 use scene::{Camera, Scene};
-use sensors::cameras;
 use widgets::icons::section;
 use widgets::theme;
 
@@ -79,7 +79,12 @@ const CAMERA_SIZES: [(&str, [u32; 2]); 3] = [
 const MOST_PX: u32 = 16_384;
 
 /// Draws the dialog while it is open.
-pub fn capture_ui(ui: &Ui, dialog: &mut CaptureDialog, scene: &Scene, commands: &mut Vec<Command>) {
+pub fn capture_ui(
+    ui: &Ui,
+    dialog: &mut CaptureDialog,
+    (scene, learned): (&Scene, bool),
+    commands: &mut Vec<Command>,
+) {
     if !dialog.open {
         return;
     }
@@ -92,7 +97,7 @@ pub fn capture_ui(ui: &Ui, dialog: &mut CaptureDialog, scene: &Scene, commands: 
         .default_pos(ui.max_rect().center() - egui::vec2(210.0, 200.0))
         .show(ui.ctx(), |ui| {
             ui.set_width(420.0);
-            subject(ui, dialog, scene);
+            subject(ui, dialog, (scene, learned));
             section(ui, t("Size"));
             sizes(ui, dialog);
             if !dialog.is_clip() {
@@ -119,7 +124,7 @@ pub fn capture_ui(ui: &Ui, dialog: &mut CaptureDialog, scene: &Scene, commands: 
     dialog.open &= open;
 }
 
-fn subject(ui: &mut Ui, dialog: &mut CaptureDialog, scene: &Scene) {
+fn subject(ui: &mut Ui, dialog: &mut CaptureDialog, (scene, learned): (&Scene, bool)) {
     let options = &mut dialog.options;
     ui.horizontal_wrapped(|ui| {
         for (subject, _, title) in Subject::ALL {
@@ -144,7 +149,7 @@ fn subject(ui: &mut Ui, dialog: &mut CaptureDialog, scene: &Scene) {
         Subject::Cameras => {
             ui.horizontal(|ui| {
                 ui.label(t("Showing"));
-                for view in cameras::views() {
+                for view in offered_views(learned, options.view) {
                     ui.selectable_value(&mut options.view, view.id, t(view.title))
                         .on_hover_text(t(view.hint));
                 }

@@ -213,6 +213,7 @@ mod tests {
             keymap: &keymap,
             recent: &[],
             scene: &scene,
+            learned: false,
         };
         let first = |query: &str| matching(items(&known), query).remove(0).title;
         assert_eq!(first("undo"), "Undo");

@@ -62,6 +62,13 @@ pub fn settings_ui(ui: &Ui, choices: Choices<'_>, windows: &mut OpenWindows, com
                 section(ui, t("Work"));
                 work(ui, settings, keymap, windows);
                 section(ui, t("Learned pictures"));
+                ui.checkbox(
+                    &mut settings.learned_pictures,
+                    t("Offer them among the views, as an experiment"),
+                )
+                .on_hover_text(t(
+                    "A network paints what the cameras see. The exact pictures look better",
+                ));
                 painting(ui, &mut settings.painting, commands);
                 section(ui, t("First minutes"));
                 rows(ui, "first minutes", |ui| {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Does, Item};
+use crate::camera_views::offered_views;
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::panes::{self, conditions};
 use crate::shell::actions::ACTIONS;
@@ -14,7 +15,7 @@ use crate::tools::things::{ThingCommand, ThingKind};
 use language::{filled, t};
 use scene::background::{LineKind, PostKind};
 use scene::{Class, Scene, TimeOfDay, Weather};
-use sensors::cameras;
+use sensors::cameras::ViewId;
 use world::template::TEMPLATES;
 
 /// Most objects that are listed.
@@ -39,6 +40,8 @@ pub struct Known<'a> {
     pub recent: &'a [PathBuf],
     /// The open scene.
     pub scene: &'a Scene,
+    /// True if learned pictures are offered.
+    pub learned: bool,
 }
 
 /// A title in English, and in the language of the interface.
@@ -120,7 +123,7 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
         let command = conditions::becomes(scene, time, scene.conditions.weather);
         add(titled("Time of day: {name}", time.name()), CONDITIONS, command);
     }
-    for view in cameras::views() {
+    for view in offered_views(known.learned, ViewId::default()) {
         let names = inside(view.title);
         let title = titled_as("Cameras: {name}", names.each_ref().map(String::as_str));
         add(title, "view", Command::View(ViewCommand::Cameras(view.id)));
