@@ -2,6 +2,7 @@
 //! steps of a voxel, with heights, without holes, and without an end at the border of the grid.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
@@ -16,6 +17,8 @@ const BLURS: usize = 3;
 
 /// Shares of road, sidewalk, other flat ground and terrain, `[x][y]`, each 0..1, adding up to 1.
 pub struct SmoothGround {
+    /// Kind of ground of each column: place in the shares.
+    kind: Vec<usize>,
     /// Lower corner, m.
     low: Vec2,
     /// Columns along x and along y, and the same as numbers.
@@ -52,8 +55,8 @@ fn slot(class: u8) -> usize {
 
 impl SmoothGround {
     /// Builds the ground from its labels. A column without one takes the layout's kind of ground, or that of the
-    /// nearest column.
-    pub fn new(columns: &Columns, layout: &BevLayout) -> Self {
+    /// nearest column. If these are those of `before`, of the same layout, that is the ground.
+    pub fn new(columns: &Columns, layout: &BevLayout, before: Option<&Arc<Self>>) -> Arc<Self> {
         let extent = layout.extent();
         let (n, [nx, ny]) = (extent.columns(), [extent.nx(), extent.ny()]);
         let mut kind: Vec<Option<usize>> = (0..n)
@@ -82,14 +85,12 @@ impl SmoothGround {
                 }
             }
         }
-        let mut share: Vec<[f32; 4]> = kind
-            .iter()
-            .map(|k| {
-                let mut one = [0.0; 4];
-                one[k.unwrap_or(3)] = 1.0;
-                one
-            })
-            .collect();
+        let kind: Vec<usize> = kind.into_iter().map(|k| k.unwrap_or(3)).collect();
+        if let Some(same) = before.filter(|before| before.kind == kind) {
+            return same.clone();
+        }
+        let one = |k: usize| std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
+        let mut share: Vec<[f32; 4]> = kind.iter().map(|k| one(*k)).collect();
         for _ in 0..BLURS {
             for axis in 0..2 {
                 share = blurred(extent, &share, axis);
@@ -102,7 +103,8 @@ impl SmoothGround {
                 near(x, nx).all(|x| near(y, ny).all(|y| share[extent.index(x, y)][0] > 0.99))
             })
             .collect();
-        Self {
+        Arc::new(Self {
+            kind,
             low: extent.min_m().truncate().as_vec2(),
             size: [nx, ny],
             size_f: Vec2::new(nx as f32, ny as f32),
@@ -110,7 +112,7 @@ impl SmoothGround {
             share,
             level,
             relief: GroundRelief::new(layout),
-        }
+        })
     }
 
     /// Height of the ground below its kerbs, m.

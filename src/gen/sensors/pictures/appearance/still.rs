@@ -6,9 +6,9 @@ use super::field::OccupancyField;
 use super::field::owners::Owners;
 use super::ground::SmoothGround;
 use super::scenery::DrawnScenery;
-use crate::pictures::march::ground::GroundHeightField;
+use crate::pictures::march::ground::SplitGrid;
 use crate::pictures::march::paint::RoadMarkings;
-use crate::pictures::march::{GroundHeight, ground, remove_voxels};
+use crate::pictures::march::{GroundHeight, remove_voxels};
 use crate::pictures::scenery::SceneryInput;
 use scene::appearance::FieldShape;
 use scene::{Background, BevLayout, Extent, Frame, VoxelGrid};
@@ -51,12 +51,11 @@ impl AppearanceCache {
 /// Everything but the boxes, and what it was made of.
 pub(super) struct StillParts {
     seed: u32,
+    split: SplitGrid,
     layout: BevLayout,
     /// Voxels that the field shows.
     standing: VoxelGrid,
     owners: Owners,
-    /// Labels of the ground.
-    columns: GroundHeightField,
     /// Scenery beside the field.
     pub scenery: DrawnScenery,
     /// The voxels.
@@ -75,7 +74,8 @@ impl StillParts {
         before: Option<&Self>,
     ) -> Self {
         let (occupancy, layout) = (frame.occupancy.crop(extent), frame.layout.crop(extent));
-        let (mut standing, mut columns) = ground::split(&occupancy, GroundHeight::Physical);
+        let split = SplitGrid::new(&occupancy, before.map(|b| &b.split));
+        let (mut standing, mut columns) = (split.standing.clone(), split.ground.clone());
         for b in frame.boxes.values() {
             remove_voxels(&mut standing, &mut columns, b, GroundHeight::Physical, STRAY_M);
         }
@@ -96,18 +96,14 @@ impl StillParts {
             || Arc::new(OccupancyField::new(&standing, &owners, seed)),
             |b| b.field.clone(),
         );
-        let same_ground = before.filter(|b| b.columns.is_as(&columns));
-        let ground = same_ground.map_or_else(
-            || Arc::new(SmoothGround::new(&columns, &layout)),
-            |b| b.ground.clone(),
-        );
+        let ground = SmoothGround::new(&columns, &layout, before.map(|b| &b.ground));
         let paint = before.map_or_else(|| Arc::new(RoadMarkings::new(&layout)), |b| b.paint.clone());
         Self {
             seed,
+            split,
             layout,
             standing,
             owners,
-            columns,
             scenery,
             field,
             ground,

@@ -51,45 +51,89 @@ fn is_ground(label: u8) -> bool {
 /// Splits a grid into the voxels that stand on the ground, and the ground. With [`GroundHeight::AsLabelled`] the ground
 /// stays among the voxels.
 pub fn split(grid: &VoxelGrid, height: GroundHeight) -> (VoxelGrid, GroundHeightField) {
-    let extent = grid.extent();
     if height == GroundHeight::AsLabelled {
         let none = GroundHeightField {
-            extent,
+            extent: grid.extent(),
             ..GroundHeightField::default()
         };
         return (grid.clone(), none);
     }
-    let mut ground = GroundHeightField {
-        extent,
-        top: vec![f64::NAN; extent.columns()],
-        class: vec![Class::FREE; extent.columns()],
-        wanted: vec![false; extent.columns()],
-        lowest: f64::INFINITY,
-        highest: f64::NEG_INFINITY,
-    };
-    let mut out = VoxelGrid::over(extent);
-    for x in 0..extent.nx() {
-        for y in 0..extent.ny() {
-            let column = grid.window_column(x, y);
-            if *column == [Class::FREE; Lattice::OCC3D.bins()] {
-                continue;
-            }
-            let mut upper = *column;
-            let mut on = 0;
-            if let Some(bin) = (0..Lattice::OCC3D.bins()).rev().find(|z| is_ground(column[*z])) {
-                ground.set(extent.index(x, y), top_of(bin), column[bin]);
-                on = bin;
-                for label in upper.iter_mut().filter(|l| is_ground(**l)) {
-                    *label = Class::FREE;
+    let split = SplitGrid::new(grid, None);
+    (split.standing, split.ground)
+}
+
+/// A grid split into what stands and the ground at its physical height.
+pub struct SplitGrid {
+    grid: VoxelGrid,
+    /// The voxels that stand on the ground.
+    pub standing: VoxelGrid,
+    /// The ground.
+    pub ground: GroundHeightField,
+}
+
+impl SplitGrid {
+    /// Splits a grid. Bricks that it shares with the grid of `before` are taken from there.
+    pub fn new(grid: &VoxelGrid, before: Option<&Self>) -> Self {
+        let extent = grid.extent();
+        let before = before.filter(|before| before.grid.extent() == extent);
+        let (mut standing, mut ground, changed) = match before {
+            Some(before) => (
+                before.standing.clone(),
+                before.ground.clone(),
+                grid.changed_bricks(&before.grid),
+            ),
+            None => (
+                VoxelGrid::over(extent),
+                GroundHeightField {
+                    extent,
+                    top: vec![f64::NAN; extent.columns()],
+                    class: vec![Class::FREE; extent.columns()],
+                    wanted: vec![false; extent.columns()],
+                    lowest: f64::INFINITY,
+                    highest: f64::NEG_INFINITY,
+                },
+                (0..grid.bricks().len()).collect(),
+            ),
+        };
+        for brick in changed {
+            let (from, size) = grid.brick_columns(brick);
+            for [x, y] in (0..size[0]).flat_map(|x| (0..size[1]).map(move |y| [from[0] + x, from[1] + y])) {
+                let (upper, bin) = split_column(grid.window_column(x, y));
+                match bin {
+                    Some(bin) => ground.set(extent.index(x, y), top_of(bin), grid.get(x, y, bin)),
+                    None => ground.clear(extent.index(x, y)),
+                }
+                if upper != *standing.window_column(x, y) {
+                    *standing.window_column_mut(x, y) = upper;
                 }
             }
-            unsmear(&mut upper, on);
-            if upper != [Class::FREE; Lattice::OCC3D.bins()] {
-                *out.window_column_mut(x, y) = upper;
-            }
+        }
+        ground.bound();
+        Self {
+            grid: grid.clone(),
+            standing,
+            ground,
         }
     }
-    (out, ground)
+}
+
+type Column = [u8; Lattice::OCC3D.bins()];
+
+/// What stands in a column, and the bin of its ground.
+fn split_column(column: &Column) -> (Column, Option<usize>) {
+    let mut upper = *column;
+    if upper == [Class::FREE; Lattice::OCC3D.bins()] {
+        return (upper, None);
+    }
+    let ground = (0..Lattice::OCC3D.bins()).rev().find(|z| is_ground(column[*z]));
+    if ground.is_some() {
+        upper
+            .iter_mut()
+            .filter(|l| is_ground(**l))
+            .for_each(|label| *label = Class::FREE);
+    }
+    unsmear(&mut upper, ground.unwrap_or(0));
+    (upper, ground)
 }
 
 /// Height of the ground labelled in `bin`, in voxel units above the grid's floor.
@@ -102,7 +146,7 @@ pub fn top_of(bin: usize) -> f64 {
 
 /// Removes the two lowest voxels of every run that hangs in the air, and the voxels below the ground, which is labelled in the
 /// bin `ground` and lies two bins higher: of what stands on it one voxel is below.
-fn unsmear(column: &mut [u8; Lattice::OCC3D.bins()], ground: usize) {
+fn unsmear(column: &mut Column, ground: usize) {
     let labels = *column;
     // A run from bin 1 stands on a pavement.
     for z in SMEAR..Lattice::OCC3D.bins() {
@@ -138,10 +182,16 @@ impl GroundHeightField {
         })
     }
 
-    /// True if [`Self::at`] gives the same everywhere.
-    pub fn is_as(&self, other: &Self) -> bool {
-        let bits = |of: &Self| of.top.iter().map(|top| top.to_bits()).collect::<Vec<_>>();
-        self.extent == other.extent && self.class == other.class && bits(self) == bits(other)
+    fn clear(&mut self, at: usize) {
+        (self.top[at], self.class[at]) = (f64::NAN, Class::FREE);
+    }
+
+    /// Finds the lowest and the highest ground.
+    fn bound(&mut self) {
+        (self.lowest, self.highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for top in self.top.iter().filter(|top| !top.is_nan()) {
+            (self.lowest, self.highest) = (self.lowest.min(*top), self.highest.max(*top));
+        }
     }
 
     /// Marks a column whose ground an object hid, for [`Self::fill_wanted`].

@@ -5,14 +5,14 @@ mod cut;
 mod shapes;
 
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use cut::{Cut, Missing};
 use scene::background::{ColumnLabels, LineKind, in_extent};
-use scene::grid::NOT_PAINTED;
+use scene::grid::{BRICK, NOT_PAINTED, bricks_along};
 use scene::{Background, BevLayout, Class, Extent, Form, Thing, VoxelGrid, VoxelPaint};
 pub use shapes::SceneryShapes;
 
@@ -46,9 +46,22 @@ pub struct ShownScenery {
     painted: VoxelPaint,
     inferred: bool,
     things: Vec<ShownThing>,
+    /// Voxels of the things, by the index of their column; made when they are first asked for.
+    masks: OnceLock<Arc<Vec<(usize, ColumnMask)>>>,
 }
 
 impl ShownThing {
+    /// True if it has columns in one of some bricks, or up to two columns beside them.
+    fn touches(&self, extent: Extent, bricks: &[bool]) -> bool {
+        let [_, along_y] = bricks_along(extent);
+        let beside = |c: usize, n: usize| [c.saturating_sub(2), c, (c + 2).min(n - 1)].map(|c| c / BRICK);
+        let holds = |[x, y]: &[usize; 2]| {
+            let (xs, ys) = (beside(*x, extent.nx()), beside(*y, extent.ny()));
+            xs.iter().any(|x| ys.iter().any(|y| bricks[x * along_y + y]))
+        };
+        self.columns.keys().any(holds)
+    }
+
     /// True if its solids stand for all of its voxels.
     pub fn is_whole(&self) -> bool {
         self.cuts.as_ref().is_some_and(Vec::is_empty)
@@ -84,12 +97,13 @@ impl ShownScenery {
     pub fn new(input: SceneryInput<'_>, before: Option<&Self>) -> Self {
         let extent = input.layout.extent();
         let before = before.filter(|b| b.layout == *input.layout && b.inferred == input.inferred);
+        let changed = before.map(|b| b.changed_bricks(input));
         let things = in_extent(extent, input.background.iter().filter(|t| is_solid(&t.form)));
         let compare = |thing: Thing| {
             let known = before.and_then(|b| Some(&b.things[b.place(&thing)?]));
             let columns = known.map_or_else(|| Arc::new(thing.columns(input.layout)), |s| s.columns.clone());
-            if let (Some(before), Some(known)) = (before, known)
-                && before.held_the_same(&columns, input)
+            if let (Some(known), Some(changed)) = (known, &changed)
+                && !known.touches(extent, changed)
             {
                 let cuts = known.cuts.clone();
                 return ShownThing { thing, columns, cuts };
@@ -99,12 +113,18 @@ impl ShownScenery {
             let cuts = cuts.filter(|_| !input.inferred || missing.explains(input.occupancy));
             ShownThing { thing, columns, cuts }
         };
+        let things: Vec<ShownThing> = things.into_par_iter().map(compare).collect();
+        let same = |a: &ShownThing, b: &ShownThing| a.thing == b.thing && a.cuts == b.cuts;
+        let all_same = before
+            .filter(|b| b.things.len() == things.len())
+            .filter(|b| b.things.iter().zip(&things).all(|(a, b)| same(a, b)));
         Self {
             layout: input.layout.clone(),
             occupancy: input.occupancy.clone(),
             painted: input.painted.clone(),
             inferred: input.inferred,
-            things: things.into_par_iter().map(compare).collect(),
+            masks: all_same.map_or_else(OnceLock::new, |b| b.masks.clone()),
+            things,
         }
     }
 
@@ -114,24 +134,19 @@ impl ShownScenery {
         (self.things[at].thing == *thing).then_some(at)
     }
 
-    /// True if what decides the cuts of a thing with these columns was the same.
-    fn held_the_same(&self, columns: &ColumnLabels, input: SceneryInput<'_>) -> bool {
-        let same = |[x, y]: &[usize; 2]| {
-            self.occupancy.column(*x, *y) == input.occupancy.column(*x, *y)
-                && self.painted.column(*x, *y) == input.painted.column(*x, *y)
-        };
-        // An inferred thing is also compared with what stands beside it.
-        !input.inferred && columns.keys().all(same)
-    }
-
-    /// Those alone whose solids stand for all of their voxels.
-    pub fn of_whole_things(mut self) -> Self {
-        // The others still keep their own voxels.
-        self.things
-            .iter_mut()
-            .filter(|s| !s.is_whole())
-            .for_each(|s| s.cuts = None);
-        self
+    /// Bricks of the map in which labels or paint are not what they were, true by index.
+    fn changed_bricks(&self, input: SceneryInput<'_>) -> Vec<bool> {
+        let mut changed = vec![false; input.occupancy.bricks().len()];
+        let differ = |b: &usize| *self.occupancy.bricks()[*b] != *input.occupancy.bricks()[*b];
+        let labels = input
+            .occupancy
+            .changed_bricks(&self.occupancy)
+            .into_iter()
+            .filter(differ);
+        for brick in labels.chain(input.painted.changed_bricks(&self.painted)) {
+            changed[brick] = true;
+        }
+        changed
     }
 
     /// Place among these of a thing that is shown in the same way.
@@ -140,14 +155,43 @@ impl ShownScenery {
         (self.things[at].cuts == shown.cuts).then_some(at)
     }
 
+    /// Those alone whose solids stand for all of their voxels.
+    pub fn of_whole_things(mut self) -> Self {
+        // The others still keep their own voxels.
+        for cut in self.things.iter_mut().filter(|s| s.is_cut()) {
+            cut.cuts = None;
+            self.masks = OnceLock::new();
+        }
+        self
+    }
+
     /// All of them.
     pub fn things(&self) -> &[ShownThing] {
         &self.things
     }
 
-    /// Voxels that solids stand for, a bit for each bin, by the index of their column: those of the things, and strays of their
-    /// class within a voxel of them, but nothing that was painted, belongs to another thing or lies around a cut.
-    pub fn stood_for(&self, occupancy: &VoxelGrid, painted: &VoxelPaint) -> HashMap<usize, u64> {
+    /// Voxels that solids stand for, a bit for each bin, beside the index of their column: those of the things, and strays of
+    /// their class within a voxel of them, but nothing that was painted, belongs to another thing or lies around a cut.
+    pub fn stood_for(&self, occupancy: &VoxelGrid, painted: &VoxelPaint) -> Vec<(usize, u64)> {
+        let extent = self.layout.extent();
+        let is_made = |label: u8| label == Class::Manmade.id() || label == Class::Others.id();
+        let goes = |(i, mask): &(usize, ColumnMask)| {
+            let [x, y] = extent.column(*i);
+            let wanted = mask.near & !mask.kept | mask.own;
+            let (held, painted) = (occupancy.column(x, y), painted.column(x, y));
+            let goes = |z: &usize| wanted >> z & 1 == 1 && is_made(held[*z]) && painted[*z] == NOT_PAINTED;
+            let bits = (0..held.len()).filter(goes).fold(0, |mask, z| mask | 1 << z);
+            (bits != 0).then_some((*i, bits))
+        };
+        self.masks
+            .get_or_init(|| Arc::new(self.masks()))
+            .iter()
+            .filter_map(goes)
+            .collect()
+    }
+
+    /// Voxels of the things, by the index of their column.
+    fn masks(&self) -> Vec<(usize, ColumnMask)> {
         let extent = self.layout.extent();
         let mut masks: HashMap<usize, ColumnMask> = HashMap::new();
         for ShownThing { columns, cuts, .. } in &self.things {
@@ -175,16 +219,9 @@ impl ShownScenery {
                 }
             }
         }
-        let is_made = |label: u8| label == Class::Manmade.id() || label == Class::Others.id();
-        let goes = |(i, mask): (usize, ColumnMask)| {
-            let [x, y] = extent.column(i);
-            let wanted = mask.near & !mask.kept | mask.own;
-            let (held, painted) = (occupancy.column(x, y), painted.column(x, y));
-            let goes = |z: &usize| wanted >> z & 1 == 1 && is_made(held[*z]) && painted[*z] == NOT_PAINTED;
-            let bits = (0..held.len()).filter(goes).fold(0, |mask, z| mask | 1 << z);
-            (bits != 0).then_some((i, bits))
-        };
-        masks.into_iter().filter_map(goes).collect()
+        let mut masks: Vec<_> = masks.into_iter().collect();
+        masks.sort_unstable_by_key(|(i, _)| *i);
+        masks
     }
 }
 

@@ -69,7 +69,10 @@ impl SceneryShapes {
         let groups = whole().map(|shown| solids(&shown.thing));
         Some(Self {
             extent,
-            stood_for: shown.stood_for(&frame.occupancy, &frame.painted),
+            stood_for: shown
+                .stood_for(&frame.occupancy, &frame.painted)
+                .into_iter()
+                .collect(),
             relief: layout.relief.clone(),
             solids: SolidIndex::of_groups(extent, groups),
             shown,

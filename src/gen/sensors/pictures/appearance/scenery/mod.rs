@@ -33,9 +33,10 @@ impl DrawnScenery {
         let goes = shown.stood_for(input.occupancy, input.painted);
         for (i, mask) in goes {
             let [x, y] = extent.column(i);
-            for z in (0..extent.nz()).filter(|z| mask >> z & 1 == 1) {
-                standing.set(x, y, z, Class::FREE);
-            }
+            let column = standing.column_mut(x, y).iter_mut().enumerate();
+            column
+                .filter(|(z, _)| mask >> z & 1 == 1)
+                .for_each(|(_, label)| *label = Class::FREE);
         }
         let ground_m = |p: DVec2| input.layout.relief.height_m(p);
         let objects = |thing: &ShownThing| -> Arc<Vec<DrawnObject>> {
