@@ -92,6 +92,8 @@ pub enum ViewCommand {
     Preset(ViewPreset),
     /// Changes the 3D view between perspective and orthographic, from the same viewpoint.
     ToggleParallel,
+    /// Shows the 3D view as voxels or as pictures.
+    ToggleLook,
     /// Looks through that camera of the rig in the 3D view.
     LookThrough(usize),
     /// Sets the view of the cameras: classes, depth, pictures.

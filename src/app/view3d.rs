@@ -8,29 +8,28 @@ use egui::{Color32, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, 
 use glam::{DVec2, DVec3};
 
 use editor::pick::{self, PickHit, PickRay};
-use editor::pick_things;
 use editor::tools::{ScreenProjection, ToolMark, ViewKind, Wants, point_of, select};
 use language::{t, tf};
-use numeric::decimal::decimal;
-use scene::{BoxId, Class, Extent, LidarSweep, Scene, SceneBox};
+use scene::{BoxId, Extent, LidarSweep, Scene, SceneBox};
 use viewport::{
-    LidarColorMode, LidarView, MarkedVoxels, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
-    lidar_colors,
+    LayoutPlane, LidarColorMode, LidarView, MarkedVoxels, ViewCamera, ViewOptions, ViewPreset, ViewScene,
+    Viewport, lidar_colors,
 };
 
-use super::canvas::label_text;
 use super::canvas_tools::{Driver, ViewContext};
 use super::command::Command;
 use super::marks::Board;
+use super::pictured::PicturedView;
 use super::pointer::{self, PointerEvent, ViewDrag};
+use super::readout::readout;
 use super::screen_map::{point, pos};
-use super::state::{UiState, called, position_text};
+use super::state::UiState;
 use super::tools::ToolState;
-use super::views_shown::ViewsShown;
+use super::views_shown::{Look, ViewsShown};
 use super::{detection_marks, fly, no_adapter, place_marks, thing_outlines, track_marks, unsettled_marks};
 use crate::panes::id::PaneId;
 use crate::shell::live::Bounds;
-use widgets::software_ui;
+use widgets::{software_ui, theme};
 
 /// Turn per point that the pointer moves, rad.
 const ORBIT_RAD: f64 = 0.006;
@@ -56,6 +55,7 @@ pub struct View3d {
     /// True if the view stays orthographic when it is turned.
     pub parallel: bool,
     gpu: Option<Gpu>,
+    pictured: PicturedView,
     held: ViewDrag,
     driver: Driver,
     /// Rectangle of the pane drawn last; tests click with it.
@@ -112,6 +112,7 @@ impl View3d {
             },
             parallel: false,
             gpu,
+            pictured: PicturedView::default(),
             held: ViewDrag::default(),
             driver: Driver::default(),
             rect: Rect::NOTHING,
@@ -413,6 +414,21 @@ impl View3d {
             Some(PickHit::Box { id, .. }) if state.tool == select::ID => Some(*id),
             _ => finding.and_then(|m| m.box_id),
         };
+        let picture = match state.shown.look {
+            Look::Voxels => None,
+            Look::Pictures => {
+                let moves = moving || input.dragging || state.playback.playing;
+                let of = (size, self.options.ego);
+                self.pictured
+                    .picture(ui.ctx(), input.scene, &self.camera, of, moves)
+            }
+        };
+        let marked = |b: &&&SceneBox| selected.contains(&b.id) || hovered == Some(b.id);
+        let boxes: Vec<&SceneBox> = match picture {
+            // Frames of all boxes would hide them.
+            Some(_) => boxes.iter().filter(marked).copied().collect(),
+            None => boxes,
+        };
         let Some(gpu) = &mut self.gpu else { return };
         let coarse = moving && (gpu.software || self.frame_s > SLOW_FRAME_S);
         let options = ViewOptions {
@@ -424,6 +440,18 @@ impl View3d {
             point_px: self.options.point_px * self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
             pixels_per_point: self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
             ..self.options.clone()
+        };
+        // Over a picture there are only marks.
+        let options = match picture {
+            Some(_) => ViewOptions {
+                voxels: false,
+                ego: false,
+                layout_plane: LayoutPlane::Off,
+                grid_lines: false,
+                background: viewport::Background::Transparent,
+                ..options
+            },
+            None => options,
         };
         let lidar = self
             .colors
@@ -451,6 +479,18 @@ impl View3d {
             software_ui::picture_changed(ui.ctx(), texture, Some(share));
         }
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        if let Some(picture) = picture {
+            ui.painter().image(picture, rect, whole, Color32::WHITE);
+        }
+        if let Some(problem) = self.pictured.problem(input.scene.rev) {
+            let text = tf!("The picture was not made: {problem}", problem = problem);
+            let (at, font) = (
+                rect.left_bottom() + egui::vec2(8.0, -8.0),
+                egui::FontId::proportional(12.0),
+            );
+            ui.painter()
+                .text(at, egui::Align2::LEFT_BOTTOM, text, font, theme::warn());
+        }
         ui.painter().image(texture, rect, whole, Color32::WHITE);
     }
 
@@ -469,6 +509,11 @@ impl View3d {
         shown: &ViewsShown,
         size: Option<[u32; 2]>,
     ) -> anyhow::Result<([u32; 2], Vec<u8>)> {
+        if let (Look::Pictures, false, None) = (shown.look, self.camera.ortho, size)
+            && let Some(image) = self.pictured.image()
+        {
+            return Ok(([image.width as u32, image.height as u32], image.rgba.clone()));
+        }
         let size = size.unwrap_or_else(|| self.size_px());
         let Some(gpu) = &mut self.gpu else {
             anyhow::bail!("there is no graphics adapter to draw the 3D view with");
@@ -560,33 +605,4 @@ fn register(gpu: &mut Gpu, samples: u32) -> egui::TextureId {
     };
     gpu.texture = Some((id, size, samples));
     id
-}
-
-fn readout(scene: &Scene, hit: &PickHit, ray: &PickRay) -> String {
-    let p = point_of(hit, ray);
-    let mut parts = vec![
-        format!("{}  z {}", position_text(p.truncate()), decimal(p.z, 1)),
-        tf!("{distance} m away", distance = format!("{:.1}", p.length())),
-    ];
-    match hit {
-        PickHit::Box { id, .. } => {
-            if let Some(b) = scene.frame().boxes.get(id) {
-                parts.push(format!("{} #{}", called(b), id.0));
-            }
-        }
-        PickHit::Voxel(v) => {
-            parts.push(Class::from_id(v.label).map_or_else(String::new, |c| label_text(scene, c, v.cell)));
-            let thing = pick_things::thing_of_voxel(scene.frame(), &scene.background, v.cell);
-            if let Some(thing) = thing.and_then(|id| scene.background.get(id)) {
-                parts.push(format!("{} #{}", t(thing.form.name()), thing.id.0));
-            }
-            let [x, y, z] = v.cell;
-            parts.push(tf!("voxel {x}, {y}, {z}", x = x, y = y, z = z));
-        }
-        PickHit::Ground { .. } if scene.frame().extent().voxel_at(p).is_none() => {
-            parts.push(t("outside the map").into());
-        }
-        PickHit::Ground { .. } => {}
-    }
-    parts.join("  ·  ")
 }

@@ -17,9 +17,21 @@ pub enum Underlay {
     Both,
 }
 
+/// What the 3D view shows the scene as.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Look {
+    /// Voxels in the colours of their classes.
+    #[default]
+    Voxels,
+    /// What a camera would see there.
+    Pictures,
+}
+
 /// Settings and marks of the two large views.
 #[derive(Clone, Debug)]
 pub struct ViewsShown {
+    /// What the 3D view shows the scene as.
+    pub look: Look,
     /// Picture below the layers.
     pub underlay: Underlay,
     /// True: with boxes.
@@ -43,6 +55,7 @@ pub struct ViewsShown {
 impl Default for ViewsShown {
     fn default() -> Self {
         Self {
+            look: Look::Voxels,
             underlay: Underlay::Both,
             boxes: true,
             by_track: false,

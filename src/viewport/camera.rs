@@ -168,6 +168,28 @@ impl ViewCamera {
         .sane()
     }
 
+    /// The same view as that of a camera with a picture of some pixels; `None` if it is orthographic.
+    pub fn to_camera(&self, [width, height]: [u32; 2]) -> Option<Camera> {
+        if self.ortho {
+            return None;
+        }
+        let [right, up, forward] = self.axes();
+        let rotation = glam::DQuat::from_mat3(&glam::DMat3::from_cols(right, -up, forward)).normalize();
+        let focal_px = f64::from(height) / 2.0 / (self.fov_y_rad / 2.0).tan();
+        Some(Camera {
+            name: "view".into(),
+            width,
+            height,
+            focal_px: [focal_px; 2],
+            center_px: [f64::from(width) / 2.0, f64::from(height) / 2.0],
+            rotation_wxyz: [rotation.w, rotation.x, rotation.y, rotation.z],
+            translation_m: self.eye_m().into(),
+            lens: Lens::Pinhole,
+            shutter: None,
+            carried: scene::rig::Carried::default(),
+        })
+    }
+
     /// Looks from a point to another, both m. Straight up and down the view is turned as ego x lies.
     pub fn from_to(eye_m: DVec3, look_m: DVec3) -> Self {
         let way = look_m - eye_m;

@@ -88,7 +88,7 @@ impl Room {
             true => PAINTING,
             false => UPDATING,
         };
-        let all = ui.available_width() - news;
+        let all = ui.available_width() - news - SENSORS_BUTTON;
         let side_by_side = icons::segments_width(ui, choices);
         let from = match sources {
             ..=1 => 0.0,

@@ -14,7 +14,7 @@ use crate::command::{Command, FileCommand, ViewCommand};
 use crate::detection_marks::DetectionMarks;
 use crate::state::UiState;
 use crate::view3d::{View3d, View3dInput};
-use crate::views_shown::ViewsShown;
+use crate::views_shown::{Look, ViewsShown};
 use editor::pick::{self, PickHit};
 use language::t;
 use scene::Scene;
@@ -46,6 +46,19 @@ impl Pane for View3dPane {
         if icons::button(ui, Icon::Camera, t("Screenshot"), "F12", false, true).clicked() {
             commands.push(Command::File(FileCommand::QuickShot));
         }
+        let looks = [
+            (
+                Look::Voxels,
+                t("Voxels"),
+                t("Classes as the networks and sensors take them"),
+            ),
+            (
+                Look::Pictures,
+                t("Pictures"),
+                t("What a camera would see from here; in perspective views"),
+            ),
+        ];
+        icons::choice(ui, &mut cx.state.shown.look, &looks, t("3D view as"));
         let show = egui::containers::menu::MenuButton::new(t("Show")).config(
             egui::containers::menu::MenuConfig::new()
                 .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside),

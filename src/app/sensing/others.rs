@@ -4,8 +4,9 @@ use runtime::worker::Ctx;
 use scene::SceneRev;
 use sensors::cameras::{SourceId, learned};
 
+use super::senses::SensorCache;
 use super::views::{Views, detail};
-use super::{Haste, SensingEvent, SensingRequest, SensorCache};
+use super::{Haste, SensingEvent, SensingRequest};
 use crate::camera_views::CameraView;
 
 /// Renders the other sources that panes of single cameras show.

@@ -7,8 +7,9 @@ use sensors::pictures::appearance::Quality;
 use sensors::splat::PREVIEW_SIZE;
 
 use super::reel::moment;
+use super::senses::SensorCache;
 use super::views::Views;
-use super::{SensingEvent, SensingRequest, SensorCache};
+use super::{SensingEvent, SensingRequest};
 use crate::camera_views::CameraView;
 
 /// Size of the large picture while a clip plays.

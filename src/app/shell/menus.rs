@@ -240,6 +240,10 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
         item(ui, t("3D: Orthographic from here"), "9", true),
         Command::View(ViewCommand::ToggleParallel),
     );
+    on(
+        item(ui, t("3D: Voxels or pictures"), "Shift+P", true),
+        Command::View(ViewCommand::ToggleLook),
+    );
     ui.separator();
     on(
         item(ui, t("Compare: off, wipe, side, difference"), "Shift+\\", true),

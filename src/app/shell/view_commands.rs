@@ -7,6 +7,7 @@ use crate::command::{ViewCommand, Window};
 use crate::panes::compare::CompareMode;
 use crate::panes::id::PaneId;
 use crate::tools::ToolId;
+use crate::views_shown::Look;
 use editor::tools::{brush, region, select, voxel};
 use language::t;
 use sensors::cameras::pictures;
@@ -51,6 +52,12 @@ impl SceneloomApp {
             ViewCommand::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
             ViewCommand::Preset(preset) => self.views.view3d.preset(preset, self.extent()),
             ViewCommand::ToggleParallel => self.views.view3d.toggle_parallel(),
+            ViewCommand::ToggleLook => {
+                self.state.shown.look = match self.state.shown.look {
+                    Look::Voxels => Look::Pictures,
+                    Look::Pictures => Look::Voxels,
+                };
+            }
             ViewCommand::LookThrough(index) => self.look_through(index),
             ViewCommand::Cameras(view) => self.state.cameras.view = view,
             ViewCommand::ShowLight => {

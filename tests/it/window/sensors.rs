@@ -27,6 +27,10 @@ fn the_strip_shows_what_is_asked_for() {
     let mut bench = Bench::new();
     bench.off();
     bench.sensed();
+    // Learned pictures are offered by the settings alone.
+    assert!(bench.harness.query_by_label(learned::VIEW.title).is_none());
+    bench.app().preferences.settings.learned_pictures = true;
+    bench.steps(2);
     // The last one is what it shows at first.
     for view in cameras::views().into_iter().rev() {
         let name = view.title;

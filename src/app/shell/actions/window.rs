@@ -81,6 +81,13 @@ pub(super) const ACTIONS: &[ActionDef] = &[
         || Command::View(ViewCommand::ToggleParallel),
     )
     .over_3d(),
+    action(
+        Views,
+        "view_look",
+        "3D view as voxels or as pictures",
+        "Shift+P",
+        || Command::View(ViewCommand::ToggleLook),
+    ),
     action(Views, "view_ego", "3D view from the ego vehicle", "0", || {
         Command::View(ViewCommand::Preset(ViewPreset::Ego))
     })

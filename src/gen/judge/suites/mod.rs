@@ -9,6 +9,7 @@ pub mod layout;
 pub mod lidar;
 pub mod map;
 pub mod near;
+mod near_edits;
 pub mod pictures;
 pub mod splat;
 pub mod vae;

@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use super::near_edits::{scene_of, untouched};
 use crate::suite::{Bar, Options, SuiteFigures};
 use calibration::MeasurementProgress;
 use calibration::held_out::TEST_SEED;
@@ -16,6 +17,7 @@ use sensors::pictures::appearance::Appearance;
 use sensors::raycast::rays::CameraRays;
 use sensors::splat::VIEW_SIZE;
 use world::World;
+use world::draw::Draw;
 use world::draw::hash;
 use world::voxelize::{Vertical, complete};
 
@@ -27,20 +29,22 @@ const FOOT_M: f64 = 0.2;
 const OFF_M: f64 = 0.15;
 /// Largest angle of a wall's normal to the true one, degrees.
 const TURNED_DEG: f64 = 10.0;
+/// Random edits of which the pictures are compared.
+const EDITS: usize = 60;
 /// A man-made surface farther than this from anything man-made stands where nothing is, m.
 const NOTHING_M: f64 = 0.6;
 
 /// Counts of pixels: how many of how many.
 #[derive(Clone, Copy, Debug, Default)]
-struct Share(u64, u64);
+pub(super) struct Share(u64, u64);
 
 impl Share {
-    fn note(&mut self, is_wrong: bool) {
+    pub(super) fn note(&mut self, is_wrong: bool) {
         self.0 += u64::from(is_wrong);
         self.1 += 1;
     }
 
-    fn add(&mut self, other: Self) {
+    pub(super) fn add(&mut self, other: Self) {
         self.0 += other.0;
         self.1 += other.1;
     }
@@ -273,6 +277,24 @@ impl Options {
                 ]);
             }
         }
+        let mut draw = Draw::new(TEST_SEED, "edits of pictures");
+        let (mut changed, mut made, mut worst) = (Share::default(), 0, 0.0f64);
+        for i in 0..EDITS {
+            progress.at("edits", i, EDITS);
+            let world = world_of(hash(i as u64 / 5), i % 10 < 5);
+            let Some(share) = untouched(&scene_of(&world), &mut draw) else {
+                continue;
+            };
+            made += 1;
+            worst = worst.max(share.value());
+            changed.add(share);
+        }
+        report["untouched_by_edits"] = json!({ "edits": made, "changed": changed.json(), "worst": worst });
+        bars.push((
+            "pixels that an edit does not touch stay",
+            1.0 - changed.value(),
+            1.0,
+        ));
         Ok((report, bars))
     }
 }

@@ -19,8 +19,20 @@ use scene::{BoxId, Camera, CameraTruth, SceneBox, TruthPixel};
 impl Appearance {
     /// The picture of one camera at `width` x `height` px.
     pub fn render(&self, camera: &Camera, width: u32, height: u32, quality: Quality) -> CameraImage {
-        let light = self.gather((camera, [width, height]), quality, Drops::Drawn, None);
+        let light = self.gather((camera, [width, height]), quality, Drops::Drawn, (None, &|| true));
         self.finish(camera, [width as usize, height as usize], light)
+    }
+
+    /// The picture of [`Self::render`], as long as it is wanted: `None` once `goes_on` says that it is not.
+    pub fn render_while(
+        &self,
+        camera: &Camera,
+        [width, height]: [u32; 2],
+        quality: Quality,
+        goes_on: &(dyn Fn() -> bool + Sync),
+    ) -> Option<CameraImage> {
+        let light = self.gather((camera, [width, height]), quality, Drops::Drawn, (None, goes_on));
+        goes_on().then(|| self.finish(camera, [width as usize, height as usize], light))
     }
 
     /// Renders the picture of [`Self::render`] without effects of the lens and of the moment: no rain or flakes in the
@@ -31,7 +43,12 @@ impl Appearance {
         [width, height]: [u32; 2],
         quality: Quality,
     ) -> Vec<[f32; 3]> {
-        let light = self.gather((camera, [width, height]), quality, Drops::LeftOut, None);
+        let light = self.gather(
+            (camera, [width, height]),
+            quality,
+            Drops::LeftOut,
+            (None, &|| true),
+        );
         let shown = light.par_iter().map(|c| self.shown(*c, 1.0).to_array());
         shown.collect()
     }
@@ -53,20 +70,23 @@ impl Appearance {
             (camera, size),
             quality,
             Drops::Drawn,
-            Some((&teller, &mut pixels)),
+            (Some((&teller, &mut pixels)), &|| true),
         );
         let image = self.finish(camera, size.map(|n| n as usize), light);
         let truth = self.finish_truth(&teller, camera, size, boxes, pixels, next);
         (image, truth)
     }
 
-    /// The light of every pixel, linear.
+    /// The light of every pixel, linear. Rows that are not wanted any more stay black.
     fn gather(
         &self,
         (camera, [width, height]): (&Camera, [u32; 2]),
         quality: Quality,
         drops: Drops,
-        truth: Option<(&Teller<'_>, &mut [TruthPixel])>,
+        (truth, goes_on): (
+            Option<(&Teller<'_>, &mut [TruthPixel])>,
+            &(dyn Fn() -> bool + Sync),
+        ),
     ) -> Vec<Vec3> {
         let (w, h) = (width as usize, height as usize);
         let rays = CameraRays::new(camera, width, height);
@@ -89,6 +109,9 @@ impl Appearance {
         let sparse = quality == Quality::Play && teller.is_none();
         let mut samples = vec![ShadedSample::default(); w * h];
         let row_of = |y: usize, row: &mut [ShadedSample], mut told: Option<&mut [TruthPixel]>| {
+            if !goes_on() {
+                return;
+            }
             for (x, out) in row.iter_mut().enumerate() {
                 if sparse && sparse::is_between(x, y) {
                     continue;
@@ -132,6 +155,9 @@ impl Appearance {
                 })
             };
             let row_of = |y: usize, row: &mut [Vec3], mut told: Option<&mut [TruthPixel]>| {
+                if !goes_on() {
+                    return;
+                }
                 for (x, out) in row.iter_mut().enumerate() {
                     if !rough(x, y) {
                         continue;
