@@ -18,6 +18,7 @@ use crate::camera_views::{camera_input, paint_input};
 use crate::capture::{CaptureOptions, Subject, capture};
 use crate::painting::PaintWish;
 use crate::picture::{self, RgbaPicture, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
+use crate::views_shown::Look;
 
 /// Subject of a clip.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +31,8 @@ pub enum ClipView {
         follow: bool,
         /// True: with boxes.
         boxes: bool,
+        /// What it shows the scene as.
+        look: Look,
     },
     /// The layout from above with boxes; each cell is a whole number of pixels.
     Bev,
@@ -142,6 +145,7 @@ enum ClipRenderer {
         last: scene::Pose,
         size: [u32; 2],
         boxes: bool,
+        look: Look,
     },
     Bev,
     Map([u32; 2]),
@@ -158,15 +162,17 @@ impl ClipRenderer {
                 camera,
                 follow,
                 boxes,
+                look,
             } => {
                 bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
                 Self::View3d {
-                    view: Box::new(View3d::new()?),
+                    view: Box::new(View3d::new(*look)?),
                     camera: **camera,
                     follow: *follow,
                     last: scene.at(options.span_s[0]).frame().world_from_ego,
                     size: options.size,
                     boxes: *boxes,
+                    look: *look,
                 }
             }
             ClipView::Bev => Self::Bev,
@@ -205,6 +211,7 @@ impl ClipRenderer {
                 last,
                 size,
                 boxes,
+                look,
             } => {
                 let now = scene.frame().world_from_ego;
                 if *follow {
@@ -220,6 +227,7 @@ impl ClipRenderer {
                         transparent: false,
                         lidar: false,
                         boxes: *boxes,
+                        look: *look,
                     },
                 )
             }

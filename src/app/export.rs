@@ -367,7 +367,8 @@ impl Products for Making<'_> {
     }
 
     fn view(&mut self) -> Result<ExportPicture, FormatError> {
-        let shot = View3d::new().and_then(|mut view| view.shot(&self.scene, &self.options.shot));
+        let shot = View3d::new(self.options.shot.look)
+            .and_then(|mut view| view.shot(&self.scene, &self.options.shot));
         let shot = shot.map_err(FormatError::new)?;
         Ok(ExportPicture {
             camera: String::new(),

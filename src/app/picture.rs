@@ -3,11 +3,14 @@
 use anyhow::bail;
 
 use crate::camera_views::{RadarColors, radar_color};
+use crate::pictured;
+use crate::views_shown::Look;
 use scene::raster::box_cells;
 use scene::{
     BevLayer, Class, Extent, Frame, LidarSweep, MultiPlaneImage, RadarScan, Scene, SceneBox, VoxelGrid,
 };
 use sensors::cameras::bounds;
+use sensors::pictures::appearance::AppearanceCache;
 use sensors::{lidar::rolling, pictures::color};
 use viewport::{
     Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
@@ -220,6 +223,9 @@ pub struct ShotOptions {
     pub lidar: bool,
     /// True: with boxes.
     pub boxes: bool,
+    /// What the scene is shown as. A picture has all of its own and no marks: what is said here of boxes, LiDAR returns and the
+    /// background is of voxels.
+    pub look: Look,
 }
 
 impl Default for ShotOptions {
@@ -231,34 +237,45 @@ impl Default for ShotOptions {
             transparent: false,
             lidar: false,
             boxes: true,
+            look: Look::Voxels,
         }
     }
 }
 
-/// The 3D viewport on a device of its own.
+/// The 3D view off screen: voxels by a viewport on a device of its own, pictures by the processor.
 pub struct View3d {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-    viewport: Viewport,
-    /// Name of the adapter in use.
+    card: Option<(wgpu::Device, wgpu::Queue, Viewport)>,
+    cache: AppearanceCache,
+    /// What draws.
     pub adapter: String,
 }
 
 impl View3d {
-    /// Opens any adapter, a software one included. Errors in one line if there is none.
-    pub fn new() -> anyhow::Result<Self> {
+    /// A view that draws one look. Errors without an adapter if it needs one.
+    pub fn new(look: Look) -> anyhow::Result<Self> {
+        let cache = AppearanceCache::default();
+        if look == Look::Pictures {
+            return Ok(Self {
+                card: None,
+                cache,
+                adapter: "the processor".into(),
+            });
+        }
         let (info, device, queue) = headless_device()?;
         let viewport = Viewport::new(&device, &queue);
         Ok(Self {
-            device,
-            queue,
-            viewport,
+            card: Some((device, queue, viewport)),
+            cache,
             adapter: info.name,
         })
     }
 
-    /// Draws a picture of the scene. Errors if it is larger than [`bounds`] allow.
+    /// Draws a scene's frame in the look it was made for. Errors if the size does not fit into memory, if it came out in one
+    /// colour, or if a picture is to be orthographic.
     pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<RgbaPicture> {
+        let Some((device, queue, viewport)) = &mut self.card else {
+            return pictured::shot(scene, &options.camera, options.size, &self.cache);
+        };
         bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
         let of_sensors = scene;
         let scene = &*scene.with_rig_in_world();
@@ -293,9 +310,9 @@ impl View3d {
             options: &view,
         };
         let [width, height] = options.size;
-        let rgba = self.viewport.render_to_image(
-            &self.device,
-            &self.queue,
+        let rgba = viewport.render_to_image(
+            device,
+            queue,
             &options.camera,
             &view_scene,
             options.size,

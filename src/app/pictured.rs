@@ -7,10 +7,13 @@ use std::sync::Arc;
 use egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use glam::DVec3;
 
+use super::picture::RgbaPicture;
+use anyhow::Context as _;
 use runtime::guard::Panicked;
 use runtime::worker::{Ctx, Product, Worker};
 use scene::resample::shared_in;
 use scene::{BoxId, Camera, Class, Lattice, Scene, SceneBox, SceneRev, SensorRig};
+use sensors::cameras::{CameraSource, bounds, pictures};
 use sensors::pictures::appearance::{Appearance, AppearanceCache, CameraImage, Quality};
 use viewport::{GROUND_TOP_M, ViewCamera};
 
@@ -103,13 +106,7 @@ impl PicturedView {
     }
 
     fn ask(&mut self, ctx: &Context, scene: &Scene, key: PictureKey) {
-        // The ground lies at its physical height in pictures, and lower among the voxels.
-        let lift = DVec3::new(0.0, 0.0, -GROUND_TOP_M);
-        let raised = ViewCamera {
-            target_m: key.view.target_m + lift,
-            ..key.view
-        };
-        let Some(camera) = raised.to_camera(key.size) else {
+        let Some(camera) = camera_of(&key.view, key.size) else {
             return;
         };
         if self.worker.is_none() {
@@ -220,8 +217,38 @@ impl Product for Drawing {
     }
 }
 
+/// The viewpoint of the 3D view as a camera of pictures; `None` if it is orthographic.
+fn camera_of(view: &ViewCamera, size: [u32; 2]) -> Option<Camera> {
+    // The ground lies at its physical height in pictures, and lower among the voxels.
+    let lift = DVec3::new(0.0, 0.0, -GROUND_TOP_M);
+    let raised = ViewCamera {
+        target_m: view.target_m + lift,
+        ..*view
+    };
+    raised.to_camera(size)
+}
+
+/// The 3D view as a picture. Errors if it is orthographic or does not fit into memory.
+pub fn shot(
+    scene: &Scene,
+    view: &ViewCamera,
+    size: [u32; 2],
+    cache: &AppearanceCache,
+) -> anyhow::Result<RgbaPicture> {
+    bounds::check(size, pictures::PictureSource.about().bytes_per_pixel, 0)?;
+    let camera =
+        camera_of(view, size).context("pictures are made in perspective, and this view is orthographic")?;
+    let [width, height] = size;
+    let image = prepared(scene, true, cache).render(&camera, width, height, Quality::Full);
+    Ok(RgbaPicture {
+        width: image.width,
+        height: image.height,
+        rgba: image.rgba,
+    })
+}
+
 /// A scene ready to be drawn, with or without the ego vehicle.
-pub fn prepared(scene: &Scene, ego: bool, cache: &AppearanceCache) -> Appearance {
+fn prepared(scene: &Scene, ego: bool, cache: &AppearanceCache) -> Appearance {
     let scene = match scene.frame().extent().lattice() == Lattice::OCC3D {
         true => Cow::Borrowed(scene),
         false => Cow::Owned(Scene::clone(&shared_in(&Arc::new(scene.clone()), Lattice::OCC3D))),

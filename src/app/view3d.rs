@@ -448,6 +448,7 @@ impl View3d {
                 ego: false,
                 layout_plane: LayoutPlane::Off,
                 grid_lines: false,
+                lidar: false,
                 background: viewport::Background::Transparent,
                 ..options
             },

@@ -52,6 +52,16 @@ pub struct ViewsShown {
     pub detection_marks: Option<Arc<DetectionMarks>>,
 }
 
+impl ViewsShown {
+    /// What the 3D view shows from a viewpoint: orthographic views have no pictures.
+    pub fn look_of(&self, camera: &viewport::ViewCamera) -> Look {
+        match camera.ortho {
+            true => Look::Voxels,
+            false => self.look,
+        }
+    }
+}
+
 impl Default for ViewsShown {
     fn default() -> Self {
         Self {

@@ -96,7 +96,7 @@ pub fn capture(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<RgbaPi
         Subject::View => {
             let mut shot = options.shot.clone();
             shot.size = size;
-            View3d::new()?.shot(scene, &shot)?
+            View3d::new(shot.look)?.shot(scene, &shot)?
         }
         subject => above::picture(scene, subject, size)?,
     };
@@ -224,7 +224,7 @@ pub fn turntable(
         );
     }
     let frames = turn.frames();
-    let mut view = View3d::new()?;
+    let mut view = View3d::new(turn.shot.look)?;
     // MP4 needs even sides.
     let size = turn.shot.size.map(|s| s.next_multiple_of(2));
     bounds::check(size, SHOT_BYTES_PER_PIXEL, 0)?;

@@ -109,6 +109,7 @@ impl ClipCommand {
                 camera: self.viewpoint.camera(&scene.at(self.from))?,
                 size: self.size,
                 boxes: self.viewpoint.boxes(),
+                look: self.viewpoint.look(),
                 supersample: 1,
                 ..ShotOptions::default()
             },
@@ -146,6 +147,7 @@ impl ClipCommand {
                 camera: Box::new(self.viewpoint.camera(&scene.at(self.from))?),
                 follow: !self.fixed,
                 boxes: self.viewpoint.boxes(),
+                look: self.viewpoint.look(),
             }),
             "bev" => Ok(ClipView::Bev),
             "map" => Ok(ClipView::Map),

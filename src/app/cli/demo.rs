@@ -14,6 +14,7 @@ use super::{CommandResult, Common, Weights, output};
 use app::open;
 use app::picture::{self, RgbaPicture, View3d};
 use app::text::with_conditions;
+use app::views_shown::Look;
 use editor::{Document, Edit, Shape};
 use formats::loom;
 use job::pipeline::OccPipeline;
@@ -175,7 +176,7 @@ impl Demo {
             files: Vec::new(),
             view: None,
         };
-        match View3d::new() {
+        match View3d::new(Look::Voxels) {
             Ok(view) => sink.view = Some(view),
             // The demo's pictures from above and of the cameras need no graphics adapter.
             Err(error) => eprintln!("no 3D pictures: {}", output::one_line(&error)),

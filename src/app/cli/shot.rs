@@ -60,7 +60,7 @@ impl Shot {
         let (shot, adapter) = match options.subject {
             // (also without a legend, the report names the adapter)
             Subject::View if !options.legend => {
-                let mut view = picture::View3d::new()?;
+                let mut view = picture::View3d::new(options.shot.look)?;
                 (view.shot(&scene, &options.shot)?, Some(view.adapter))
             }
             _ => (capture(&scene, &options)?, None),
@@ -108,6 +108,7 @@ impl Shot {
             transparent: self.transparent,
             lidar: self.lidar,
             boxes: self.viewpoint.boxes(),
+            look: self.viewpoint.look(),
         };
         bounds::check(shot.size, picture::SHOT_BYTES_PER_PIXEL, 0).context("--size")?;
         Ok(CaptureOptions {

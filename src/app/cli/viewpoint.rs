@@ -4,6 +4,7 @@ use anyhow::{Context, bail};
 use glam::DVec3;
 
 use app::export::view_camera;
+use app::views_shown::Look;
 use scene::{Pose, Scene};
 use viewport::ViewCamera;
 
@@ -28,6 +29,9 @@ pub(super) struct Viewpoint {
     /// Without boxes.
     #[arg(long)]
     no_boxes: bool,
+    /// What the 3D view shows the scene as: voxels, or pictures as a camera would take them there.
+    #[arg(long = "as", value_name = "LOOK", value_parser = ["voxels", "pictures"], default_value = "voxels")]
+    look_as: String,
 }
 
 impl Viewpoint {
@@ -56,6 +60,14 @@ impl Viewpoint {
         match self.eye {
             Some(_) if !view_3d => bail!("--eye is of the 3D view alone, but --what is {what}"),
             _ => Ok(()),
+        }
+    }
+
+    /// What the scene is shown as.
+    pub(super) fn look(&self) -> Look {
+        match self.look_as.as_str() {
+            "pictures" => Look::Pictures,
+            _ => Look::Voxels,
         }
     }
 

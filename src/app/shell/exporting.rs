@@ -140,6 +140,7 @@ impl SceneloomApp {
                     camera: Box::new(camera),
                     follow: playback.follow,
                     boxes: asked.shot.boxes,
+                    look: self.state.shown.look_of(&camera),
                 };
                 (view, asked.shot.size)
             }
@@ -171,6 +172,7 @@ impl SceneloomApp {
         let scene = Arc::clone(self.document.settled_scene());
         let mut options = dialog.options;
         options.shot.camera = self.views.view3d.camera;
+        options.shot.look = self.state.shown.look_of(&options.shot.camera);
         if !dialog.turns {
             let parameters = self.parameters();
             return self.run_export("the picture", ctx, move |_| {

@@ -8,6 +8,7 @@ use super::Rendering;
 use super::write::sheet_bytes;
 use app::camera_views;
 use app::picture::View3d;
+use app::views_shown::Look;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene};
 use sensors::cameras::{self, CameraSource, SourceView, bounds};
@@ -86,7 +87,7 @@ impl RenderPlan {
             radar: wants("radar"),
             truth,
             bev: wants("bev"),
-            view: wants("view").then(View3d::new).transpose()?,
+            view: wants("view").then(|| View3d::new(Look::Voxels)).transpose()?,
         })
     }
 }
