@@ -47,6 +47,7 @@ pub mod trade_plot;
 pub mod truth;
 mod unsettled_marks;
 pub mod view3d;
+mod view_texture;
 pub mod views_shown;
 pub mod windows;
 

@@ -11,6 +11,7 @@ use editor::pick::{self, PickHit, PickRay};
 use editor::tools::{ScreenProjection, ToolMark, ViewKind, Wants, point_of, select};
 use language::{t, tf};
 use scene::{BoxId, Extent, LidarSweep, Scene, SceneBox};
+use sensors::pictures::appearance::CameraImage;
 use viewport::{
     LayoutPlane, LidarColorMode, LidarView, MarkedVoxels, ViewCamera, ViewOptions, ViewPreset, ViewScene,
     Viewport, lidar_colors,
@@ -25,6 +26,7 @@ use super::readout::readout;
 use super::screen_map::{point, pos};
 use super::state::UiState;
 use super::tools::ToolState;
+use super::view_texture::register;
 use super::views_shown::{Look, ViewsShown};
 use super::{detection_marks, fly, no_adapter, place_marks, thing_outlines, track_marks, unsettled_marks};
 use crate::panes::id::PaneId;
@@ -39,10 +41,10 @@ const SLOW_FRAME_S: f32 = 0.045;
 const SETTLE_S: f64 = 0.18;
 
 /// Device objects of the view.
-struct Gpu {
-    render_state: egui_wgpu::RenderState,
-    viewport: Viewport,
-    texture: Option<(egui::TextureId, [u32; 2], u32)>, // with its registered size and samples
+pub(super) struct Gpu {
+    pub(super) render_state: egui_wgpu::RenderState,
+    pub(super) viewport: Viewport,
+    pub(super) texture: Option<(egui::TextureId, [u32; 2], u32)>, // with its registered size and samples
     software: bool,
 }
 
@@ -122,6 +124,11 @@ impl View3d {
             frames: 0,
             pixels_per_point: 1.0,
         }
+    }
+
+    /// The newest picture, if the view was shown as one.
+    pub fn picture(&self) -> Option<&CameraImage> {
+        self.pictured.image()
     }
 
     /// True if there is a device to draw with.
@@ -588,22 +595,4 @@ impl View3d {
             view: self,
         }
     }
-}
-
-/// The texture of the picture in egui; registered again if the viewport made a new one.
-fn register(gpu: &mut Gpu, samples: u32) -> egui::TextureId {
-    let size = gpu.viewport.size();
-    let device = &gpu.render_state.device;
-    let mut renderer = gpu.render_state.renderer.write();
-    let (view, filter) = (gpu.viewport.color_view(), wgpu::FilterMode::Linear);
-    let id = match gpu.texture {
-        Some((id, of, with)) if of == size && with == samples => id,
-        Some((id, ..)) => {
-            renderer.update_egui_texture_from_wgpu_texture(device, view, filter, id);
-            id
-        }
-        None => renderer.register_native_texture(device, view, filter),
-    };
-    gpu.texture = Some((id, size, samples));
-    id
 }

@@ -25,6 +25,33 @@ fn ray_goes_through_what_is_projected() {
 }
 
 #[test]
+fn a_camera_of_pictures_sees_what_the_view_shows() {
+    for view in all() {
+        let Some(camera) = view.to_camera(SIZE) else {
+            assert!(view.ortho);
+            continue;
+        };
+        let from_ego = camera.ego_from_camera().inverse();
+        for p in [
+            view.target_m,
+            DVec3::new(14.0, 3.0, 1.0),
+            DVec3::new(19.0, -2.5, 0.4),
+        ] {
+            let seen = from_ego.apply(p);
+            let pixel = DVec2::new(
+                camera.focal_px[0] * seen.x / seen.z + camera.center_px[0],
+                camera.focal_px[1] * seen.y / seen.z + camera.center_px[1],
+            );
+            let shown = view.project(p, SIZE).expect("in front");
+            assert!(
+                seen.z > 0.0 && (pixel - shown).length() < 1e-6,
+                "{view:?}: {pixel} {shown}"
+            );
+        }
+    }
+}
+
+#[test]
 fn target_is_in_the_middle_and_depth_is_reversed() {
     for camera in all() {
         let pixel = camera.project(camera.target_m, SIZE).expect("in front");

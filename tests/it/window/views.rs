@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use formats::loom;
 use image::GenericImageView;
-use scene::{BevLayer, BoxId, Class};
+use scene::{BevLayer, BoxId, BoxLabel, Class, Edit, Paint};
 
 use super::bench::{Bench, car};
 
@@ -134,4 +134,65 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     let shot = image::open(picture).expect("a picture").to_rgba8();
     let colors: std::collections::HashSet<_> = shot.pixels().copied().collect();
     assert!(colors.len() > 100, "{} colours", colors.len());
+}
+
+/// As a picture the 3D view shows the same from the same place: what is clicked there is chosen, and edits show.
+#[test]
+fn the_3d_view_is_shown_as_a_picture() {
+    let mut bench = Bench::with(true);
+    bench.off();
+    let paint = Edit::LabelBox {
+        id: car().id,
+        label: BoxLabel {
+            paint: Some(Paint::Red),
+            ..BoxLabel::default()
+        },
+    };
+    bench.app().document.apply("Paint", &paint).expect("painted");
+    let pane = bench.pane("3D view");
+    bench.harness.hover_at(pane.center());
+    bench.steps(4);
+    assert!(bench.app().views.view3d.picture().is_none());
+    bench.key(Modifiers::SHIFT, Key::P);
+    let whole = |bench: &mut Bench| {
+        let wide = bench.app().views.view3d.rect.width() as usize;
+        bench.wait_until("the whole picture", |b| {
+            b.app()
+                .views
+                .view3d
+                .picture()
+                .is_some_and(|image| image.width + 1 >= wide)
+        });
+        bench.app().views.view3d.picture().expect("a picture").clone()
+    };
+    let image = whole(&mut bench);
+    // The boxes stand as much lower in the view as the ground of the voxels lies.
+    let roof_m = car().center_m - glam::DVec3::new(0.3, 0.0, 0.6 - 0.8);
+    let size = [image.width as u32, image.height as u32];
+    let pixel = bench
+        .app()
+        .views
+        .view3d
+        .camera
+        .project(roof_m, size)
+        .expect("in view");
+    let at = (pixel.y as usize * image.width + pixel.x as usize) * 4;
+    let [r, g, b] = [0, 1, 2].map(|k| f32::from(image.rgba[at + k]));
+    assert!(r > 1.4 * g && r > 1.4 * b, "{r} {g} {b} at {pixel}");
+    let share = egui::vec2(pixel.x as f32 / size[0] as f32, pixel.y as f32 / size[1] as f32);
+    let rect = bench.app().views.view3d.rect;
+    bench.drag(&[rect.min + share * rect.size()], Modifiers::NONE);
+    assert_eq!(bench.app().state.selected, Some(car().id));
+    let gone = Edit::RemoveBox { id: car().id };
+    bench.app().document.apply("Delete", &gone).expect("gone");
+    bench.steps(2);
+    bench.wait_until("a picture without the car", |b| {
+        b.app()
+            .views
+            .view3d
+            .picture()
+            .is_some_and(|now| now.width < image.width)
+    });
+    let without = whole(&mut bench);
+    assert!(without.width == image.width && without.rgba[at] < image.rgba[at]);
 }
