@@ -78,6 +78,8 @@ pub(super) fn light_menu(ui: &mut Ui, short: bool, content: impl FnOnce(&mut Ui)
 struct Room {
     /// Width of the views, points; they fold into a list if it is too small for them.
     views: f32,
+    /// Width of the sources, points; they fold likewise.
+    sources: f32,
     /// Index into [`LIGHT`].
     light: usize,
 }
@@ -88,11 +90,11 @@ impl Room {
             true => PAINTING,
             false => UPDATING,
         };
-        let all = ui.available_width() - news - SENSORS_BUTTON;
+        let all = ui.available_width() - news;
         let side_by_side = icons::segments_width(ui, choices);
         let from = match sources {
             ..=1 => 0.0,
-            _ if all >= side_by_side + SOURCES => SOURCES,
+            _ if all >= side_by_side + SOURCES + SENSORS_BUTTON => SOURCES,
             _ => FOLDED,
         };
         let left = |light: usize| all - from - if lit { LIGHT[light] } else { 0.0 };
@@ -102,6 +104,7 @@ impl Room {
         let light = light.unwrap_or(LIGHT.len() - 1);
         Self {
             views: left(light).max(0.0),
+            sources: from,
             light,
         }
     }
@@ -131,7 +134,10 @@ pub fn header(
                 .iter()
                 .map(|s| (s.id(), t(s.about().title), t(s.about().hint)))
                 .collect();
-            icons::choice(ui, &mut shown.source, &choices, t("From"));
+            ui.scope(|ui| {
+                ui.set_max_width(room.sources);
+                icons::choice(ui, &mut shown.source, &choices, t("From"));
+            });
         }
         if lit {
             match room.light {

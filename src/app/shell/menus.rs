@@ -241,7 +241,7 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
         Command::View(ViewCommand::ToggleParallel),
     );
     on(
-        item(ui, t("3D: Voxels or pictures"), "Shift+P", true),
+        item(ui, t("3D: Voxels or pictures"), "8", true),
         Command::View(ViewCommand::ToggleLook),
     );
     ui.separator();

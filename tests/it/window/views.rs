@@ -153,7 +153,7 @@ fn the_3d_view_is_shown_as_a_picture() {
     bench.harness.hover_at(pane.center());
     bench.steps(4);
     assert!(bench.app().views.view3d.picture().is_none());
-    bench.key(Modifiers::SHIFT, Key::P);
+    bench.key(Modifiers::NONE, Key::Num8);
     let whole = |bench: &mut Bench| {
         let wide = bench.app().views.view3d.rect.width() as usize;
         bench.wait_until("the whole picture", |b| {

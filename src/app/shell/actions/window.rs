@@ -85,9 +85,10 @@ pub(super) const ACTIONS: &[ActionDef] = &[
         Views,
         "view_look",
         "3D view as voxels or as pictures",
-        "Shift+P",
+        "8",
         || Command::View(ViewCommand::ToggleLook),
-    ),
+    )
+    .over_3d(),
     action(Views, "view_ego", "3D view from the ego vehicle", "0", || {
         Command::View(ViewCommand::Preset(ViewPreset::Ego))
     })
