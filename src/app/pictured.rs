@@ -8,9 +8,10 @@ use egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use glam::DVec3;
 
 use super::picture::RgbaPicture;
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use runtime::guard::Panicked;
-use runtime::worker::{Ctx, Product, Worker};
+use runtime::worker::{Ctx, JobId, Product, Worker};
+use scene::appearance::FAR_M;
 use scene::resample::shared_in;
 use scene::{BoxId, Camera, Class, Lattice, Scene, SceneBox, SceneRev, SensorRig};
 use sensors::cameras::{CameraSource, bounds, pictures};
@@ -43,7 +44,7 @@ struct PictureRequest {
 
 /// News from the thread.
 enum PictureEvent {
-    Drawn(PictureKey, CameraImage),
+    Drawn(CameraImage),
     Failed(Panicked),
     GivenUp,
 }
@@ -59,7 +60,7 @@ struct ShownPicture {
 #[derive(Default)]
 pub struct PicturedView {
     worker: Option<Worker<PictureRequest, PictureEvent>>,
-    running: Option<PictureKey>,
+    running: Option<(JobId, PictureKey)>,
     shown: Option<ShownPicture>,
     scene: Option<Arc<Scene>>,
     /// A state of which no picture could be made.
@@ -77,12 +78,13 @@ impl PicturedView {
         (size_px, ego): ([u32; 2], bool),
         moves: bool,
     ) -> Option<TextureId> {
-        if view.ortho || self.problem(scene.rev).is_some() {
+        self.take_news(ctx);
+        if !can_show(scene, view) || self.problem(scene.rev).is_some() {
             return None;
         }
-        self.take_news(ctx);
         let is_of_this = |key: &PictureKey| key.rev == scene.rev && key.view == *view && key.ego == ego;
-        let rests = !moves && self.shown.as_ref().is_some_and(|shown| is_of_this(&shown.key));
+        let here = self.shown.as_ref().filter(|shown| is_of_this(&shown.key));
+        let rests = here.is_some_and(|shown| !moves || shown.key.quality == Quality::Full);
         let (pixels, quality) = match rests {
             true => (RESTING_PIXELS, Quality::Full),
             false => (MOVING_PIXELS, Quality::Play),
@@ -98,7 +100,7 @@ impl PicturedView {
         // A small picture is finished before the next one is asked for, a large one gives way.
         let is_busy = self
             .running
-            .is_some_and(|running| running == key || running.quality == Quality::Play);
+            .is_some_and(|(_, running)| running == key || running.quality == Quality::Play);
         if !is_there && !is_busy {
             self.ask(ctx, scene, key);
         }
@@ -118,25 +120,25 @@ impl PicturedView {
             self.scene = Some(Arc::new(scene.clone()));
         }
         if let (Some(worker), Some(scene)) = (&mut self.worker, &self.scene) {
-            self.running = Some(key);
-            worker.submit(PictureRequest {
+            let request = PictureRequest {
                 scene: scene.clone(),
                 camera,
                 key,
-            });
+            };
+            self.running = Some((worker.submit(request), key));
         }
     }
 
     fn take_news(&mut self, ctx: &Context) {
         let Some(worker) = &self.worker else { return };
-        let newest = worker.newest();
         let news: Vec<_> = worker.updates().try_iter().collect();
         for event in news {
-            if event.id == newest {
-                self.running = None;
-            }
+            // News of jobs that gave way to a newer one.
+            let Some((_, key)) = self.running.take_if(|(id, _)| *id == event.id) else {
+                continue;
+            };
             match event.update {
-                PictureEvent::Drawn(key, image) => {
+                PictureEvent::Drawn(image) => {
                     let size = [image.width, image.height];
                     let colors = ColorImage::from_rgba_unmultiplied(size, &image.rgba);
                     let texture = match self.shown.take() {
@@ -148,9 +150,7 @@ impl PicturedView {
                     };
                     self.shown = Some(ShownPicture { key, image, texture });
                 }
-                PictureEvent::Failed(panic) => {
-                    self.failed = self.scene.as_ref().map(|scene| (scene.rev, panic.to_string()));
-                }
+                PictureEvent::Failed(panic) => self.failed = Some((key.rev, panic.to_string())),
                 PictureEvent::GivenUp => {}
             }
         }
@@ -166,12 +166,24 @@ impl PicturedView {
     pub fn image(&self) -> Option<&CameraImage> {
         self.shown.as_ref().map(|shown| &shown.image)
     }
+
+    /// The picture at rest of a state from a viewpoint, once it is there.
+    pub fn whole(&self, rev: SceneRev, view: &ViewCamera) -> Option<&CameraImage> {
+        let shown = self.shown.as_ref()?;
+        let is_it = shown.key.rev == rev && shown.key.view == *view && shown.key.quality == Quality::Full;
+        is_it.then_some(&shown.image)
+    }
+
+    /// Forgets the picture, because another scene was opened.
+    pub fn forget(&mut self) {
+        (self.shown, self.scene, self.running, self.failed) = (None, None, None, None);
+    }
 }
 
 /// A size of the same shape with at most so many pixels.
 fn fitted([width, height]: [u32; 2], most: f32) -> [u32; 2] {
     let share = (most / (width as f32 * height as f32)).sqrt().min(1.0);
-    [width, height].map(|side| ((side as f32 * share) as u32).max(1))
+    [width, height].map(|side| ((side as f32 * share).round() as u32).max(1))
 }
 
 /// What the thread draws with.
@@ -195,7 +207,7 @@ impl Product for Drawing {
         };
         let goes_on = || key.quality == Quality::Play || !ctx.should_stop();
         match appearance.render_while(camera, key.size, key.quality, &goes_on) {
-            Some(image) => PictureEvent::Drawn(*key, image),
+            Some(image) => PictureEvent::Drawn(image),
             None => PictureEvent::GivenUp,
         }
     }
@@ -215,6 +227,18 @@ impl Product for Drawing {
     fn is_terminal(_: &PictureEvent) -> bool {
         true
     }
+}
+
+/// True for views that pictures can show: in perspective, and no farther away than they reach.
+pub fn can_show(scene: &Scene, view: &ViewCamera) -> bool {
+    let map = scene.frame().extent();
+    let half_m = f64::from(FAR_M);
+    let vehicle_m = scene.frame().world_from_ego.translation_m.truncate();
+    let is_seen = |corner_m: DVec3| (corner_m.truncate() - vehicle_m).abs().max_element() <= half_m;
+    // Of large maps the part around the vehicle is drawn.
+    let whole = is_seen(map.min_m()) && is_seen(map.max_m());
+    let off_m = (view.target_m.truncate() - vehicle_m).abs().max_element();
+    !view.ortho && view.distance_m < 0.75 * half_m && (whole || off_m < half_m / 2.0)
 }
 
 /// The viewpoint of the 3D view as a camera of pictures; `None` if it is orthographic.
@@ -238,6 +262,9 @@ pub fn shot(
     bounds::check(size, pictures::PictureSource.about().bytes_per_pixel, 0)?;
     let camera =
         camera_of(view, size).context("pictures are made in perspective, and this view is orthographic")?;
+    if !can_show(scene, view) {
+        bail!("pictures reach {FAR_M} m, and this view is farther away");
+    }
     let [width, height] = size;
     let image = prepared(scene, true, cache).render(&camera, width, height, Quality::Full);
     Ok(RgbaPicture {

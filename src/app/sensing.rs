@@ -49,8 +49,18 @@ pub enum Haste {
 #[derive(Clone)]
 struct SensingRequest {
     scene: Arc<Scene>,
+    /// The moment to sense, s; the one that the scene shows if `None`.
+    at_s: Option<f64>,
     wanted: Wanted,
     haste: Haste,
+}
+
+/// A scene with its rig where the ego vehicle is.
+fn placed(scene: &Arc<Scene>) -> Arc<Scene> {
+    match scene.with_rig_in_world() {
+        Cow::Borrowed(_) => scene.clone(),
+        Cow::Owned(placed) => Arc::new(placed),
+    }
 }
 
 /// News from the thread.
@@ -135,7 +145,7 @@ impl Sensing {
     pub fn paint_with(&mut self, settings: &PaintWish) {
         if *self.paint != *settings {
             self.paint = Arc::new(settings.clone());
-            self.asked = None;
+            (self.asked, self.played) = (None, None);
             // Existing pictures were painted with other settings.
             if let Some((rev, _)) = &mut self.painted {
                 *rev = SceneRev::fresh();
@@ -171,7 +181,7 @@ impl Sensing {
     pub fn rest(&mut self) {
         if self.stage.is_some() {
             self.stop_painting();
-            self.asked = None;
+            (self.asked, self.played) = (None, None);
         }
     }
 
@@ -182,7 +192,7 @@ impl Sensing {
 
     /// Lets the painting start again with the next request.
     pub fn paint_again(&mut self) {
-        self.asked = None;
+        (self.asked, self.played) = (None, None);
     }
 
     /// True if nothing is being sensed.
@@ -193,13 +203,15 @@ impl Sensing {
     /// Requests the sensors of a scene, unless the same was requested already.
     pub fn ask(&mut self, scene: &Arc<Scene>, wanted: Wanted, haste: Haste) {
         let known = |(rev, was, before): (SceneRev, Wanted, Haste)| {
-            rev == scene.rev && was == wanted && (before == Haste::Rest || haste != Haste::Rest)
+            let played = |haste| matches!(haste, Haste::Play { .. });
+            let is_enough = before == Haste::Rest || haste != Haste::Rest && played(before) == played(haste);
+            rev == scene.rev && was == wanted && is_enough
         };
         if self.asked.is_some_and(known) {
             return;
         }
         self.asked = Some((scene.rev, wanted, haste));
-        let mut scene = scene.clone();
+        let mut moment_s = None;
         if let Haste::Play { every_ms } = haste {
             let every_s = f64::from(every_ms.max(1)) / 1000.0;
             let at_s = (scene.time_s() / every_s).round() * every_s;
@@ -207,19 +219,20 @@ impl Sensing {
             if std::mem::replace(&mut self.played, played) == played {
                 return;
             }
-            Arc::make_mut(&mut scene).show(at_s);
+            moment_s = Some(at_s);
         } else {
             self.played = None;
         }
-        let scene = match scene.with_rig_in_world() {
-            Cow::Borrowed(_) => scene.clone(),
-            Cow::Owned(placed) => Arc::new(placed),
-        };
         let mut sources = wanted.others.iter().map(|(source, _)| source);
         if wanted.source == learned::ID || sources.any(|source| source == learned::ID) {
-            self.paint(scene.clone(), wanted, haste != Haste::Rest);
+            self.paint(placed(scene), wanted, haste != Haste::Rest);
         }
-        self.worker.submit(SensingRequest { scene, wanted, haste });
+        self.worker.submit(SensingRequest {
+            scene: scene.clone(),
+            at_s: moment_s,
+            wanted,
+            haste,
+        });
     }
 
     /// Takes in the news of the threads.

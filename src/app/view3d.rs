@@ -4,12 +4,12 @@
 use std::sync::Arc;
 
 use egui::accesskit::Role;
-use egui::{Color32, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, pos2};
+use egui::{PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo};
 use glam::{DVec2, DVec3};
 
 use editor::pick::{self, PickHit, PickRay};
 use editor::tools::{ScreenProjection, ToolMark, ViewKind, Wants, point_of, select};
-use language::{t, tf};
+use language::t;
 use scene::{BoxId, Extent, LidarSweep, Scene, SceneBox};
 use sensors::pictures::appearance::CameraImage;
 use viewport::{
@@ -20,18 +20,18 @@ use viewport::{
 use super::canvas_tools::{Driver, ViewContext};
 use super::command::Command;
 use super::marks::Board;
-use super::pictured::PicturedView;
+use super::pictured::{self, PicturedView};
 use super::pointer::{self, PointerEvent, ViewDrag};
 use super::readout::readout;
 use super::screen_map::{point, pos};
 use super::state::UiState;
 use super::tools::ToolState;
-use super::view_texture::register;
+use super::view_texture::{put, register};
 use super::views_shown::{Look, ViewsShown};
 use super::{detection_marks, fly, no_adapter, place_marks, thing_outlines, track_marks, unsettled_marks};
 use crate::panes::id::PaneId;
 use crate::shell::live::Bounds;
-use widgets::{software_ui, theme};
+use widgets::software_ui;
 
 /// Turn per point that the pointer moves, rad.
 const ORBIT_RAD: f64 = 0.006;
@@ -139,6 +139,11 @@ impl View3d {
     /// Forgets the colours of returns, which were made with another palette.
     pub fn forget_pictures(&mut self) {
         self.colors = None;
+    }
+
+    /// Forgets the picture of the scene that was open before.
+    pub fn forget_scene(&mut self) {
+        self.pictured.forget();
     }
 
     /// Takes a standard viewpoint over a map.
@@ -486,20 +491,8 @@ impl View3d {
             let share = software_ui::share(gpu.viewport.drawn_rect(), gpu.viewport.size());
             software_ui::picture_changed(ui.ctx(), texture, Some(share));
         }
-        let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        if let Some(picture) = picture {
-            ui.painter().image(picture, rect, whole, Color32::WHITE);
-        }
-        if let Some(problem) = self.pictured.problem(input.scene.rev) {
-            let text = tf!("The picture was not made: {problem}", problem = problem);
-            let (at, font) = (
-                rect.left_bottom() + egui::vec2(8.0, -8.0),
-                egui::FontId::proportional(12.0),
-            );
-            ui.painter()
-                .text(at, egui::Align2::LEFT_BOTTOM, text, font, theme::warn());
-        }
-        ui.painter().image(texture, rect, whole, Color32::WHITE);
+        let problem = self.pictured.problem(input.scene.rev);
+        put(ui, rect, picture.into_iter().chain([texture]), problem);
     }
 
     fn refresh_colors(&mut self, lidar: Option<&Arc<LidarSweep>>, mode: LidarColorMode) {
@@ -517,9 +510,10 @@ impl View3d {
         shown: &ViewsShown,
         size: Option<[u32; 2]>,
     ) -> anyhow::Result<([u32; 2], Vec<u8>)> {
-        if let (Look::Pictures, false, None) = (shown.look, self.camera.ortho, size)
-            && let Some(image) = self.pictured.image()
-        {
+        if shown.look == Look::Pictures && size.is_none() && pictured::can_show(scene, &self.camera) {
+            let Some(image) = self.pictured.whole(scene.rev, &self.camera) else {
+                anyhow::bail!(t("the picture is still being drawn"));
+            };
             return Ok(([image.width as u32, image.height as u32], image.rgba.clone()));
         }
         let size = size.unwrap_or_else(|| self.size_px());

@@ -1,6 +1,27 @@
-//! The texture by which egui shows what the 3D viewport drew.
+//! Textures by which egui shows the 3D view.
+
+use egui::{Color32, Rect, TextureId, Ui, pos2};
 
 use super::view3d::Gpu;
+use language::tf;
+use widgets::theme;
+
+/// Puts textures over one another into a rectangle, and why there is no picture among them.
+pub(super) fn put(ui: &Ui, rect: Rect, textures: impl Iterator<Item = TextureId>, problem: Option<&str>) {
+    let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    for texture in textures {
+        ui.painter().image(texture, rect, whole, Color32::WHITE);
+    }
+    if let Some(problem) = problem {
+        let text = tf!("The picture was not made: {problem}", problem = problem);
+        let (at, font) = (
+            rect.left_bottom() + egui::vec2(8.0, -8.0),
+            egui::FontId::proportional(12.0),
+        );
+        ui.painter()
+            .text(at, egui::Align2::LEFT_BOTTOM, text, font, theme::warn());
+    }
+}
 
 /// The texture of the picture in egui; registered again if the viewport made a new one.
 pub(super) fn register(gpu: &mut Gpu, samples: u32) -> egui::TextureId {

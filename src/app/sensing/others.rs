@@ -11,7 +11,9 @@ use crate::camera_views::CameraView;
 
 /// Renders the other sources that panes of single cameras show.
 pub(super) fn other_sources(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, SensingEvent>) {
-    let SensingRequest { scene, wanted, haste } = request;
+    let SensingRequest {
+        scene, wanted, haste, ..
+    } = request;
     let preview = *haste != Haste::Rest;
     for (id, mask) in wanted.others.iter().filter(|(id, _)| *id != learned::ID) {
         let source = sensors::cameras::source(id).unwrap_or(&sensors::cameras::shapes::ShapeMaps);

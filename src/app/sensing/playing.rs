@@ -63,7 +63,8 @@ pub(super) fn play(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'
             .get(&of, at, camera)
             .filter(|view| Some(camera) != large || view.is_wide(PLAYING_SIZE[0]));
         match known {
-            Some(view) => playing.put(view.clone()),
+            // (the colours of classes may have changed since)
+            Some(view) => playing.put(view.clone().colored(source)),
             None if Some(camera) == large => missing.insert(0, camera),
             None => missing.push(camera),
         }
@@ -77,7 +78,7 @@ pub(super) fn play(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'
         }
         let size = if is_large { PLAYING_SIZE } else { PREVIEW_SIZE };
         let Some(view) = of_scene.view(camera, size, Quality::Play) else {
-            break;
+            continue;
         };
         if let Some(bytes) = view.bytes() {
             reel.put(of, (at, camera), view.clone(), bytes);

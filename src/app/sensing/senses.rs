@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::playing::{self, Playing};
 use super::reel::{Reel, moment};
 use super::views::{Views, detail};
-use super::{Haste, SensingEvent, SensingRequest, others};
+use super::{Haste, SensingEvent, SensingRequest, others, placed};
 use crate::camera_views::{CameraView, LidarModel, PicturesKey, Wanted};
 use crate::graphics::Graphics;
 use nets::lidar::LidarNet;
@@ -63,8 +63,12 @@ impl Product for Senses {
                 return SensingEvent::Ended;
             }
         }
+        let mut scene = request.scene.clone();
+        if let Some(at_s) = request.at_s {
+            Arc::make_mut(&mut scene).show(at_s);
+        }
         let request = SensingRequest {
-            scene: shared_in(&request.scene, Lattice::OCC3D),
+            scene: shared_in(&placed(&scene), Lattice::OCC3D),
             ..request.clone()
         };
         sense(&request, &mut self.kept, ctx);
@@ -195,7 +199,9 @@ fn drops(shown: bool) -> Drops {
 }
 
 fn sense(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, SensingEvent>) {
-    let SensingRequest { scene, wanted, haste } = request;
+    let SensingRequest {
+        scene, wanted, haste, ..
+    } = request;
     let swept = (scene.rev, wanted.lidar, wanted.lost_echoes);
     let lately = |at: Instant| at.elapsed().as_secs_f64() < SWEEPS_EVERY_S;
     let plays = matches!(haste, Haste::Play { .. });
@@ -205,6 +211,7 @@ fn sense(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
     );
     // Where the network sampled its rays is told of a scene at rest.
     let again = plays || wanted.lidar == LidarModel::Exact;
+    let again = again && kept.swept != Some(swept);
     if let Some(sweep) = kept.sweeps.get(&of, at, 0).filter(|_| again).cloned() {
         let pose = scene.frame().world_from_ego;
         ctx.tell(SensingEvent::Lidar(scene.rev, pose, sweep, None));
@@ -249,7 +256,9 @@ fn sense(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
 
 /// Renders the pictures of the strip; false if the work should stop.
 fn strip(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, SensingEvent>) -> bool {
-    let SensingRequest { scene, wanted, haste } = request;
+    let SensingRequest {
+        scene, wanted, haste, ..
+    } = request;
     let preview = *haste != Haste::Rest;
     let rig = &scene.rig;
     let key = (scene.rev, wanted.pictures());
@@ -268,7 +277,7 @@ fn strip(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
             }
             let played = kept.pictures.get(&of, at, i).filter(|_| quick).cloned();
             views.push(match played {
-                Some(view) => view,
+                Some(view) => view.colored(source),
                 None => of_scene.view(i, size, quality)?,
             });
         }

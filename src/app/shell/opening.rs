@@ -156,6 +156,7 @@ impl SceneloomApp {
     fn forget_shown(&mut self, ctx: &Context) {
         self.generation.forget_scene();
         self.threads.sensing.forget();
+        self.views.view3d.forget_scene();
         self.threads.checking.forget();
         self.threads.planning.close();
         self.views.compare.forget();

@@ -290,9 +290,10 @@ impl Options {
             changed.add(share);
         }
         report["untouched_by_edits"] = json!({ "edits": made, "changed": changed.json(), "worst": worst });
+        let is_whole = made * 2 > EDITS && changed.value() == 0.0;
         bars.push((
             "pixels that an edit does not touch stay",
-            1.0 - changed.value(),
+            f64::from(u8::from(is_whole)),
             1.0,
         ));
         Ok((report, bars))

@@ -7,7 +7,7 @@ use super::near::Share;
 use scene::{
     BevLayer, BoxId, Camera, Class, Conditions, Edit, Extent, Form, Frame, Scene, SensorRig, Shape, ThingId,
 };
-use sensors::pictures::appearance::{Appearance, AppearanceCache, Quality, light_direction};
+use sensors::pictures::appearance::{Appearance, Quality, light_direction};
 use sensors::raycast::rays::CameraRays;
 use sensors::splat::VIEW_SIZE;
 use world::World;
@@ -40,12 +40,8 @@ pub(super) fn untouched(before: &Scene, draw: &mut Draw) -> Option<Share> {
     let mut after = before.clone();
     editor::apply_all(&[random_edit(before, draw)?], &mut after).ok()?;
     let touched = Touched::new(before, &after)?;
-    let (rig, conditions, cache) = (
-        SensorRig::default(),
-        Conditions::default(),
-        AppearanceCache::default(),
-    );
-    let appearance = |s: &Scene| Appearance::with_cache(s.frame(), &s.background, &rig, &conditions, &cache);
+    let (rig, conditions) = (SensorRig::default(), Conditions::default());
+    let appearance = |s: &Scene| Appearance::with_things(s.frame(), &s.background, &rig, &conditions);
     let both = [before, &after].map(appearance);
     let to_sun = light_direction(&conditions).as_dvec3();
     let of_camera = |camera: &Camera| compare(&both, &touched, camera, to_sun);

@@ -115,7 +115,7 @@ impl Appearance {
     }
 
     /// Prepares a frame as [`Self::with_things`] does, but makes anew only what the frame does not share with the one that was
-    /// prepared with the same cache before: some 5 ms for another moment of a clip.
+    /// prepared with the same cache before: some 5 ms for another moment of a clip on a map that is seen whole.
     pub fn with_cache(
         frame: &Frame,
         background: &Background,
@@ -443,13 +443,15 @@ fn lamps(air: &Air, field: &OccupancyField, things: &[DrawnObject], rig: &Sensor
             });
         }
     };
-    for t in things.iter().filter(|t| t.lamps) {
-        beams(t.foot, &|p| t.turn_back(p), t.size, 42.0 * air.lamps);
-    }
     let size = Vec3::from(rig.ego_size_m.map(|v| v as f32));
     let mut foot = glam::DVec3::from(rig.ego_center_m);
     foot.z = 0.0;
     let foot = rig.vehicle.apply(foot).as_vec3();
+    // The vehicle of the rig has its own, also where it is a box of the frame.
+    let is_own = |t: &&DrawnObject| t.foot.truncate().distance(foot.truncate()) < 0.1;
+    for t in things.iter().filter(|t| t.lamps && !is_own(t)) {
+        beams(t.foot, &|p| t.turn_back(p), t.size, 42.0 * air.lamps);
+    }
     let turn = rig.vehicle.rotation.as_quat();
     beams(foot, &|p| turn * p, size, 75.0 * air.lamps);
     out.retain(|l| l.at.is_finite());

@@ -83,10 +83,7 @@ impl Appearance {
         (camera, [width, height]): (&Camera, [u32; 2]),
         quality: Quality,
         drops: Drops,
-        (truth, goes_on): (
-            Option<(&Teller<'_>, &mut [TruthPixel])>,
-            &(dyn Fn() -> bool + Sync),
-        ),
+        (truth, goes_on): (Option<ToldPixels<'_>>, &(dyn Fn() -> bool + Sync)),
     ) -> Vec<Vec3> {
         let (w, h) = (width as usize, height as usize);
         let rays = CameraRays::new(camera, width, height);
@@ -305,6 +302,9 @@ impl Appearance {
         })
     }
 }
+
+/// Who tells the truth about pixels, and the pixels.
+type ToldPixels<'a> = (&'a Teller<'a>, &'a mut [TruthPixel]);
 
 /// Whether what falls between camera and surface is drawn.
 #[derive(Clone, Copy, PartialEq)]

@@ -14,6 +14,14 @@ pub fn is_between(x: usize, y: usize) -> bool {
     (x + y) % 2 == 1
 }
 
+/// What a sample shows, without its normal, which the lower bits tell; sky and skyline have no normal.
+fn surface(sample: &ShadedSample) -> u32 {
+    match sample.key >> 8 {
+        0 => sample.key,
+        surface => surface << 8,
+    }
+}
+
 /// Fills the pixels between in rows of `w` px. `tone` is the brightness of light, `sample` the sample of a pixel.
 pub fn fill(
     samples: &mut [ShadedSample],
@@ -44,8 +52,7 @@ pub fn fill(
             let tone = tone(other.color);
             (darkest, brightest) = (darkest.min(tone), brightest.max(tone));
             (sum, n) = (sum + other.color, n + 1.0);
-            // (the lower bits tell the normal)
-            if other.key >> 8 != first.key >> 8 || brightest - darkest > ALIKE {
+            if surface(other) != surface(first) || brightest - darkest > ALIKE {
                 return sample(x, y);
             }
         }

@@ -79,7 +79,7 @@ impl StillParts {
         for b in frame.boxes.values() {
             remove_voxels(&mut standing, &mut columns, b, GroundHeight::Physical, STRAY_M);
         }
-        // Parts of another map share nothing with these.
+        // Parts of another layout or seed share nothing with these.
         let before = before.filter(|b| b.seed == seed && b.layout == layout);
         let scenery = SceneryInput {
             background,

@@ -52,7 +52,7 @@ fn moved(frame: &Frame, by_m: f64) -> Frame {
     let mut frame = frame.clone();
     let boxes = frame.boxes.values().map(|b| SceneBox {
         center_m: b.center_m + glam::DVec3::X * by_m,
-        ..b.clone()
+        ..*b
     });
     frame.boxes = boxes.map(|b| (b.id, b)).collect();
     frame
