@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 use editor::pick::{self, PickHit, PickRay};
 use editor::tools::{ScreenProjection, ToolMark, ViewKind, Wants, point_of, select};
-use language::t;
+use language::{t, tf};
 use scene::{BoxId, Extent, LidarSweep, Scene, SceneBox};
 use sensors::pictures::appearance::CameraImage;
 use viewport::{
@@ -491,8 +491,15 @@ impl View3d {
             let share = software_ui::share(gpu.viewport.drawn_rect(), gpu.viewport.size());
             software_ui::picture_changed(ui.ctx(), texture, Some(share));
         }
-        let problem = self.pictured.problem(input.scene.rev);
-        put(ui, rect, picture.into_iter().chain([texture]), problem);
+        let note = match self.pictured.problem(input.scene.rev) {
+            _ if state.shown.look == Look::Voxels => None,
+            Some(problem) => Some(tf!("The picture was not made: {problem}", problem = problem)),
+            None if pictured::can_show(input.scene, &self.camera) => None,
+            None => Some(
+                t("Pictures are in perspective, and not from this far away: voxels are shown").to_owned(),
+            ),
+        };
+        put(ui, rect, picture.into_iter().chain([texture]), note.as_deref());
     }
 
     fn refresh_colors(&mut self, lidar: Option<&Arc<LidarSweep>>, mode: LidarColorMode) {

@@ -3,17 +3,15 @@
 use egui::{Color32, Rect, TextureId, Ui, pos2};
 
 use super::view3d::Gpu;
-use language::tf;
 use widgets::theme;
 
-/// Puts textures over one another into a rectangle, and why there is no picture among them.
-pub(super) fn put(ui: &Ui, rect: Rect, textures: impl Iterator<Item = TextureId>, problem: Option<&str>) {
+/// Puts textures over one another into a rectangle, and a note below them.
+pub(super) fn put(ui: &Ui, rect: Rect, textures: impl Iterator<Item = TextureId>, note: Option<&str>) {
     let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
     for texture in textures {
         ui.painter().image(texture, rect, whole, Color32::WHITE);
     }
-    if let Some(problem) = problem {
-        let text = tf!("The picture was not made: {problem}", problem = problem);
+    if let Some(text) = note {
         let (at, font) = (
             rect.left_bottom() + egui::vec2(8.0, -8.0),
             egui::FontId::proportional(12.0),

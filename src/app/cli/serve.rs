@@ -28,8 +28,8 @@ pub struct Serve {
     /// How LiDAR sweeps come about.
     #[arg(long, value_name = "MODEL", value_parser = ["learned", "exact"], default_value = "learned")]
     lidar: String,
-    /// Effort for pictures: full as `render` makes them, preview without smoothed edges, or play, which takes most pixels between
-    /// two that show the same from these.
+    /// Effort for pictures: full is what `render` makes; preview leaves edges jagged; play also computes only every second pixel
+    /// where nothing changes from one to the next. Both are faster.
     #[arg(long, value_name = "EFFORT", value_parser = ["full", "preview", "play"], default_value = "full")]
     pictures: String,
 }

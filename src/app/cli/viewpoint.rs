@@ -55,10 +55,13 @@ impl Viewpoint {
         Ok(camera)
     }
 
-    /// Errors if `--eye` is given and the output is no 3D view.
+    /// Errors if `--eye` or `--as pictures` is given and the output is no 3D view.
     pub(super) fn is_for(&self, view_3d: bool, what: &str) -> anyhow::Result<()> {
         match self.eye {
             Some(_) if !view_3d => bail!("--eye is of the 3D view alone, but --what is {what}"),
+            _ if !view_3d && self.look() == Look::Pictures => {
+                bail!("--as is of the 3D view alone, but --what is {what}")
+            }
             _ => Ok(()),
         }
     }

@@ -1,17 +1,18 @@
 //! Parts of a frame that stay while its boxes move, used again for the next moment where what they are made of is the same.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::field::OccupancyField;
 use super::field::owners::Owners;
 use super::ground::SmoothGround;
 use super::scenery::DrawnScenery;
-use crate::pictures::march::ground::SplitGrid;
+use crate::pictures::march::ground::{GroundHeightField, SplitGrid};
 use crate::pictures::march::paint::RoadMarkings;
 use crate::pictures::march::{GroundHeight, remove_voxels};
 use crate::pictures::scenery::SceneryInput;
 use scene::appearance::FieldShape;
-use scene::{Background, BevLayout, Extent, Frame, VoxelGrid};
+use scene::{Background, BevLayout, Class, Extent, Frame, VoxelGrid, VoxelPaint};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
 const STRAY_M: f64 = 0.7;
@@ -79,6 +80,7 @@ impl StillParts {
         for b in frame.boxes.values() {
             remove_voxels(&mut standing, &mut columns, b, GroundHeight::Physical, STRAY_M);
         }
+        show_painted(&mut standing, &columns, &frame.painted.crop(extent));
         // Parts of another layout or seed share nothing with these.
         let before = before.filter(|b| b.seed == seed && b.layout == layout);
         let scenery = SceneryInput {
@@ -108,6 +110,23 @@ impl StillParts {
             field,
             ground,
             paint,
+        }
+    }
+}
+
+/// Shows what was painted by hand onto the ground so low that its labels lie below the ground's physical height: a voxel of it on
+/// the ground.
+fn show_painted(standing: &mut VoxelGrid, ground: &GroundHeightField, painted: &VoxelPaint) {
+    let stands = |class: u8| Class::from_id(class).is_some_and(|c| c != Class::Free && !c.is_ground());
+    let mut highest: BTreeMap<[usize; 2], (usize, u8)> = BTreeMap::new();
+    for (x, y, z, class) in painted.iter_set().filter(|(.., class)| stands(*class)) {
+        let of = highest.entry([x, y]).or_insert((z, class));
+        *of = (*of).max((z, class));
+    }
+    for ([x, y], (z, class)) in highest {
+        let on_ground = ground.bin_on(x, y);
+        if z < on_ground && on_ground < standing.extent().nz() {
+            standing.set(x, y, on_ground, class);
         }
     }
 }

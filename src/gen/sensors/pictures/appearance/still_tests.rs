@@ -155,3 +155,24 @@ fn pictures_that_play_keep_every_second_pixel_and_all_edges() {
         );
     }
 }
+
+/// A stroke of one voxel on the road lies below the road's physical height by its labels, and is seen all the same.
+#[test]
+fn what_is_painted_onto_the_ground_is_seen() {
+    let (mut frame, background) = street();
+    let before = pictures(&fresh(&frame, &background));
+    for [x, y] in frame
+        .extent()
+        .all_columns()
+        .filter(|[x, y]| (112..118).contains(x) && (98..103).contains(y))
+    {
+        frame.occupancy.set(x, y, 1, Class::Manmade.id());
+        frame.painted.set(x, y, 1, Class::Manmade.id());
+    }
+    let appearance = fresh(&frame, &background);
+    let camera = &SensorRig::default().cameras[1];
+    let truth = appearance.truth(camera, SIZE, &frame.boxes, None);
+    let seen = truth.pixels.iter().filter(|p| p.class == Class::Manmade.id());
+    let low = seen.filter(|p| (3.0..9.0).contains(&p.depth_m)).count();
+    assert!(low > 20 && pictures(&appearance) != before, "{low} pixels");
+}

@@ -194,6 +194,12 @@ impl GroundHeightField {
         }
     }
 
+    /// The bin of voxels that stand on the ground of a column at its physical height; on level ground without one.
+    pub fn bin_on(&self, x: usize, y: usize) -> usize {
+        let top = self.top.get(self.extent.index(x, y)).copied().unwrap_or(f64::NAN);
+        if top.is_nan() { SMEAR } else { top as usize }
+    }
+
     /// Marks a column whose ground an object hid, for [`Self::fill_wanted`].
     pub fn want(&mut self, x: usize, y: usize) {
         if let Some(wanted) = self.wanted.get_mut(self.extent.index(x, y)) {
