@@ -16,9 +16,9 @@ use viewport::ViewCamera;
 
 use crate::camera_views::{camera_input, paint_input};
 use crate::capture::{CaptureOptions, Subject, capture};
+use crate::look::Look;
 use crate::painting::PaintWish;
 use crate::picture::{self, RgbaPicture, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
-use crate::views_shown::Look;
 
 /// Subject of a clip.
 #[derive(Clone, Debug, PartialEq)]

@@ -20,6 +20,7 @@ mod finding_marks;
 pub mod findings;
 mod fly;
 pub mod graphics;
+pub mod look;
 mod map_edges;
 mod marks;
 mod no_adapter;

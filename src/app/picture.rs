@@ -3,8 +3,8 @@
 use anyhow::bail;
 
 use crate::camera_views::{RadarColors, radar_color};
+use crate::look::Look;
 use crate::pictured;
-use crate::views_shown::Look;
 use scene::raster::box_cells;
 use scene::{
     BevLayer, Class, Extent, Frame, LidarSweep, MultiPlaneImage, RadarScan, Scene, SceneBox, VoxelGrid,

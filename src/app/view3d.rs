@@ -19,6 +19,7 @@ use viewport::{
 
 use super::canvas_tools::{Driver, ViewContext};
 use super::command::Command;
+use super::look::Look;
 use super::marks::Board;
 use super::pictured::{self, PicturedView};
 use super::pointer::{self, PointerEvent, ViewDrag};
@@ -27,7 +28,7 @@ use super::screen_map::{point, pos};
 use super::state::UiState;
 use super::tools::ToolState;
 use super::view_texture::{put, register};
-use super::views_shown::{Look, ViewsShown};
+use super::views_shown::ViewsShown;
 use super::{detection_marks, fly, no_adapter, place_marks, thing_outlines, track_marks, unsettled_marks};
 use crate::panes::id::PaneId;
 use crate::shell::live::Bounds;

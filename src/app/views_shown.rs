@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::detection_marks::DetectionMarks;
 use super::finding_marks::FindingMarks;
+use super::look::Look;
 
 /// Picture below the layers of the bird's-eye view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -15,16 +16,6 @@ pub enum Underlay {
     /// The occupancy from above, under translucent layers.
     #[default]
     Both,
-}
-
-/// What the 3D view shows the scene as.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Look {
-    /// Voxels in the colours of their classes.
-    #[default]
-    Voxels,
-    /// What a camera would see there.
-    Pictures,
 }
 
 /// Settings and marks of the two large views.

@@ -4,7 +4,7 @@ use anyhow::{Context, bail};
 use glam::DVec3;
 
 use app::export::view_camera;
-use app::views_shown::Look;
+use app::look::Look;
 use scene::{Pose, Scene};
 use viewport::ViewCamera;
 
