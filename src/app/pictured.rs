@@ -22,6 +22,8 @@ use viewport::{GROUND_TOP_M, ViewCamera};
 const MOVING_PIXELS: f32 = 130_000.0;
 /// Most pixels of a picture at rest.
 const RESTING_PIXELS: f32 = 1_500_000.0;
+/// Farthest place that is looked at, m: beyond [`FAR_M`] there is only sky.
+const REACH_M: f64 = 0.75 * FAR_M as f64;
 /// Number of the ego vehicle as a box of the picture.
 const EGO: BoxId = BoxId(u32::MAX);
 
@@ -69,7 +71,7 @@ pub struct PicturedView {
 
 impl PicturedView {
     /// The newest picture for a pane of some pixels; asks for one of this scene and viewpoint if there is none. `None` if there
-    /// is none yet, or the view is orthographic. `moves` is true while something changes.
+    /// is none yet, or [`can_show`] refuses the view. `moves` is true while something changes.
     pub fn picture(
         &mut self,
         ctx: &Context,
@@ -238,7 +240,7 @@ pub fn can_show(scene: &Scene, view: &ViewCamera) -> bool {
     // Of large maps the part around the vehicle is drawn.
     let whole = is_seen(map.min_m()) && is_seen(map.max_m());
     let off_m = (view.target_m.truncate() - vehicle_m).abs().max_element();
-    !view.ortho && view.distance_m < 0.75 * half_m && (whole || off_m < half_m / 2.0)
+    !view.ortho && view.distance_m < REACH_M && (whole || off_m < half_m / 2.0)
 }
 
 /// The viewpoint of the 3D view as a camera of pictures; `None` if it is orthographic.
@@ -252,7 +254,7 @@ fn camera_of(view: &ViewCamera, size: [u32; 2]) -> Option<Camera> {
     raised.to_camera(size)
 }
 
-/// The 3D view as a picture. Errors if it is orthographic or does not fit into memory.
+/// The 3D view as a picture. Errors if it is one that [`can_show`] refuses, or does not fit into memory.
 pub fn shot(
     scene: &Scene,
     view: &ViewCamera,
@@ -263,7 +265,7 @@ pub fn shot(
     let camera =
         camera_of(view, size).context("pictures are made in perspective, and this view is orthographic")?;
     if !can_show(scene, view) {
-        bail!("pictures reach {FAR_M} m, and this view is farther away");
+        bail!("pictures reach {REACH_M} m and the map around the vehicle, and this view is farther away");
     }
     let [width, height] = size;
     let image = prepared(scene, true, cache).render(&camera, width, height, Quality::Full);

@@ -29,7 +29,7 @@ use sensors::radar;
 const SHOWN_RAYS: usize = 400;
 
 /// Least time between two sweeps, and between two scans of radars, while a clip plays, s.
-const SWEEPS_EVERY_S: f64 = 0.4;
+pub(super) const SWEEPS_EVERY_S: f64 = 0.4;
 
 /// The product of the thread: sweeps and pictures.
 pub(super) struct Senses {
@@ -217,11 +217,10 @@ fn sense(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
         ctx.tell(SensingEvent::Lidar(scene.rev, pose, sweep, None));
         kept.swept = Some(swept);
     }
+    // Sweeps that were made before cost no time, so that those between them are made the next time round.
     let ranges = !plays || !kept.ranged.is_some_and(lately);
-    if ranges {
-        kept.ranged = Some(Instant::now());
-    }
     if ranges && kept.swept != Some(swept) {
+        kept.ranged = Some(Instant::now());
         let sweep = Arc::new(kept.sweep(scene, wanted));
         if plays {
             kept.sweeps.put(of, (at, 0), sweep.clone(), sweep.bytes());
@@ -236,6 +235,7 @@ fn sense(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
         kept.swept = Some(swept);
     }
     if ranges && wanted.radar && kept.scanned != Some(scene.rev) {
+        kept.ranged = Some(Instant::now());
         ctx.tell(SensingEvent::Radar(scene.rev, radar::scans(scene)));
         kept.scanned = Some(scene.rev);
     }

@@ -250,3 +250,31 @@ fn a_clip_that_plays_again_shows_the_pictures_and_sweeps_of_before() {
     let (rest, _) = sense(0.5, Haste::Rest);
     assert!(!Arc::ptr_eq(&first.picture, &rest.picture));
 }
+
+/// Sweeps that are shown again take none of the time for new ones, or the gaps between them would stay.
+#[test]
+fn sweeps_between_those_of_before_are_made_the_next_time_round() {
+    let world = World::random(3);
+    let occupancy = draft::draft(&world.layout, world.boxes.values());
+    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
+    let scene = clip_of(Scene::single("test", frame, Arc::default(), 3));
+    let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
+    let start = Instant::now();
+    let mut sweep_of = |time_s: f64| {
+        let plays = Haste::Play { every_ms: 100 };
+        sensing.ask(&Arc::new(scene.at(time_s)), Wanted::default(), plays);
+        while !sensing.is_idle() {
+            assert!(start.elapsed() < Duration::from_secs(120), "no news");
+            std::thread::sleep(Duration::from_millis(2));
+            sensing.drain();
+        }
+        sensing.lidar().expect("a sweep").clone()
+    };
+    let first = sweep_of(0.5);
+    std::thread::sleep(Duration::from_secs_f64(1.2 * senses::SWEEPS_EVERY_S));
+    assert!(Arc::ptr_eq(&first, &sweep_of(0.5)));
+    sweep_of(0.7);
+    std::thread::sleep(Duration::from_secs_f64(1.2 * senses::SWEEPS_EVERY_S));
+    assert!(Arc::ptr_eq(&first, &sweep_of(0.5)));
+    assert!(!Arc::ptr_eq(&first, &sweep_of(0.6)));
+}

@@ -80,13 +80,14 @@ impl StillParts {
         for b in frame.boxes.values() {
             remove_voxels(&mut standing, &mut columns, b, GroundHeight::Physical, STRAY_M);
         }
-        show_painted(&mut standing, &columns, &frame.painted.crop(extent));
+        let painted = frame.painted.crop(extent);
+        show_painted(&mut standing, &columns, &painted);
         // Parts of another layout or seed share nothing with these.
         let before = before.filter(|b| b.seed == seed && b.layout == layout);
         let scenery = SceneryInput {
             background,
             occupancy: &occupancy,
-            painted: &frame.painted.crop(extent),
+            painted: &painted,
             layout: &layout,
             inferred: frame.inferred.background,
         };
@@ -125,7 +126,8 @@ fn show_painted(standing: &mut VoxelGrid, ground: &GroundHeightField, painted: &
     }
     for ([x, y], (z, class)) in highest {
         let on_ground = ground.bin_on(x, y);
-        if z < on_ground && on_ground < standing.extent().nz() {
+        let is_free = on_ground < standing.extent().nz() && standing.get(x, y, on_ground) == Class::FREE;
+        if z < on_ground && is_free {
             standing.set(x, y, on_ground, class);
         }
     }

@@ -14,7 +14,6 @@ use scene::{Background, Class, ThingId, VoxelGrid};
 /// Scenery of a frame.
 pub struct DrawnScenery {
     shown: ShownScenery,
-    seed: u32,
     /// The objects of each thing that is shown.
     objects: Vec<Arc<Vec<DrawnObject>>>,
     /// Things of which the field draws all or a part.
@@ -25,10 +24,9 @@ pub struct DrawnScenery {
 
 impl DrawnScenery {
     /// Draws what can be drawn, and removes its voxels from `standing`, the voxels of the map that stand on the ground. What is
-    /// the same as in `before`, of the same layout, is taken from there.
+    /// the same as in `before`, of the same layout and seed, is taken from there.
     pub fn new(input: SceneryInput<'_>, standing: &mut VoxelGrid, seed: u32, before: Option<&Self>) -> Self {
         let extent = input.layout.extent();
-        let before = before.filter(|b| b.seed == seed);
         let shown = ShownScenery::new(input, before.map(|b| &b.shown));
         let goes = shown.stood_for(input.occupancy, input.painted);
         for (i, mask) in goes {
@@ -68,7 +66,6 @@ impl DrawnScenery {
                 .cloned()
                 .collect(),
             shown,
-            seed,
         }
     }
 
