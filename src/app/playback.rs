@@ -60,8 +60,8 @@ impl Default for Playback {
 
 /// Longest time by which one tick advances the clip, s. Longer pauses, for example of a hidden window, are cut to it.
 const LONGEST_TICK_S: f64 = 0.5;
-/// Time between two updates of the sensors while it plays, s: at least, and at most if the ones before are not done.
-const SENSORS_EVERY_S: [f64; 2] = [0.03, 0.5];
+/// Least time between two moments that the sensors are told while it plays, s.
+const SENSORS_EVERY_S: f64 = 0.03;
 /// Least and most time between two moments of a clip that sensors show while it plays, ms.
 const SENSED_EVERY_MS: [u32; 2] = [25, 400];
 
@@ -77,13 +77,11 @@ impl Playback {
         }
     }
 
-    /// True if the sensors should be updated now: always while paused; while playing once they are `done` with the moment
-    /// before, or after a while.
-    pub fn sensors_are_due(&mut self, now_s: f64, done: bool) -> bool {
+    /// True if the sensors should be told the moment now: always while paused, and every now and then while it plays. They take
+    /// the newest one when they are done with the one before.
+    pub fn sensors_are_due(&mut self, now_s: f64) -> bool {
         let waited_s = self.sensed_s.map_or(f64::INFINITY, |last_s| now_s - last_s);
-        let [least_s, most_s] = SENSORS_EVERY_S;
-        let pause_s = if done { least_s } else { most_s };
-        let due = !self.playing || waited_s.is_nan() || waited_s >= pause_s;
+        let due = !self.playing || waited_s.is_nan() || waited_s >= SENSORS_EVERY_S;
         if due {
             self.sensed_s = self.playing.then_some(now_s);
         }
@@ -136,22 +134,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sensors_look_always_at_rest_and_when_they_are_done_while_it_plays() {
-        let looks = |done: bool, playing: bool| {
+    fn sensors_look_always_at_rest_and_now_and_then_while_it_plays() {
+        let looks = |every_s: f64, playing: bool| {
             let mut playback = Playback {
                 playing,
                 ..Playback::default()
             };
-            let times = (0..100).map(|i| f64::from(i) * 0.1);
-            times.filter(|t| playback.sensors_are_due(*t, done)).count()
+            let times = (0..100).map(|i| f64::from(i) * every_s);
+            times.filter(|t| playback.sensors_are_due(*t)).count()
         };
-        assert_eq!([looks(false, false), looks(true, false)], [100, 100]);
-        assert_eq!([looks(false, true), looks(true, true)], [20, 100]);
+        assert_eq!([looks(0.01, false), looks(0.1, false)], [100, 100]);
+        assert!((25..=34).contains(&looks(0.01, true)) && looks(0.1, true) == 100);
         let mut playback = Playback {
             playing: true,
             ..Playback::default()
         };
-        assert!(playback.sensors_are_due(f64::NAN, false));
+        assert!(playback.sensors_are_due(f64::NAN));
     }
 
     #[test]

@@ -94,6 +94,8 @@ pub struct Sensing {
     /// Last jobs for a forgotten scene, of sensing and of painting: news of them and of earlier jobs is dropped.
     forgotten: [u64; 2],
     problem: Option<String>,
+    /// New pictures of the strip since they were asked about, and whether the large one is among them.
+    fresh: (usize, bool),
     painting: Worker<painting::PaintingRequest, painting::PaintingEvent>,
     paint: Arc<PaintWish>,
     /// The learned pictures of all cameras, with their state.
@@ -132,6 +134,7 @@ impl Sensing {
             version: 0,
             forgotten: [0; 2],
             problem: None,
+            fresh: (0, false),
             paint: Arc::default(),
             painted: None,
             stage: None,
@@ -265,6 +268,13 @@ impl Sensing {
                 SensingEvent::Cameras(_, of, _)
                     if self.asked.is_some_and(|(_, now, _)| now.source != of.source) => {}
                 SensingEvent::Cameras(rev, wanted, views) => {
+                    let before = self.cameras.take().map(|(.., views)| views).unwrap_or_default();
+                    let is_new =
+                        |v: &&CameraView| !before.iter().any(|b| Arc::ptr_eq(&b.picture, &v.picture));
+                    for view in views.iter().filter(is_new) {
+                        let is_large = wanted.large.is_some_and(|(_, camera)| camera == view.camera);
+                        self.fresh = (self.fresh.0 + 1, self.fresh.1 || is_large);
+                    }
                     self.cameras = Some((rev, wanted, Arc::new(views)));
                     self.version += 1;
                 }
@@ -285,6 +295,11 @@ impl Sensing {
     /// The reason why a scene could not be sensed; returned once. Later scenes are sensed again.
     pub fn take_problem(&mut self) -> Option<String> {
         self.problem.take()
+    }
+
+    /// How many new pictures the strip got since the last call, and whether that of the large camera is among them.
+    pub fn take_fresh(&mut self) -> (usize, bool) {
+        std::mem::take(&mut self.fresh)
     }
 
     /// The newest sweep.

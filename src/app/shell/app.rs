@@ -297,6 +297,10 @@ impl SceneloomApp {
     /// Does all work except drawing: takes updates of the worker, the sensors and the file threads.
     pub fn update(&mut self, ctx: &egui::Context) {
         self.threads.sensing.drain();
+        let (cameras, large) = self.threads.sensing.take_fresh();
+        if cameras > 0 {
+            self.frames.perf.pictures(self.now_s(), cameras, large);
+        }
         if let Some(problem) = self.threads.sensing.take_problem() {
             self.fail(problem);
         }

@@ -207,6 +207,11 @@ impl Perf {
         });
     }
 
+    /// Notes that so many new pictures of cameras came, and whether one of the camera shown large was among them.
+    pub fn pictures(&self, now_s: f64, cameras: usize, large: bool) {
+        self.tell(|| json!({ "kind": "pictures", "t_s": round(now_s), "cameras": cameras, "large": large }));
+    }
+
     /// Notes that the news of the worker and of files were taken in.
     pub fn logic_done(&mut self, now_s: f64) {
         if let Some(frame) = &mut self.frame {

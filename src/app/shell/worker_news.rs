@@ -44,8 +44,7 @@ impl SceneloomApp {
             false if changes => Haste::Preview,
             false => Haste::Rest,
         };
-        let idle = self.threads.sensing.is_idle();
-        if self.state.playback.sensors_are_due(now_s, idle) {
+        if self.state.playback.sensors_are_due(now_s) {
             let count = self.document.scene().rig.cameras.len();
             let state = &self.state;
             let wanted = Wanted::from_settings(&state.cameras, &state.lidar, &state.radar, count);
