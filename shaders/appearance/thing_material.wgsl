@@ -159,21 +159,20 @@ fn thing_surface(a: u32, part: u32, p: vec3f, n: vec3f, fp: f32) -> Surface {
         }
         case 4u: { // Wheel
             out.albedo = gray(0.010);
-            if abs(n.y) > 0.7 {
-                if car {
-                    let one = vec2f(p.x + 0.295 * size.x, p.z - wheel_radius);
-                    let two = vec2f(p.x - 0.3 * size.x, p.z - wheel_radius);
-                    let q = select(two, one, length(one) <= length(two));
-                    let d = length(q) / wheel_radius;
-                    let spoke = abs(fraction(atan2(q.y, q.x) * 5.0 / 6.2831853));
-                    if d < 0.70 && (!(d >= 0.2 && d <= 0.62) || abs(spoke - 0.5) < 0.30) {
-                        out.albedo = gray(0.34);
-                        out.mirror = 0.10;
-                        out.gloss = 0.8;
-                    }
-                }
-                if class_id == BICYCLE {
-                    out.albedo = gray(0.04);
+            let wheel = section(9u) + part * PART_WORDS;
+            if abs(n.y) > 0.7 && words[wheel] == 1u {
+                let middle = num3(wheel + 5u);
+                let q = vec2f(p.x - middle.x, p.z - middle.z);
+                let d = length(q) / num(wheel + 8u);
+                let turn = atan2(q.y, q.x) / 6.2831853;
+                let spoke = abs(fraction(turn * 5.0));
+                let bolt = abs(abs(fraction(turn * 10.0)) - 0.5);
+                let light = d < 0.70 && (!(d >= 0.2 && d <= 0.62) || abs(spoke - 0.5) < 0.30);
+                let heavy = d < 0.60 && !(d >= 0.22 && d <= 0.27) && !(d >= 0.33 && d <= 0.39 && bolt < 0.2);
+                if (car && light) || (!car && heavy) {
+                    out.albedo = select(gray(0.2), gray(0.34), car);
+                    out.mirror = 0.10;
+                    out.gloss = 0.8;
                 }
             }
         }

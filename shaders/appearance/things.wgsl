@@ -38,6 +38,49 @@ fn plane_at(i: u32) -> vec4f {
     return vec4f(num3(a), num(a + 3u));
 }
 
+// The nearer of a hit and another that counts if it lies within the limit.
+fn nearer(best: vec4f, t: f32, normal: vec3f, limit: f32) -> vec4f {
+    if t > 1e-4 && t < limit && (best.w < 0.0 || t < best.w) {
+        return vec4f(normal, t);
+    }
+    return best;
+}
+// A limb: see the processor's.
+fn cast_limb(a: vec3f, b: vec3f, radii: vec2f, o: vec3f, d: vec3f, limit: f32) -> vec4f {
+    let axis = b - a;
+    let start = o - a;
+    let thin = radii.x - radii.y;
+    let span = dot(axis, axis) - thin * thin;
+    var best = vec4f(0.0, 0.0, 1.0, -1.0);
+    for (var k = 0; k < 2; k++) {
+        let q = o - select(b, a, k == 0);
+        let r = select(radii.y, radii.x, k == 0);
+        let roots = quadratic(dot(d, d), dot(q, d), dot(q, q) - r * r);
+        if roots.z > 0.0 {
+            best = nearer(best, roots.x, (q + d * roots.x) / r, limit);
+        }
+    }
+    if span > 0.0 {
+        let w = dot(start, axis) - radii.x * thin;
+        let step = dot(d, axis);
+        let square = span * dot(d, d) - step * step;
+        let half = span * dot(start, d) - w * step;
+        let rest = span * (dot(start, start) - radii.x * radii.x) - w * w;
+        let under = half * half - square * rest;
+        if under >= 0.0 && square != 0.0 {
+            for (var k = 0; k < 2; k++) {
+                let t = (-half + select(sqrt(under), -sqrt(under), k == 0)) / square;
+                let s = (w + step * t) / span;
+                let normal = (start + d * t - axis * s) / (radii.x - thin * s);
+                if s >= 0.0 && s <= 1.0 && dot(normal, d) < 0.0 {
+                    best = nearer(best, t, normal, limit);
+                }
+            }
+        }
+    }
+    return best;
+}
+
 // Normal and distance of a part, negative for none.
 fn cast_part(part: u32, o: vec3f, d: vec3f, limit: f32) -> vec4f {
     let a = section(9u) + part * PART_WORDS;
@@ -73,6 +116,12 @@ fn cast_part(part: u32, o: vec3f, d: vec3f, limit: f32) -> vec4f {
         return none;
     }
     let middle = num3(a + 5u);
+    if kind == 5u {
+        let narrow = vec3f(1.0, 1.0 / num(a + 13u), 1.0);
+        let radii = vec2f(num(a + 11u), num(a + 12u));
+        let hit = cast_limb(middle * narrow, num3(a + 8u) * narrow, radii, o * narrow, d * narrow, limit);
+        return vec4f(normal_or(hit.xyz * narrow, vec3f(0.0, 0.0, 1.0)), hit.w);
+    }
     if kind == 1u {
         let radius = num(a + 8u);
         let wide = num(a + 9u);

@@ -58,7 +58,7 @@ pub const CONTRAST: f32 = 0.10;
 /// Number of words of a thing in [`AppearanceData::words`].
 pub const THING_WORDS: usize = 20;
 /// Number of words of a part; see [`THING_WORDS`].
-pub const PART_WORDS: usize = 12;
+pub const PART_WORDS: usize = 14;
 
 /// Radii of the circles around a map on which the skyline stands, m; larger for a larger map, see
 /// [`FieldShape::skyline`].

@@ -150,6 +150,7 @@ fn in_ego(frame: &Frame, extent: Extent) -> Frame {
         source: Arc::new(source),
         absent: frame.absent.clone(),
         own_shapes: frame.own_shapes.clone(),
+        covered_m: frame.covered_m.clone(),
     }
 }
 

@@ -47,6 +47,8 @@ pub struct Frame {
     pub absent: Arc<BTreeSet<BoxId>>,
     /// Objects whose voxels are their own, in place of those of their class. They are in the occupancy too.
     pub own_shapes: Arc<BTreeMap<BoxId, OwnShape>>,
+    /// Distance that people and bicycles covered since their motion began, forward along their heading, m: the phase of their steps.
+    pub covered_m: Arc<BTreeMap<BoxId, f64>>,
 }
 
 impl Frame {
@@ -74,6 +76,7 @@ impl Frame {
             source,
             absent: Arc::default(),
             own_shapes: Arc::default(),
+            covered_m: Arc::default(),
         }
     }
 

@@ -113,6 +113,7 @@ impl ColumnShift {
             source: Arc::new(source),
             absent: frame.absent.clone(),
             own_shapes: frame.own_shapes.clone(),
+            covered_m: frame.covered_m.clone(),
         }
     }
 }

@@ -223,6 +223,7 @@ fn read_canvas<R: Read + Seek>(file: &mut Reader<R>, header: FrameHeader) -> Res
         source: Arc::new(source),
         absent: Arc::default(),
         own_shapes: Arc::default(),
+        covered_m: Arc::default(),
     })
 }
 

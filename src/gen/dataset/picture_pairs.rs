@@ -7,8 +7,8 @@ use safetensors::tensor::Dtype;
 use super::pictures::{DEPTH_STEP_M, floats, intrinsic, is_free, map_from_camera, place_of, rendered};
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{
-    BevLayout, Camera, CameraTruth, Conditions, Extent, Frame, PolylineKind, Pose, SensorRig, TimeOfDay,
-    VoxelGrid, Weather, Window,
+    Background, BevLayout, Camera, CameraTruth, Conditions, Extent, Frame, PolylineKind, Pose, SensorRig,
+    TimeOfDay, VoxelGrid, Weather, Window,
 };
 pub use sensors::pictures::appearance::Quality;
 use sensors::pictures::appearance::light_direction;
@@ -72,7 +72,7 @@ pub fn picture_pair(
     PicturePair {
         moments: poses.map(|pose| {
             let rig = SensorRig::default().standing_at(&pose);
-            seen(&frame, &teller, &conditions, &rig, look)
+            seen((&frame, &world.background), &teller, &conditions, &rig, look)
         }),
         dense: frame.occupancy,
         conditions,
@@ -109,7 +109,8 @@ pub fn recorded_pair(
     let dense = first.occupancy.crop(window);
     let moments = taken.map(|taken| {
         let teller = HintedFrame::new(taken.frame);
-        let mut seen = seen(taken.frame, &teller, &conditions, taken.rig, look);
+        let bare = Background::default();
+        let mut seen = seen((taken.frame, &bare), &teller, &conditions, taken.rig, look);
         seen.rgb = taken.rgb;
         for truth in &mut seen.truth {
             truth.camera.translation_m[0] -= middle_m.x;
@@ -140,7 +141,7 @@ pub(super) fn conditions_of(draw: &mut Draw, seed: u64) -> Conditions {
 }
 
 fn seen(
-    frame: &Frame,
+    frame: (&Frame, &Background),
     teller: &HintedFrame<'_>,
     conditions: &Conditions,
     rig: &SensorRig,

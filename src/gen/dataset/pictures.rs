@@ -5,8 +5,8 @@ use safetensors::tensor::Dtype;
 
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{
-    BevLayout, Camera, CameraTruth, Class, Conditions, Extent, Frame, PolylineKind, Pose, SceneBox,
-    SensorRig, TimeOfDay, VoxelGrid, Weather, raster,
+    Background, BevLayout, Camera, CameraTruth, Class, Conditions, Extent, Frame, PolylineKind, Pose,
+    SceneBox, SensorRig, TimeOfDay, VoxelGrid, Weather, raster,
 };
 use sensors::pictures::appearance::{Appearance, Quality};
 use world::draw::Draw;
@@ -52,7 +52,12 @@ pub fn picture_frame(
     let time = TimeOfDay::ALL[draw.weighted(&[0.15, 0.5, 0.15, 0.2])];
     let weather = Weather::ALL[draw.weighted(&[0.4, 0.2, 0.2, 0.08, 0.08, 0.04])];
     let conditions = Conditions::usual(time, weather, seed);
-    let (rgb, truth) = rendered(&frame, &rig, &conditions, (size_px, Quality::Full));
+    let (rgb, truth) = rendered(
+        (&frame, &world.background),
+        &rig,
+        &conditions,
+        (size_px, Quality::Full),
+    );
     PictureFrame {
         bev: raster::bev_channels(&frame.layout, frame.boxes.values()),
         dense: frame.occupancy,
@@ -62,14 +67,15 @@ pub fn picture_frame(
     }
 }
 
-/// Pictures of the cameras of a rig, sRGB, three bytes a pixel, and the truth about their pixels, at a size in pixels.
+/// Pictures of the cameras of a rig, sRGB, three bytes a pixel, and the truth about their pixels, at a size in pixels. Scenery is
+/// drawn as the things that it is.
 pub(super) fn rendered(
-    frame: &Frame,
+    (frame, background): (&Frame, &Background),
     rig: &SensorRig,
     conditions: &Conditions,
     (size_px, quality): ([u32; 2], Quality),
 ) -> (Vec<Vec<u8>>, Vec<CameraTruth>) {
-    let appearance = Appearance::new(frame, rig, conditions);
+    let appearance = Appearance::with_things(frame, background, rig, conditions);
     let of = |camera: &Camera| {
         let (image, truth) = appearance.render_truth(camera, size_px, quality, &frame.boxes, None);
         let rgb = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);

@@ -36,7 +36,7 @@ pub fn sensors_pair(
     let conditions = conditions_of(&mut Draw::new(seed, "sensors pair"), seed);
     let frame = Frame::new(world.layout, world.boxes, dense);
     let (rgb, truth) = rendered(
-        &frame,
+        (&frame, &world.background),
         &SensorRig::default(),
         &conditions,
         (look.size_px, look.quality),

@@ -65,6 +65,7 @@ pub fn fold(
         source: canvas.source.clone(),
         absent: Arc::default(),
         own_shapes: Arc::default(),
+        covered_m: Arc::default(),
     };
     if clip.ego.is_none() {
         next.world_from_ego = after.world_from_ego;

@@ -142,6 +142,13 @@ impl Clip {
             .at(time_s, |to| self.moving_within(to, time_s, left.checked_sub(1)?))
     }
 
+    /// Distance that a track has covered since its motion began, forward along its heading, m; 0 for tracks that are attached
+    /// to others, and for other ids.
+    pub fn covered_m(&self, id: BoxId, time_s: f64) -> f64 {
+        let motion = self.motion(Some(id));
+        motion.map_or(0.0, |motion| motion.covered_m(time_s))
+    }
+
     /// The box of a track at a time, standing on the ground there; `None` if it is not there then.
     pub fn box_at(&self, id: BoxId, time_s: f64, relief: &Relief) -> Option<SceneBox> {
         let moving = self.moving(id, time_s)?;

@@ -113,6 +113,15 @@ impl Motion {
         }
     }
 
+    /// Distance covered by a time since the motion began, forward along the heading, m; 0 if it is attached.
+    pub fn covered_m(&self, time_s: f64) -> f64 {
+        match self {
+            Self::Keys(keys) => covered_by_keys_m(keys, time_s),
+            Self::Path(path) => path.covered_m(time_s),
+            Self::Attached { .. } => 0.0,
+        }
+    }
+
     /// The times that the user set, s.
     pub fn times_s(&self) -> Vec<f64> {
         match self {
@@ -357,6 +366,24 @@ pub(super) fn at_keys(keys: &[Key], time_s: f64) -> Option<Moving> {
         yaw_rad: yaw.x,
         velocity_mps: v,
     })
+}
+
+/// Time between two points of the line by which a way between keyframes is measured, s.
+const MEASURED_EVERY_S: f64 = 0.1;
+
+/// Distance covered between the first key and a time, forward along the heading, m. It grows without jumps.
+fn covered_by_keys_m(keys: &[Key], time_s: f64) -> f64 {
+    let (Some(first), Some(last)) = (keys.first(), keys.last()) else {
+        return 0.0;
+    };
+    let until_s = time_s.clamp(first.time_s, last.time_s) - first.time_s;
+    let steps = (until_s / MEASURED_EVERY_S) as usize;
+    let times = (0..=steps).map(|i| i as f64 * MEASURED_EVERY_S).chain([until_s]);
+    let points: Vec<Moving> = times.filter_map(|t| at_keys(keys, first.time_s + t)).collect();
+    let ways = points
+        .windows(2)
+        .map(|pair| (pair[1].at_m - pair[0].at_m).dot(DVec2::from_angle(pair[0].yaw_rad)));
+    ways.sum()
 }
 
 /// Headings of keys `i - 1` (where there is one) to `i + 2`, each within half a turn of the one before, rad.

@@ -263,3 +263,58 @@ fn bad_motions_are_told_in_one_line() {
         assert!(problem.contains(says) && !problem.contains('\n'), "{problem}");
     }
 }
+
+#[test]
+fn the_way_covered_grows_with_the_motion_and_not_by_turning() {
+    // A quarter of a circle of radius 10 m, walked forward.
+    let way: Vec<(f64, f64, f64, f64)> = (0..=9)
+        .map(|i| {
+            let turn = f64::from(i) * 10f64.to_radians();
+            (
+                f64::from(i),
+                10.0 * turn.sin(),
+                10.0 - 10.0 * turn.cos(),
+                turn.to_degrees(),
+            )
+        })
+        .collect();
+    let quarter_m = 5.0 * std::f64::consts::PI;
+    let covered_m = keys(&way).covered_m(9.0);
+    assert!((covered_m - quarter_m).abs() < 0.1, "{covered_m}");
+    let (mut before_m, motion) = (0.0, keys(&way));
+    for i in 0..=1200 {
+        let now_m = motion.covered_m(f64::from(i) * 0.01);
+        assert!(
+            (-1e-9..0.03).contains(&(now_m - before_m)),
+            "{now_m} after {before_m}"
+        );
+        before_m = now_m;
+    }
+    assert_eq!(motion.covered_m(-5.0), 0.0);
+    assert!(motion.covered_m(f64::NAN).is_nan() || motion.covered_m(f64::NAN) == 0.0);
+    let path = |rear_first| {
+        Motion::Path(Path {
+            points_m: vec![DVec2::ZERO, DVec2::new(20.0, 0.0)],
+            speeds: vec![
+                Speed {
+                    time_s: 1.0,
+                    mps: 2.0,
+                },
+                Speed {
+                    time_s: 9.0,
+                    mps: 2.0,
+                },
+            ],
+            start_m: 3.0,
+            rear_first,
+        })
+    };
+    assert_eq!([0.0, 1.0, 4.0].map(|t| path(false).covered_m(t)), [0.0, 0.0, 6.0]);
+    assert_eq!(path(true).covered_m(4.0), -6.0);
+    let attached = Motion::Attached {
+        to: BoxId(2),
+        at_m: DVec2::ZERO,
+        yaw_deg: 0.0,
+    };
+    assert_eq!(attached.covered_m(4.0), 0.0);
+}

@@ -121,6 +121,12 @@ impl Path {
         }
     }
 
+    /// Distance covered by a time since the start, forward along the heading, m.
+    pub fn covered_m(&self, time_s: f64) -> f64 {
+        let way_m = self.along(time_s).0 - self.along(f64::NEG_INFINITY).0;
+        if self.rear_first { -way_m } else { way_m }
+    }
+
     /// Place and velocity at a time.
     pub fn at(&self, time_s: f64) -> Moving {
         let (along_m, mps) = self.along(time_s);

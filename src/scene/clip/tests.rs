@@ -329,3 +329,16 @@ fn bad_clips_are_told_in_one_line() {
     }
     let _: Option<Edit> = None;
 }
+
+#[test]
+fn a_view_knows_how_far_walkers_have_come() {
+    let mut scene = scene();
+    scene.change_clip(|clip| {
+        let track = clip.tracks.get_mut(&BoxId(7)).expect("there");
+        track.made.class = Class::Pedestrian;
+    });
+    let covered = |time_s: f64| scene.at(time_s).frame().covered_m.get(&BoxId(7)).copied();
+    assert!((covered(1.5).expect("a walker") - 15.0).abs() < 1e-9);
+    scene.change_clip(|clip| clip.tracks.get_mut(&BoxId(7)).expect("there").made.class = Class::Car);
+    assert_eq!(scene.at(1.5).frame().covered_m.get(&BoxId(7)), None);
+}

@@ -4,7 +4,10 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::{Clip, OwnShape};
-use crate::{BoxId, Frame, Pose, SceneBox};
+use crate::{BoxId, Class, Frame, Pose, SceneBox};
+
+/// Classes with legs that step or pedal as far as the object moves.
+const STEPPING: [Class; 2] = [Class::Pedestrian, Class::Bicycle];
 
 impl Clip {
     /// The canvas at a time, with every moving object that is there then. Copies pointers, and the voxels of the
@@ -60,6 +63,9 @@ impl Clip {
             (id, OwnShape { made, voxels })
         });
         frame.own_shapes = Arc::new(own.collect());
+        let stepping = boxes.iter().filter(|b| STEPPING.contains(&b.class));
+        let covered = stepping.map(|b| (b.id, self.covered_m(b.id, time_s)));
+        frame.covered_m = Arc::new(covered.collect());
         let source = Arc::make_mut(&mut frame.source);
         for b in boxes {
             let Some(track) = self.tracks.get(&b.id) else {

@@ -78,7 +78,7 @@ impl Appearance {
                 let n = thing.turn(hit.normal);
                 let (part, material) = &thing.parts[part as usize];
                 let mut s = match thing.is_scenery() {
-                    false => self.thing_surface(thing, local, n, *material, footprint),
+                    false => self.thing_surface(thing, (local, n), (part, *material), footprint),
                     true => self.scenery_surface((thing, part, *material), local, n, footprint),
                 };
                 s.normal = if s.normal == n {

@@ -159,6 +159,9 @@ fn pack_part(part: &ObjectPart, material: PartMaterial, out: &mut Vec<u32>, plan
             put(4, &bits(&[c.x, c.y, c.z, *radius, *half, *hole]));
         }
         ObjectPart::Round(c, r) => put(2, &bits(&[c.x, c.y, c.z, r.x, r.y, r.z])),
+        ObjectPart::Limb([a, b], [ra, rb], wide) => {
+            put(5, &bits(&[a.x, a.y, a.z, b.x, b.y, b.z, *ra, *rb, *wide]));
+        }
         ObjectPart::Cone(f, height, bottom, top) => put(3, &bits(&[f.x, f.y, f.z, *height, *bottom, *top])),
     }
 }

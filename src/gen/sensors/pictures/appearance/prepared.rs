@@ -129,7 +129,10 @@ impl Appearance {
         let mut things: Vec<DrawnObject> = frame
             .boxes
             .values()
-            .filter_map(|b| DrawnObject::from_box(b, frame.own_shapes.get(&b.id), seed))
+            .filter_map(|b| {
+                let covered_m = frame.covered_m.get(&b.id).copied().unwrap_or_default();
+                DrawnObject::from_box(b, frame.own_shapes.get(&b.id), covered_m, seed)
+            })
             .chain(still.scenery.objects().cloned())
             .collect();
         let ([blocks_x, blocks_y], from) = (field.shape().blocks, field.shape().blocks_from_m);

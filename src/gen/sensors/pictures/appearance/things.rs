@@ -1,13 +1,18 @@
 //! Objects as they are drawn: a few convex bodies, wheels and rounded parts, with materials. Boxes are made for the eye here
 //! (sensors and worlds use `world::objects`); scenery is made of its solids, see `scenery`.
 
+mod aids;
 mod build;
+mod gait;
 mod part;
+mod person;
 mod shapes;
+mod two_wheeler;
 mod voxel_shape;
 
 use glam::{Vec2, Vec3};
 
+pub use gait::Gait;
 pub use part::ObjectPart;
 
 use super::noise::hash1;
@@ -145,8 +150,9 @@ fn usual_paint(name: &str) -> Option<Paint> {
 }
 
 impl DrawnObject {
-    /// A box as a thing to be drawn, by the shape of its class or by its own; `None` if the box has a problem.
-    pub fn from_box(b: &SceneBox, own: Option<&OwnShape>, seed: u32) -> Option<Self> {
+    /// A box as a thing to be drawn, by the shape of its class or by its own; `None` if the box has a problem. `covered_m` is the
+    /// way that it has gone.
+    pub fn from_box(b: &SceneBox, own: Option<&OwnShape>, covered_m: f64, seed: u32) -> Option<Self> {
         if b.problem().is_some() {
             return None;
         }
@@ -176,14 +182,23 @@ impl DrawnObject {
             Class::ConstructionVehicle => rgb(232, 168, 20),
             _ => car_paint(id),
         };
+        let gait = Gait {
+            covered_m: covered_m as f32,
+            speed_mps: b.velocity_mps.length() as f32,
+        };
         match own {
-            None => shape(&mut build, b.class, id),
+            None => shape(&mut build, b.class, id, b.label.name.as_str(), gait),
             // Three voxels across tell a shape; fewer do not.
             Some(_) if b.size_m.truncate().min_element() < 3.0 * Lattice::OCC3D.voxel_m() => {
-                shape(&mut build, b.class, id)
+                shape(&mut build, b.class, id, b.label.name.as_str(), gait)
             }
             Some(own) => voxel_shape(&mut build, b, own, PartMaterial::Plain(paint)),
         }
+        // Steps may reach beyond the box.
+        let size = build
+            .parts
+            .iter()
+            .fold(size, |size, (part, _)| size.max(part.half_reach() * 2.0));
         let bottom = b.center_m.z - b.size_m.z / 2.0;
         Some(Self {
             class: b.class,

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::super::noise::{ramp, unit, unit3, value2, value3};
 use super::super::prepared::Appearance;
-use super::super::things::{DrawnObject, PartMaterial, rgb};
+use super::super::things::{DrawnObject, ObjectPart, PartMaterial, rgb};
 use super::{LitSurface, TAIL, band, gray, visible};
 use scene::Class;
 
@@ -35,9 +35,8 @@ impl Appearance {
     pub(super) fn thing_surface(
         &self,
         t: &DrawnObject,
-        p: Vec3,
-        n: Vec3,
-        material: PartMaterial,
+        (p, n): (Vec3, Vec3),
+        (part, material): (&ObjectPart, PartMaterial),
         fp: f32,
     ) -> LitSurface {
         let mut out = LitSurface::matt(gray(0.1), n);
@@ -54,7 +53,7 @@ impl Appearance {
             PartMaterial::Cabin => cabin(&mut out, &spot),
             PartMaterial::Coach => coach(&mut out, &spot),
             PartMaterial::Cargo => cargo(&mut out, &spot),
-            PartMaterial::Wheel => wheel(&mut out, &spot),
+            PartMaterial::Wheel => wheel(&mut out, &spot, part),
             PartMaterial::Dark => out.albedo = gray(0.022),
             PartMaterial::Plain(c) => {
                 out.albedo = c;
@@ -251,33 +250,35 @@ fn cargo(out: &mut LitSurface, spot: &Spot<'_>) {
     }
 }
 
-/// A tyre, and a rim of five spokes inside.
-fn wheel(out: &mut LitSurface, spot: &Spot<'_>) {
+/// A tyre, and a rim inside: of five spokes, or of steel with bolts.
+fn wheel(out: &mut LitSurface, spot: &Spot<'_>, part: &ObjectPart) {
     let &Spot { t, p, n, .. } = spot;
-    let s = t.size;
     out.albedo = gray(0.010);
-    if n.y.abs() > 0.7 {
-        // A rim of five spokes inside the tyre.
-        let bike = t.class == Class::Bicycle;
-        let r = if t.class == Class::Car {
-            (0.165 * s.z + 0.06).clamp(0.2, 0.42)
+    let &ObjectPart::Wheel(middle, r, _) = part else {
+        return;
+    };
+    if n.y.abs() <= 0.7 {
+        return;
+    }
+    let q = Vec2::new(p.x - middle.x, p.z - middle.z);
+    let d = q.length() / r;
+    let turn = q.to_angle() / std::f32::consts::TAU;
+    let is_rim = match t.class {
+        Class::Car => {
+            let spoke = (turn * 5.0).fract().abs();
+            d < 0.70 && (!(0.2..=0.62).contains(&d) || (spoke - 0.5).abs() < 0.30)
+        }
+        _ => {
+            let bolt = ((turn * 10.0).fract().abs() - 0.5).abs();
+            d < 0.60 && !(0.22..=0.27).contains(&d) && !((0.33..=0.39).contains(&d) && bolt < 0.2)
+        }
+    };
+    if is_rim {
+        out.albedo = if t.class == Class::Car {
+            gray(0.34)
         } else {
-            p.z.max(0.3)
+            gray(0.2)
         };
-        let near = [-0.295f32, 0.3]
-            .iter()
-            .map(|w| Vec2::new(p.x - w * s.x, p.z - r))
-            .min_by(|a, b| a.length().total_cmp(&b.length()));
-        if let (Some(q), true) = (near, t.class == Class::Car) {
-            let d = q.length() / r;
-            let spoke = (q.to_angle() * 5.0 / std::f32::consts::TAU).fract().abs();
-            if d < 0.70 && (!(0.2..=0.62).contains(&d) || (spoke - 0.5).abs() < 0.30) {
-                out.albedo = gray(0.34);
-                (out.mirror, out.gloss) = (0.10, 0.8);
-            }
-        }
-        if bike {
-            out.albedo = gray(0.04);
-        }
+        (out.mirror, out.gloss) = (0.10, 0.8);
     }
 }

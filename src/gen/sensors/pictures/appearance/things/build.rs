@@ -83,6 +83,11 @@ impl ObjectBuilder {
         }
     }
 
+    /// A limb between two points with a radius at each, m.
+    pub fn limb(&mut self, ends: [Vec3; 2], radii: [f32; 2], material: PartMaterial) {
+        self.parts.push((ObjectPart::Limb(ends, radii, 1.0), material));
+    }
+
     /// An ellipsoid at fractions of the size; radii in m.
     pub fn round(&mut self, at: [f32; 3], radii: [f32; 3], material: PartMaterial) {
         let part = ObjectPart::Round(Vec3::from(at) * self.s, Vec3::from(radii));

@@ -15,6 +15,9 @@ pub enum ObjectPart {
     Round(Vec3, Vec3),
     /// An upright cone or cylinder: foot, height, radii at the foot and at the top.
     Cone(Vec3, f32, f32, f32),
+    /// All balls between a ball at either end, whose radii run from one to the other, stretched across: middles and radii of
+    /// those, and how many times wider than deep it is.
+    Limb([Vec3; 2], [f32; 2], f32),
 }
 
 /// The normal of a body whose edges are rounded over `reach` m: a blend of the faces near the point.
@@ -30,6 +33,41 @@ pub(super) fn rounded(planes: &[Vec4], p: Vec3, normal: Vec3, reach: f32) -> Vec
     sum.normalize_or(normal)
 }
 
+/// Where a ray meets a limb. A point of its side lies on the ball about `a + s (b - a)` with `s = w / (way^2 - thin^2)`,
+/// `w = (p - a).(b - a) - ra thin`, where balls touch what envelops them: `(way^2 - thin^2) (|p - a|^2 - ra^2) = w^2`.
+fn cast_limb([a, b]: [Vec3; 2], [ra, rb]: [f32; 2], (o, d): (Vec3, Vec3), limit: f32) -> Option<(f32, Vec3)> {
+    let (axis, from, thin) = (b - a, o - a, ra - rb);
+    let span = axis.length_squared() - thin * thin;
+    let mut best: Option<(f32, Vec3)> = None;
+    let mut consider = |t: f32, normal: Vec3| {
+        if t > 1e-4 && t < limit && best.is_none_or(|b| t < b.0) {
+            best = Some((t, normal));
+        }
+    };
+    for (middle, r) in [(a, ra), (b, rb)] {
+        let q = o - middle;
+        if let Some((t, _)) = quadratic(d.length_squared(), q.dot(d), q.length_squared() - r * r) {
+            consider(t, (q + d * t) / r);
+        }
+    }
+    if span > 0.0 {
+        let (w, step) = (from.dot(axis) - ra * thin, d.dot(axis));
+        // Below 0 where the ray runs steeper than the side does.
+        let square = span * d.length_squared() - step * step;
+        let half = span * from.dot(d) - w * step;
+        let rest = span * (from.length_squared() - ra * ra) - w * w;
+        let root = (half * half - square * rest).sqrt();
+        for t in [(-half - root) / square, (-half + root) / square] {
+            let s = (w + step * t) / span;
+            let normal = (from + d * t - axis * s) / (ra - thin * s);
+            if (0.0..=1.0).contains(&s) && normal.dot(d) < 0.0 {
+                consider(t, normal);
+            }
+        }
+    }
+    best
+}
+
 fn quadratic(a: f32, b: f32, c: f32) -> Option<(f32, f32)> {
     let disc = b * b - a * c;
     if !(disc >= 0.0 && a > 1e-12) {
@@ -40,6 +78,15 @@ fn quadratic(a: f32, b: f32, c: f32) -> Option<(f32, f32)> {
 }
 
 impl ObjectPart {
+    /// How far a limb reaches along and across from the middle of the box, m; 0 for other parts, which lie in the box.
+    pub(super) fn half_reach(&self) -> Vec3 {
+        let ObjectPart::Limb(ends, radii, wide) = self else {
+            return Vec3::ZERO;
+        };
+        let reach = |i: usize| ends[i].abs() + Vec3::new(1.0, *wide, 1.0) * radii[i];
+        reach(0).max(reach(1)).with_z(0.0)
+    }
+
     /// Where a ray enters, nearer than `limit`, and the outward normal there.
     pub(super) fn cast(&self, o: Vec3, d: Vec3, limit: f32) -> Option<(f32, Vec3)> {
         match self {
@@ -117,6 +164,11 @@ impl ObjectPart {
                 let normal = ((p + q * t) / *r).normalize_or(Vec3::Z);
                 (t > 1e-4 && t < limit).then_some((t, normal))
             }
+            ObjectPart::Limb(ends, radii, wide) => {
+                let narrow = Vec3::new(1.0, 1.0 / wide, 1.0);
+                let hit = cast_limb(ends.map(|p| p * narrow), *radii, (o * narrow, d * narrow), limit);
+                hit.map(|(t, normal)| (t, (normal * narrow).normalize_or(Vec3::Z)))
+            }
             ObjectPart::Cone(foot, height, bottom, top) => {
                 let o = o - *foot;
                 let k = (top - bottom) / height;
@@ -145,5 +197,90 @@ impl ObjectPart {
                 best
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Distance to the nearest ball of a limb, found by trying many.
+    fn distance([a, b]: [Vec3; 2], [ra, rb]: [f32; 2], p: Vec3) -> f32 {
+        let balls = (0..=2000).map(|i| i as f32 / 2000.0);
+        balls
+            .map(|s| p.distance(a.lerp(b, s)) - (ra + (rb - ra) * s))
+            .fold(f32::INFINITY, f32::min)
+    }
+
+    #[test]
+    fn rays_meet_limbs_where_their_balls_begin() {
+        let limbs = [
+            ([Vec3::ZERO, Vec3::new(0.1, 0.05, 0.4)], [0.06, 0.03]),
+            ([Vec3::ZERO, Vec3::new(0.3, 0.0, 0.0)], [0.02, 0.12]),
+            // One ball within the other; no length.
+            ([Vec3::ZERO, Vec3::new(0.02, 0.0, 0.0)], [0.2, 0.05]),
+            ([Vec3::ONE * 0.1; 2], [0.1, 0.1]),
+        ];
+        let mut met = 0;
+        for (ends, radii) in limbs {
+            for i in 0..600u32 {
+                let angle = i as f32 * 2.4;
+                let z = 1.0 - 2.0 * (i as f32 + 0.5) / 600.0;
+                let flat = (1.0f32 - z * z).sqrt();
+                let o = Vec3::new(angle.cos() * flat, angle.sin() * flat, z) * 2.0;
+                let aim = ends[0].lerp(ends[1], (i % 7) as f32 / 6.0)
+                    + Vec3::new((i % 5) as f32 - 2.0, (i % 3) as f32 - 1.0, (i % 4) as f32 - 1.5) * 0.05;
+                // Some along the limb, which is steeper than its side is.
+                let along = (ends[1] - ends[0]).normalize_or(Vec3::X);
+                let (o, d) = match i % 10 {
+                    0 => (ends[0] - along * 1.5 + Vec3::Y * 0.01, along),
+                    1 => (ends[1] + along * 1.5 + Vec3::Z * 0.11, -along),
+                    _ => (o, (aim - o).normalize()),
+                };
+                let part = ObjectPart::Limb(ends, radii, 1.0);
+                let first = (0..4000)
+                    .map(|k| k as f32 * 1e-3)
+                    .find(|t| distance_fast(ends, radii, o + d * *t) < 0.0);
+                match part.cast(o, d, 4.0) {
+                    Some((t, normal)) => {
+                        met += 1;
+                        let off = distance(ends, radii, o + d * t);
+                        assert!(off.abs() < 1e-3, "{i}: {off}");
+                        assert!(
+                            normal.dot(d) < 1e-3 && (normal.length() - 1.0).abs() < 1e-3,
+                            "{i}: {normal}"
+                        );
+                        assert!(first.is_none_or(|first| first > t - 2e-3), "{i}: {t}, {first:?}");
+                    }
+                    None => assert!(first.is_none(), "{i} passes, {first:?}"),
+                }
+            }
+        }
+        assert!(met > 600, "{met}");
+    }
+
+    /// The same distance by trying few balls, a bit too large.
+    fn distance_fast(ends: [Vec3; 2], [ra, rb]: [f32; 2], p: Vec3) -> f32 {
+        let [a, b] = ends;
+        let balls = (0..=60).map(|i| i as f32 / 60.0);
+        balls
+            .map(|s| p.distance(a.lerp(b, s)) - (ra + (rb - ra) * s))
+            .fold(f32::INFINITY, f32::min)
+            + 2e-4
+    }
+
+    #[test]
+    fn limbs_of_no_size_or_number_are_passed() {
+        let nothing = ObjectPart::Limb([Vec3::ZERO; 2], [0.0; 2], 1.0);
+        assert!(
+            nothing
+                .cast(Vec3::X, -Vec3::X, 9.0)
+                .is_none_or(|(t, _)| t.is_finite())
+        );
+        let wild = ObjectPart::Limb([Vec3::NAN, Vec3::ONE], [0.1; 2], 1.0);
+        assert!(
+            wild.cast(Vec3::X, -Vec3::X, 9.0)
+                .is_none_or(|(t, _)| t.is_finite())
+        );
     }
 }

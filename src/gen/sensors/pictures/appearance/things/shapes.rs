@@ -3,12 +3,15 @@
 use glam::Vec3;
 
 use super::build::ObjectBuilder;
+use super::gait::Gait;
+use super::person::person;
+use super::two_wheeler::{bicycle, motorcycle};
 use super::{ObjectPart, PartMaterial, rgb};
 use crate::pictures::appearance::noise::{hash1, unit};
 use scene::Class;
 
-/// Adds the parts of an object; `id` varies them.
-pub(super) fn shape(b: &mut ObjectBuilder, class: Class, id: u32) {
+/// Adds the parts of an object; `id` varies them, and so does what it is called.
+pub(super) fn shape(b: &mut ObjectBuilder, class: Class, id: u32, name: &str, gait: Gait) {
     let pick = unit(hash1(id, 3));
     match class {
         Class::Car => car(b, pick),
@@ -17,8 +20,9 @@ pub(super) fn shape(b: &mut ObjectBuilder, class: Class, id: u32) {
         Class::Trailer => trailer(b),
         Class::ConstructionVehicle => construction_vehicle(b),
         Class::Barrier => barrier(b),
-        Class::Motorcycle | Class::Bicycle => two_wheeler(b, class, id, pick),
-        Class::Pedestrian => person(b, id, [0.0; 3], 1.0),
+        Class::Motorcycle => motorcycle(b, id, name, gait),
+        Class::Bicycle => bicycle(b, id, name, gait),
+        Class::Pedestrian => person(b, id, name, gait),
         Class::TrafficCone => traffic_cone(b),
         _ => {}
     }
@@ -173,48 +177,6 @@ fn barrier(b: &mut ObjectBuilder) {
     }
 }
 
-/// A motorcycle or a bicycle, with a rider or without.
-fn two_wheeler(b: &mut ObjectBuilder, class: Class, id: u32, pick: f32) {
-    let s = b.s;
-    let motor = class == Class::Motorcycle;
-    let (r, w) = if motor { (0.3f32, 0.07) } else { (0.33, 0.02) };
-    let r = r.min(s.z * 0.3);
-    for x in [-0.5 * s.x + r, 0.5 * s.x - r] {
-        let middle = Vec3::new(x, 0.0, r);
-        let wheel = match motor {
-            true => ObjectPart::Wheel(middle, r, w),
-            false => ObjectPart::Ring(middle, r, w, r - 0.045),
-        };
-        b.parts.push((wheel, PartMaterial::Wheel));
-        if !motor {
-            b.parts
-                .push((ObjectPart::Wheel(middle, 0.035, 0.05), PartMaterial::Dark));
-        }
-    }
-    if motor {
-        b.block([-0.3, -0.16, 0.26], [0.28, 0.16, 0.52], 0.08, PartMaterial::Body);
-        b.block([-0.34, -0.14, 0.5], [0.02, 0.14, 0.57], 0.03, PartMaterial::Dark);
-    } else {
-        b.block(
-            [-0.26, -0.025, 0.36],
-            [0.26, 0.025, 0.41],
-            0.0,
-            PartMaterial::Plain(rgb(40, 90, 120)),
-        );
-        b.block(
-            [-0.14, -0.02, 0.3],
-            [-0.1, 0.02, 0.62],
-            0.0,
-            PartMaterial::Plain(rgb(40, 90, 120)),
-        );
-    }
-    b.block([0.24, -0.4, 0.62], [0.29, 0.4, 0.66], 0.0, PartMaterial::Dark);
-    b.block([0.24, -0.03, 0.3], [0.28, 0.03, 0.64], 0.0, PartMaterial::Dark);
-    if pick < 0.7 {
-        person(b, id, [-0.04, 0.0, 0.42], 0.6);
-    }
-}
-
 /// A cone on its foot.
 fn traffic_cone(b: &mut ObjectBuilder) {
     let s = b.s;
@@ -229,50 +191,4 @@ fn traffic_cone(b: &mut ObjectBuilder) {
         ObjectPart::Cone(Vec3::new(0.0, 0.0, 0.05 * s.z), 0.95 * s.z, r, r * 0.2),
         PartMaterial::Bands(rgb(255, 84, 16)),
     ));
-}
-
-/// A person whose feet are at `at` (fractions of the box), `part` of the box's height tall.
-fn person(b: &mut ObjectBuilder, id: u32, at: [f32; 3], part: f32) {
-    let h = b.s.z * part;
-    let cloth = |salt: u32| {
-        let palette = [
-            rgb(38, 44, 62),
-            rgb(60, 62, 66),
-            rgb(122, 52, 48),
-            rgb(196, 190, 178),
-            rgb(62, 78, 70),
-            rgb(150, 126, 84),
-            rgb(84, 98, 122),
-            rgb(24, 24, 28),
-        ];
-        PartMaterial::Cloth(palette[hash1(id, salt) as usize % palette.len()])
-    };
-    let (coat, trousers) = (cloth(1), cloth(2));
-    let foot = Vec3::from(at) * b.s;
-    let stride = 0.09 * h * (unit(hash1(id, 5)) - 0.2);
-    let mut put = |c: [f32; 3], r: [f32; 3], m: PartMaterial| {
-        let centre = foot + Vec3::new(c[0], c[1], c[2]) * Vec3::new(1.0, h, h);
-        b.parts.push((ObjectPart::Round(centre, Vec3::from(r) * h), m));
-    };
-    for side in [-1.0, 1.0] {
-        put(
-            [side * stride, side * 0.055, 0.25],
-            [0.062, 0.055, 0.27],
-            trousers,
-        );
-        put(
-            [side * stride + 0.04, side * 0.055, 0.025],
-            [0.075, 0.04, 0.03],
-            PartMaterial::Dark,
-        );
-        put(
-            [-side * stride * 0.6, side * 0.135, 0.63],
-            [0.036, 0.034, 0.185],
-            coat,
-        );
-    }
-    put([0.0, 0.0, 0.65], [0.072, 0.108, 0.215], coat);
-    put([0.0, 0.0, 0.795], [0.055, 0.125, 0.055], coat);
-    put([0.01, 0.0, 0.935], [0.056, 0.048, 0.066], PartMaterial::Skin);
-    put([-0.01, 0.0, 0.955], [0.058, 0.052, 0.058], PartMaterial::Dark);
 }
