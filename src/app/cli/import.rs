@@ -9,6 +9,7 @@ use serde_json::json;
 
 use super::{CommandResult, Common, output};
 use app::open::{self, Imported, Placement};
+use authoring::read;
 use formats::import::{self, Content, ImportOptions, ImportedScene, Importer};
 use formats::loom;
 use scene::{BevLayer, Scene};
@@ -99,11 +100,12 @@ impl Import {
             lift_m: self.lift,
             resample: self.resample,
         };
-        let (importer, content) = import::read_with(&self.file, options)?;
+        let (importer, content) = read::file_with(&self.file, options)?;
         match content {
             Content::Scene(loaded) => self.whole(importer, &loaded),
             Content::Recipe(recipe) => {
                 let loaded = ImportedScene {
+                    sweep: None,
                     scene: app::again(&recipe)?,
                     inferred: &[],
                     skipped: Default::default(),

@@ -271,6 +271,7 @@ fn map(
     let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), 0);
     scene.background = Arc::new(background);
     Ok(ImportedScene {
+        sweep: None,
         scene,
         inferred: &["layout", "background"],
         skipped: left_out.report(),

@@ -130,6 +130,7 @@ pub(crate) fn scene(
     scene.seed = seed;
     scene.background = Arc::new(background);
     Ok(ImportedScene {
+        sweep: None,
         scene,
         inferred: &["layout", "background"],
         skipped: left_out.report(),

@@ -104,6 +104,7 @@ pub(super) fn scene(
         ..Frame::new(layout, boxes, occupancy)
     };
     Ok(ImportedScene {
+        sweep: None,
         scene: Scene::single(name, frame, Arc::new(SensorRig::default()), 0),
         inferred: if is_guess { &["boxes"] } else { &[] },
         skipped: left_out.report(),

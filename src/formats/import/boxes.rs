@@ -33,6 +33,7 @@ pub const IMPORTER: Importer = Importer {
         let mut scene = Scene::single(source.name, frame, Arc::new(SensorRig::default()), 0);
         recipe::restore(&recipe, &mut scene);
         Ok(Content::Scene(Box::new(ImportedScene {
+            sweep: None,
             scene,
             inferred: &[],
             skipped: BTreeMap::new(),

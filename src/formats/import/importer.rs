@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use glam::DVec3;
 use scene::resample::voxels_in;
 use scene::{
     Class, DataLabels, Extent, Frame, Inferred, LabelSet, Lattice, Scene, SensorRig, Unobserved, VoxelGrid,
     infer,
 };
 
+use super::cloud::ImportedSweep;
 use crate::opendrive::RoadNetwork;
 use crate::recipe::Recipe;
 use crate::voxels::DataMap;
@@ -103,6 +105,8 @@ pub struct ImportedScene {
     pub skipped: BTreeMap<String, usize>,
     /// Notes on changes that were made without being asked for, a line each, for a person.
     pub notes: Vec<String>,
+    /// Returns of a sweep without labels, in which objects can be found; see [`ImportedScene::with_objects`].
+    pub sweep: Option<ImportedSweep>,
 }
 
 /// A scene from labels: the voxels are kept, layout, boxes and background are inferred. Things beside the road, and all on a
@@ -160,6 +164,13 @@ pub(crate) fn on_data_map(
         at[1] -= y_m;
     }
     scene
+}
+
+/// Puts the first LiDAR of a scene's rig at a place in the ego frame, m.
+pub(crate) fn of_sensor(scene: &mut Scene, at_m: DVec3) {
+    if let Some(lidar) = Arc::make_mut(&mut scene.rig).lidars.first_mut() {
+        lidar.translation_m = at_m.to_array();
+    }
 }
 
 /// The parts of a scene that [`labelled`] guesses.

@@ -51,7 +51,12 @@ fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
         None => None,
     };
     let mut left_out = BTreeMap::new();
-    let ego_from_velo = match calibration(source)? {
+    let calibrated = calibration(source)?;
+    let mut cloud = match calibrated {
+        Some(_) => Cloud::from_source(source),
+        None => Cloud::of_guessed_sensor(source),
+    };
+    let ego_from_velo = match calibrated {
         Some(pose) => pose,
         None => {
             let pose = kitti::ego_from_default_velo();
@@ -62,9 +67,9 @@ fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
             pose
         }
     };
-    let (mut cloud, mut noise) = (Cloud::from_source(source), 0);
+    let mut noise = 0;
     let words = labels.as_deref().map(|bytes| bytes.as_chunks::<4>().0);
-    for (i, at) in points.enumerate() {
+    for (i, (at, strength)) in points.enumerate() {
         // The upper half is the instance.
         let number = words.map(|words| u32::from_le_bytes(words[i]) as u16);
         if number == Some(semantic_kitti::OUTLIER) {
@@ -75,7 +80,7 @@ fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
             Some(number) => semantic_kitti::class_of_point(number).map_or(Label::Unknown, Label::Class),
             None => Label::None,
         };
-        cloud.add_return(at, &ego_from_velo, label);
+        cloud.add_return(at, &ego_from_velo, label, strength);
     }
     if noise > 0 {
         left_out.insert("points of noise".into(), noise);

@@ -17,6 +17,7 @@ pub const IMPORTER: Importer = Importer {
     read: |source| {
         let scene = loom::from_bytes(source.bytes).map_err(FormatError::new)?;
         Ok(Content::Scene(Box::new(ImportedScene {
+            sweep: None,
             scene,
             inferred: &[],
             skipped: BTreeMap::new(),

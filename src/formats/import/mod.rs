@@ -36,6 +36,7 @@ use std::path::{Path, PathBuf};
 use scene::message::quoted;
 
 use super::{FormatError, input};
+pub use cloud::ImportedSweep;
 pub use importer::{Content, ImportFile, ImportOptions, ImportedScene, Importer};
 use importer::{GUESSED, first_entry_ends, labelled, on_data_map};
 

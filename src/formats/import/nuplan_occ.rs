@@ -65,6 +65,7 @@ pub(super) fn read(source: &ImportFile<'_>, list: &[u8]) -> Result<Content, Stri
         cells.iter().filter(|cell| bins.is_ground(cell)).count(),
     );
     Ok(Content::Scene(Box::new(ImportedScene {
+        sweep: None,
         scene,
         inferred: &GUESSED,
         skipped,

@@ -80,8 +80,8 @@ pub(super) fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
     let rig = SensorRig::default();
     let ego_from_sensor = rig.lidars.first().map(scene::LidarPattern::ego_from_sensor);
     let ego_from_sensor = ego_from_sensor.unwrap_or_default();
-    let (mut cloud, mut left_away) = (Cloud::from_source(source), 0);
-    for (i, at) in points.enumerate() {
+    let (mut cloud, mut left_away) = (Cloud::of_guessed_sensor(source), 0);
+    for (i, (at, strength)) in points.enumerate() {
         let label = match labels.as_ref().map(|l| l[i]) {
             None => Label::None,
             Some(id) if is_challenge => Class::from_id(id).map_or(Label::Unknown, Label::Class),
@@ -94,7 +94,7 @@ pub(super) fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
                 }
             },
         };
-        cloud.add_return(at, &ego_from_sensor, label);
+        cloud.add_return(at, &ego_from_sensor, label, strength);
     }
     let [x, y, z] = ego_from_sensor.translation_m.to_array();
     let mut left_out = BTreeMap::from([

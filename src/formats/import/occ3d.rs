@@ -54,6 +54,7 @@ fn read(source: &ImportFile<'_>) -> Result<Content, occ3d::Occ3dError> {
         recipe::restore(told, &mut scene);
     }
     Ok(Content::Scene(Box::new(ImportedScene {
+        sweep: None,
         scene,
         inferred: &GUESSED,
         skipped,

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use scene::message::quoted;
 
-use super::cloud::{Cloud, LABELS, NothingOnTheMap};
+use super::cloud::{Cloud, LABELS, NothingOnTheMap, STRENGTHS};
 use super::{Content, ImportFile, Importer};
 use crate::{FormatError, Holds, lzf};
 
@@ -100,15 +100,21 @@ fn read(source: &ImportFile<'_>) -> Result<Content, PcdError> {
             .field(&[name])
             .ok_or_else(|| wrong("FIELDS", "no such field", name))
     };
-    let (axes, label) = ([axis("x")?, axis("y")?, axis("z")?], header.field(&LABELS));
+    let mut wanted = vec![axis("x")?, axis("y")?, axis("z")?];
+    let beside = [header.field(&LABELS), header.field(&STRENGTHS)];
+    let kept = wanted.iter().copied().chain(beside[0]).collect::<Vec<_>>();
+    let beside = beside.map(|field| {
+        wanted.extend(field);
+        field.map(|_| wanted.len() - 1)
+    });
     let mut cloud = Cloud::from_source(source);
-    let wanted: Vec<usize> = axes.into_iter().chain(label).collect();
     header.each_point(body, &wanted, |v| {
-        cloud.add(DVec3::new(v[0], v[1], v[2]), v.get(3).copied())
+        let [label, strength] = beside.map(|at| at.map(|at| v[at]));
+        cloud.add(DVec3::new(v[0], v[1], v[2]), label, strength)
     })?;
     let mut left_out = BTreeMap::new();
     for (at, field) in header.fields.iter().enumerate() {
-        if !wanted.contains(&at) {
+        if !kept.contains(&at) {
             left_out.insert(format!("field {}", quoted(&field.name, 40)), 1);
         }
     }

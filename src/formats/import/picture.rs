@@ -18,6 +18,7 @@ pub const IMPORTER: Importer = Importer {
         if let Some(bytes) = inside.scene {
             let scene = loom::from_bytes(bytes).map_err(FormatError::new)?;
             return Ok(Content::Scene(Box::new(ImportedScene {
+                sweep: None,
                 scene,
                 inferred: &[],
                 skipped: Default::default(),

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use scene::message::quoted;
 
-use super::cloud::{Cloud, LABELS, NothingOnTheMap};
+use super::cloud::{Cloud, LABELS, NothingOnTheMap, STRENGTHS};
 use super::{Content, ImportFile, Importer};
 use crate::{FormatError, Holds};
 
@@ -87,7 +87,11 @@ fn read(source: &ImportFile<'_>) -> Result<Content, PlyError> {
     };
     let axis = |name: &'static str| property(&|p| p == name).ok_or(PlyError::Missing(name));
     let mut wanted = vec![axis("x")?, axis("y")?, axis("z")?];
-    wanted.extend(property(&|p| LABELS.contains(&p.to_lowercase().as_str())));
+    let beside = [LABELS.as_slice(), &STRENGTHS].map(|names| {
+        let at = property(&|p| names.contains(&p.to_lowercase().as_str()));
+        wanted.extend(at);
+        at.map(|_| wanted.len() - 1)
+    });
 
     let mut body = PlyBody::new(&source.bytes[header.body..], header.encoding);
     for before in &header.elements[..at] {
@@ -95,7 +99,8 @@ fn read(source: &ImportFile<'_>) -> Result<Content, PlyError> {
     }
     let mut cloud = Cloud::from_source(source);
     body.pass(points, &wanted, |v| {
-        cloud.add(DVec3::new(v[0], v[1], v[2]), v.get(3).copied())
+        let [label, strength] = beside.map(|at| at.map(|at| v[at]));
+        cloud.add(DVec3::new(v[0], v[1], v[2]), label, strength)
     })?;
 
     let mut left_out = BTreeMap::new();
@@ -105,7 +110,7 @@ fn read(source: &ImportFile<'_>) -> Result<Content, PlyError> {
         left_out.insert(what.to_owned(), points.count);
     } else {
         for (i, p) in points.properties.iter().enumerate() {
-            if !wanted.contains(&i) {
+            if !wanted.contains(&i) || Some(i) == beside[1].map(|at| wanted[at]) {
                 left_out.insert(format!("property {}", quoted(&p.name, 40)), 1);
             }
         }

@@ -67,8 +67,11 @@ impl ScanFormat {
         std::array::from_fn(value)
     }
 
-    /// Positions of the points, in m in the sensor's frame. Errors if the bytes are no such points.
-    pub(super) fn read(self, bytes: &[u8]) -> Result<impl ExactSizeIterator<Item = DVec3> + '_, FormatError> {
+    /// Positions of the points, in m in the sensor's frame, and strengths of their echoes. Errors if the bytes are no such points.
+    pub(super) fn read(
+        self,
+        bytes: &[u8],
+    ) -> Result<impl ExactSizeIterator<Item = (DVec3, f32)> + '_, FormatError> {
         let stride = 4 * self.count();
         let columns = match self {
             Self::Kitti => "x, y, z, remission",
@@ -81,11 +84,8 @@ impl ScanFormat {
             )));
         }
         let at = move |point| {
-            DVec3::from_array(
-                self.values(point)
-                    .first_chunk()
-                    .map_or([0.0; 3], |p| p.map(f64::from)),
-            )
+            let [x, y, z, strength, _] = self.values(point);
+            (DVec3::from_array([x, y, z].map(f64::from)), strength)
         };
         let points = bytes.chunks_exact(stride);
         let (mut wild, mut returns) = (0, 0);

@@ -47,6 +47,7 @@ fn read(source: &ImportFile<'_>) -> Result<Content, String> {
     };
     skipped.insert(PLACED.to_owned(), scene.frame().occupancy.count_set());
     Ok(Content::Scene(Box::new(ImportedScene {
+        sweep: None,
         scene,
         inferred: &GUESSED,
         skipped,

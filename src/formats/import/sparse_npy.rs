@@ -43,6 +43,7 @@ fn read(source: &ImportFile<'_>) -> Result<Content, String> {
     }
     skipped.insert(kind.assumed.to_owned(), table.rows);
     Ok(Content::Scene(Box::new(ImportedScene {
+        sweep: None,
         scene,
         inferred: &GUESSED,
         skipped,

@@ -21,6 +21,7 @@ pub const IMPORTER: Importer = Importer {
 fn read(source: &ImportFile<'_>) -> Result<Content, String> {
     let VoxMap { grid, skipped } = place(&VoxFile::read(source.bytes)?)?;
     Ok(Content::Scene(Box::new(ImportedScene {
+        sweep: None,
         scene: labelled(source.name, grid, None),
         inferred: &GUESSED,
         skipped,

@@ -11,6 +11,7 @@ pub mod memory;
 pub mod new_ground;
 pub mod open;
 pub mod prompting;
+pub mod read;
 pub mod roads;
 pub mod scenery;
 pub mod scenery_around;

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use glam::DVec2;
 
-use super::{large, scenery_around};
-use formats::import::{self, Content};
+use super::{large, read, scenery_around};
+use formats::import::{self, Content, ImportOptions};
 use formats::opendrive::RoadNetwork;
 use formats::{atomic, input, loom};
 use scene::{Extent, Frame, Lattice, Scene, SensorRig, Window, draft};
@@ -67,7 +67,7 @@ pub fn scene(path: &Path) -> anyhow::Result<Scene> {
 
 /// The scene of a file, with notes on how it was read.
 pub fn file(path: &Path) -> anyhow::Result<OpenedScene> {
-    match import::read(path)?.1 {
+    match read::file_with(path, ImportOptions::default())?.1 {
         Content::Scene(loaded) => Ok(OpenedScene {
             scene: loaded.scene,
             notes: loaded.notes,
@@ -373,3 +373,7 @@ mod tests;
 #[cfg(test)]
 #[path = "open_background_tests.rs"]
 mod background_tests;
+
+#[cfg(test)]
+#[path = "open_objects_tests.rs"]
+mod objects_tests;

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use crate::support::neighbours;
+use crate::variants::of_class;
 use crate::{BoxId, BoxLabel, Class, Extent, Frame, Lattice, Relief, SceneBox, VoxelGrid, Window};
 
 /// Fewest voxels of a component that is worth a box, in voxels of 0.4 m; as much area in others.
@@ -21,7 +22,7 @@ pub fn boxes(labels: &VoxelGrid) -> BTreeMap<BoxId, SceneBox> {
     let mut out = BTreeMap::new();
     let relief = super::relief(labels);
     for class in Class::OBJECTS {
-        for component in components(labels, class, &relief) {
+        for component in joined(class, components(labels, class, &relief)) {
             for part in split(class, &component) {
                 if out.len() >= Frame::MAX_BOXES {
                     return out;
@@ -123,6 +124,71 @@ fn components(labels: &VoxelGrid, class: Class, relief: &Relief) -> Vec<Componen
     out
 }
 
+/// Length and width of the largest single object of a class, m: what is larger holds several. `None` for classes whose objects
+/// are much alike.
+fn largest(class: Class) -> Option<DVec2> {
+    Some(match class {
+        Class::Bus => DVec2::new(19.5, 3.6),
+        Class::Truck | Class::Trailer => DVec2::new(18.5, 3.6),
+        Class::ConstructionVehicle => DVec2::new(16.0, 4.4),
+        _ => return None,
+    })
+}
+
+/// Distance between parts of one large object in labels, m: where sensors saw nothing of it.
+const GAP_M: f64 = 1.7;
+/// Longer than the diagonal of the largest object, m.
+const FARTHEST_M: f64 = 20.0;
+
+/// Parts of a class among which those of one object are looked for, at most.
+const MOST_PARTS: usize = 300;
+
+/// Parts of large objects put together: those near each other whose rectangle is that of one object.
+fn joined(class: Class, mut parts: Vec<Component>) -> Vec<Component> {
+    let Some(largest) = largest(class).filter(|_| parts.len() <= MOST_PARTS) else {
+        return parts;
+    };
+    let usual = class
+        .typical_size_m()
+        .map_or(DVec2::ONE, |size| DVec2::new(size[0], size[1]));
+    // Two whole objects that stand close are two.
+    let is_part = |c: &Component| c.points_m.len() as f64 * c.voxel_m.powi(2) < 0.7 * usual.x * usual.y;
+    let mut first = 0;
+    while first < parts.len() {
+        let joins = |other: &Component| {
+            let one = &parts[first];
+            if !(is_part(one) || is_part(other)) || !are_near(one, other) {
+                return false;
+            }
+            let all = [one.points_m.as_slice(), &other.points_m].concat();
+            let (_, size, _) = around(&all, one.voxel_m);
+            size.x <= largest.x && size.y <= largest.y
+        };
+        match (first + 1..parts.len()).find(|i| joins(&parts[*i])) {
+            Some(i) => {
+                let other = parts.swap_remove(i);
+                let one = &mut parts[first];
+                one.points_m.extend(other.points_m);
+                one.height_m = one.height_m.max(other.height_m);
+                // Those passed before may be near it now.
+                parts.swap(0, first);
+                first = 0;
+            }
+            None => first += 1,
+        }
+    }
+    parts
+}
+
+fn are_near(a: &Component, b: &Component) -> bool {
+    let way = |c: &Component| c.points_m.first().copied().unwrap_or_default();
+    if way(a).distance(way(b)) > 2.0 * FARTHEST_M {
+        return false;
+    }
+    let near = |p: &DVec2| b.points_m.iter().any(|q| q.distance_squared(*p) < GAP_M * GAP_M);
+    a.points_m.iter().any(near)
+}
+
 /// An upright rectangle on the ground.
 #[derive(Clone, Copy, Debug)]
 struct BoxFootprint {
@@ -205,9 +271,21 @@ fn heading_of_moments(points: &[DVec2]) -> f64 {
     0.5 * (2.0 * xy).atan2(xx - yy)
 }
 
+/// Usual size of an object of this height, m: that of its class, unless the height is that of another kind of large object, as of a
+/// small trailer.
+fn usual_size_m(class: Class, height_m: f64) -> DVec3 {
+    let typical = DVec3::from_array(class.typical_size_m().unwrap_or([1.0; 3]));
+    if largest(class).is_none() || (height_m - typical.z).abs() < 0.45 * typical.z {
+        return typical;
+    }
+    let kinds = of_class(class).map(|kind| DVec3::from_array(kind.size_m));
+    let off = |size: &DVec3| (size.z - height_m).abs();
+    kinds.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(typical)
+}
+
 /// One rectangle per object of the component.
 fn split(class: Class, component: &Component) -> Vec<BoxFootprint> {
-    let typical = DVec3::from_array(class.typical_size_m().unwrap_or([1.0; 3]));
+    let typical = usual_size_m(class, component.height_m);
     // The longer side of a barrier is its width.
     let sideways = typical.y > typical.x;
     let usual = if sideways {
@@ -217,8 +295,9 @@ fn split(class: Class, component: &Component) -> Vec<BoxFootprint> {
     };
     let (center, size, yaw) = around(&component.points_m, component.voxel_m);
     let along = DVec2::from_angle(yaw);
-    let count = |size: f64, usual: f64| {
-        if size > usual * SEVERAL {
+    let largest = largest(class).unwrap_or(usual * SEVERAL).max(usual * SEVERAL);
+    let count = |size: f64, usual: f64, largest: f64| {
+        if size > largest {
             (size / usual).round().max(2.0)
         } else {
             1.0
@@ -226,7 +305,11 @@ fn split(class: Class, component: &Component) -> Vec<BoxFootprint> {
     };
     // Cells of an object: at least a voxel each way, so that small things are not cut to crumbs.
     let cell = usual.max(DVec2::splat(2.0 * component.voxel_m));
-    let (columns, rows) = (count(size.x, cell.x), count(size.y, cell.y));
+    let largest_cell = largest.max(cell * SEVERAL);
+    let (columns, rows) = (
+        count(size.x, cell.x, largest_cell.x),
+        count(size.y, cell.y, largest_cell.y),
+    );
     let height_m = component.height_m.clamp(0.5 * typical.z, 2.0 * typical.z);
     let mut out = Vec::new();
     for i in 0..columns as usize {
@@ -243,17 +326,24 @@ fn split(class: Class, component: &Component) -> Vec<BoxFootprint> {
             if component.points_m.iter().filter(inside).count() == 0 {
                 continue; // an empty corner of an L
             }
-            out.push(fitted(middle, part, yaw, usual, height_m, sideways));
+            out.push(fitted(middle, part, yaw, [usual, largest], height_m, sideways));
         }
     }
     out
 }
 
 /// Grown to the class's usual size where the labels show only the near side: away from the ego.
-fn fitted(middle: DVec2, part: DVec2, yaw: f64, usual: DVec2, height_m: f64, sideways: bool) -> BoxFootprint {
+fn fitted(
+    middle: DVec2,
+    part: DVec2,
+    yaw: f64,
+    [usual, largest]: [DVec2; 2],
+    height_m: f64,
+    sideways: bool,
+) -> BoxFootprint {
     let along = DVec2::from_angle(yaw);
     let axes = [along, along.perp()];
-    let size = part.max(usual * 0.9).min(usual * SEVERAL);
+    let size = part.max(usual * 0.9).min(largest);
     let mut center_m = middle;
     for (axis, grown) in axes.into_iter().zip((size - part).to_array()) {
         let away = if middle.dot(axis) < 0.0 { -1.0 } else { 1.0 };

@@ -9,6 +9,7 @@ use crate::call::Operation;
 use crate::desk::{Desk, Done};
 use authoring::again::again;
 use authoring::open::{self, Placement};
+use authoring::read;
 use formats::import::{self, Content, ImportOptions};
 
 /// Arguments of `open`.
@@ -90,7 +91,7 @@ impl Operation for OpenCall {
             None => (open::bundled()?, "loom"),
             Some(file) => {
                 let path = desk.folder.existing(file)?;
-                let (importer, content) = import::read_with(&path, options)?;
+                let (importer, content) = read::file_with(&path, options)?;
                 let scene = match content {
                     Content::Scene(_) | Content::Recipe(_) if said.contains(&true) => {
                         bail!("{file}: a scene; at_m, heading_deg and size_m are for road files")

@@ -9,9 +9,10 @@
 //!
 //! Equal points give an equal plane: random draws start from a fixed seed.
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use numeric::linear::solve;
 use numeric::splitmix::SplitMix64;
+use scene::Pose;
 
 /// Farthest distance from the origin at which ground is looked for, along the ground, m.
 const REACH_M: f64 = 25.0;
@@ -45,7 +46,7 @@ const LOWEST_M: f64 = -0.9;
 const HIGHEST_M: f64 = scene::Window::MAX_M[2];
 /// Greatest height at which a vehicle carries a sensor, m.
 const HIGHEST_MOUNT_M: f64 = 5.0;
-/// Smallest tilt that is reported, degrees: the ground is 0.7 m off at 20 m.
+/// Smallest tilt that is reported, and for which a cloud is turned, degrees: the ground is 0.7 m off at 20 m.
 const REPORTED_TILT_DEG: f64 = 2.0;
 
 /// The ground around the origin.
@@ -91,6 +92,51 @@ impl GroundPlane {
         }
     }
 
+    /// How a cloud in its sensor's frame with this ground comes to lie level on the map: turned where it is tilted, then lifted.
+    pub(super) fn leveling(self) -> Pose {
+        let rotation = match self.is_tilted() {
+            true => DQuat::from_rotation_arc((-self.slope).extend(1.0).normalize(), DVec3::Z),
+            false => DQuat::IDENTITY,
+        };
+        let foot = rotation * (DVec3::Z * self.height_m);
+        Pose {
+            rotation,
+            translation_m: (-foot * 100.0).round() / 100.0,
+        }
+    }
+
+    /// The ground of a cloud that was moved so.
+    pub(super) fn moved(self, by: &Pose) -> Self {
+        let normal = by.rotation * (-self.slope).extend(1.0);
+        let at = by.apply(DVec3::Z * self.height_m);
+        let slope = -normal.truncate() / normal.z;
+        Self {
+            height_m: at.z - slope.dot(at.truncate()),
+            slope,
+            is_off_heights: false,
+        }
+    }
+
+    /// True if it is so steep that a cloud is turned for it.
+    fn is_tilted(self) -> bool {
+        self.slope.length().atan().to_degrees() >= REPORTED_TILT_DEG
+    }
+
+    /// Notes on what was done with a cloud of a sensor that was placed by its ground, for a person.
+    pub(super) fn placed_notes(self, mount_m: f64) -> Vec<String> {
+        let mut out = vec![format!(
+            "the sensor stands {mount_m:.2} m above the road, as the sweep shows"
+        )];
+        out.extend(self.turned_note());
+        out
+    }
+
+    fn turned_note(self) -> Option<String> {
+        let tilt_deg = self.slope.length().atan().to_degrees();
+        self.is_tilted()
+            .then(|| format!("turned by {tilt_deg:.1} degrees: its ground was tilted"))
+    }
+
     /// Notes on what was done with a cloud, for a person.
     pub(super) fn notes(self) -> Vec<String> {
         let lift_m = self.lift_m();
@@ -111,13 +157,17 @@ impl GroundPlane {
             )],
         };
         let tilt_deg = self.slope.length().atan().to_degrees();
-        if tilt_deg >= REPORTED_TILT_DEG {
-            out.push(format!("the ground is tilted by {tilt_deg:.1} degrees: left so"));
+        match lift_m {
+            0.0 if self.is_tilted() => {
+                out.push(format!("the ground is tilted by {tilt_deg:.1} degrees: left so"));
+            }
+            _ => out.extend(self.turned_note()),
         }
         out
     }
 
-    fn above_m(self, p: DVec3) -> f64 {
+    /// Height above it, m.
+    pub(super) fn above_m(self, p: DVec3) -> f64 {
         p.z - self.height_m - self.slope.dot(p.truncate())
     }
 }
@@ -317,5 +367,17 @@ mod tests {
             ..ground(0.0)
         };
         assert_eq!(tilted.notes(), ["the ground is tilted by 5.7 degrees: left so"]);
+        let turned = GroundPlane {
+            slope: DVec2::new(0.1, 0.0),
+            ..ground(-2.0)
+        };
+        assert_eq!(turned.notes()[1], "turned by 5.7 degrees: its ground was tilted");
+        let level = turned.leveling();
+        for at in [DVec2::ZERO, DVec2::new(20.0, 0.0), DVec2::new(-8.0, 13.0)] {
+            let foot = at.extend(turned.height_m + turned.slope.dot(at));
+            assert!(level.apply(foot).z.abs() < 0.01, "{foot}");
+        }
+        let now = turned.moved(&level);
+        assert!(now.height_m.abs() < 0.01 && now.slope.length() < 1e-9, "{now:?}");
     }
 }

@@ -11,6 +11,7 @@
 
 mod geometry;
 mod level;
+mod sweep;
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
@@ -20,6 +21,8 @@ use scene::{Class, Pose, Recorded, SensorRig, VoxelGrid, Window};
 
 use super::{GUESSED, ImportFile, ImportedScene, labelled};
 use level::GroundPlane;
+pub use sweep::ImportedSweep;
+use sweep::SweepReturns;
 
 /// Fields of points whose numbers are classes of Occ3D, in small letters.
 pub(super) const LABELS: [&str; 6] = [
@@ -30,6 +33,9 @@ pub(super) const LABELS: [&str; 6] = [
     "scalar_label",
     "scalar_class",
 ];
+
+/// Fields of points whose numbers are strengths of echoes, in small letters.
+pub(super) const STRENGTHS: [&str; 4] = ["intensity", "scalar_intensity", "reflectivity", "remission"];
 
 /// Layers per voxel in which heights are counted: 0.05 m each.
 const FINE: usize = 8;
@@ -93,12 +99,16 @@ impl NothingOnTheMap {
 /// Points on the map, and their labels.
 #[derive(Default)]
 pub(super) struct Cloud {
-    /// Points within the map seen from above, until it is known how far they are lifted.
-    waiting: Vec<(DVec3, Label)>,
-    /// How far points are lifted, m: by the user or by the ground, once it is known.
-    lift_m: Option<f64>,
+    /// Points within the map seen from above, until it is known how far they are lifted; with their strength.
+    waiting: Vec<(DVec3, f32, Label)>,
+    /// How points are moved: lifted by the user, or by the ground, once it is known.
+    level: Option<Pose>,
     /// The user said how far.
     is_asked: bool,
+    /// The sensor's place on the vehicle is a guess: the ground shows how high it is.
+    is_guessed: bool,
+    /// Returns for a network that finds objects.
+    sweep: SweepReturns,
     /// Notes on what was done with the height, for a person.
     notes: Vec<String>,
     /// Column, layer and class of a point in one number.
@@ -146,14 +156,23 @@ impl Cloud {
     /// An empty cloud of a file: lifted as the user says, else by the height of its ground.
     pub(super) fn from_source(source: &ImportFile<'_>) -> Self {
         Self {
-            lift_m: source.options.lift_m,
+            level: source.options.lift_m.map(lifted),
             is_asked: source.options.lift_m.is_some(),
             ..Self::default()
         }
     }
 
-    /// One point, in m in the frame of the sensor or of the ego, and the number of its class in Occ3D if it has one.
-    pub(super) fn add(&mut self, at: DVec3, label: Option<f64>) {
+    /// The same for a sensor whose place on the vehicle is a guess.
+    pub(super) fn of_guessed_sensor(source: &ImportFile<'_>) -> Self {
+        Self {
+            is_guessed: true,
+            ..Self::from_source(source)
+        }
+    }
+
+    /// One point, in m in the frame of the sensor or of the ego, the number of its class in Occ3D if it has one, and the strength
+    /// of its echo if it has one.
+    pub(super) fn add(&mut self, at: DVec3, label: Option<f64>, strength: Option<f64>) {
         let label = match label {
             Some(id) if (0.0..f64::from(Class::FREE)).contains(&id) && id.fract() == 0.0 => {
                 Class::from_id(id as u8).map_or(Label::Unknown, Label::Class)
@@ -161,61 +180,69 @@ impl Cloud {
             Some(_) => Label::Unknown,
             None => Label::None,
         };
-        self.add_return(at, &Pose::default(), label);
+        self.add_return(at, &Pose::default(), label, strength.unwrap_or(0.0) as f32);
     }
 
     /// One slot of a sensor, in m in its frame: a point, unless no echo came back.
-    pub(super) fn add_return(&mut self, at: DVec3, ego_from_sensor: &Pose, label: Label) {
+    pub(super) fn add_return(&mut self, at: DVec3, ego_from_sensor: &Pose, label: Label, strength: f32) {
         if label == Label::None && is_empty_return(at) {
             self.added += 1;
             self.empty += 1;
             return;
         }
-        self.add_point(ego_from_sensor.apply(at), label);
+        self.sweep.sensor_m = ego_from_sensor.translation_m;
+        self.add_point(ego_from_sensor.apply(at), label, strength);
     }
 
     /// One point, in m; its height is taken as that of the ego frame unless the ground shows otherwise.
-    pub(super) fn add_point(&mut self, at: DVec3, label: Label) {
+    pub(super) fn add_point(&mut self, at: DVec3, label: Label, strength: f32) {
         self.added += 1;
         if !at.is_finite() {
             self.not_finite += 1;
         } else if Window::column_at(at.x, at.y).is_none() {
             self.elsewhere += 1;
-        } else if let Some(lift_m) = self.lift_m {
-            self.place(at + DVec3::Z * lift_m, label);
+        } else if let Some(level) = self.level {
+            self.place(level.apply(at), label, strength);
         } else {
-            self.waiting.push((at, label));
+            self.waiting.push((at, strength, label));
             if self.waiting.len() >= WAITING {
-                self.level();
+                self.find_level();
             }
         }
     }
 
     /// Finds how far the cloud is lifted, and places the points that wait for it.
-    fn level(&mut self) {
+    fn find_level(&mut self) {
         let waiting = std::mem::take(&mut self.waiting);
-        let is_labelled = waiting.iter().any(|(_, label)| *label != Label::None);
+        let is_labelled = waiting.iter().any(|(.., label)| *label != Label::None);
         let shows_ground = |label: Label| match label {
             Label::Class(class) => class.is_ground(),
             Label::Unknown => false,
             Label::None => !is_labelled,
         };
-        let points = waiting.iter().filter(|(_, label)| shows_ground(*label));
-        let ground = GroundPlane::from_points(points.map(|(at, _)| *at));
-        let lift_m = ground.map_or(0.0, GroundPlane::lift_m);
-        self.lift_m = Some(lift_m);
+        let points = waiting.iter().filter(|(.., label)| shows_ground(*label));
+        let ground = GroundPlane::from_points(points.map(|(at, ..)| *at));
+        let is_placed = |ground: &GroundPlane| self.is_guessed && ground.lift_m() == 0.0;
+        let level = match ground {
+            Some(ground) if ground.lift_m() != 0.0 || is_placed(&ground) => ground.leveling(),
+            _ => Pose::default(),
+        };
+        self.level = Some(level);
+        self.sweep.ground = ground.map(|ground| ground.moved(&level));
+        self.sweep.sensor_m = level.apply(self.sweep.sensor_m);
         self.notes = match ground {
+            Some(ground) if is_placed(&ground) => ground.placed_notes(self.sweep.sensor_m.z),
             Some(ground) => ground.notes(),
             None if is_labelled => Vec::new(),
             None => vec!["no ground found around the sensor: heights stay as they are in the file".into()],
         };
-        for (at, label) in waiting {
-            self.place(at + DVec3::Z * lift_m, label);
+        for (at, strength, label) in waiting {
+            self.place(level.apply(at), label, strength);
         }
     }
 
     /// One point, in m in the ego frame.
-    fn place(&mut self, at: DVec3, label: Label) {
+    fn place(&mut self, at: DVec3, label: Label, strength: f32) {
         let Some([x, y, z]) = Window::voxel_at(at) else {
             self.elsewhere += 1;
             return;
@@ -231,6 +258,9 @@ impl Cloud {
         }
         self.unknown += usize::from(label == Label::Unknown);
         self.unlabelled |= class.is_none();
+        if class.is_none() {
+            self.sweep.add(at, strength);
+        }
         if class.is_none_or(Class::is_ground) {
             self.hold(at, (x * Window::NY + y) * Window::NZ + z, class.is_some());
         }
@@ -263,9 +293,12 @@ impl Cloud {
         name: &str,
         left_out: BTreeMap<String, usize>,
     ) -> Result<ImportedScene, NothingOnTheMap> {
-        match self.lift_m {
-            None => self.level(),
-            Some(m) if self.is_asked => self.notes = vec![format!("lifted by {m:.2} m, as asked for")],
+        match self.level {
+            None => self.find_level(),
+            Some(by) if self.is_asked => {
+                self.notes = vec![format!("lifted by {:.2} m, as asked for", by.translation_m.z)];
+                self.sweep.ground = None;
+            }
             Some(_) => {}
         }
         let notes = std::mem::take(&mut self.notes);
@@ -288,12 +321,14 @@ impl Cloud {
                 }
             }
         }
+        let sweep = std::mem::take(&mut self.sweep);
         let mut scene = labelled(name, self.grid(), None);
         if by_shape {
             scene.change_canvas(|canvas| canvas.inferred.recorded = Arc::new(Recorded::of_voxels()));
         }
         Ok(ImportedScene {
             scene,
+            sweep: by_shape.then(|| sweep.finished()).flatten(),
             inferred: match by_shape {
                 true => &GUESSED_BY_SHAPE,
                 false => &GUESSED,
@@ -413,6 +448,13 @@ fn ground_level(counted: &[(u32, u32)]) -> Option<usize> {
     };
     let found = level(&|class| class == Class::DriveableSurface).or_else(|| level(&Class::is_ground))?;
     (LOWEST_LEVEL..=HIGHEST_LEVEL).contains(&found).then_some(found)
+}
+
+fn lifted(by_m: f64) -> Pose {
+    Pose {
+        translation_m: DVec3::Z * by_m,
+        ..Pose::default()
+    }
 }
 
 /// True for a place of a sensor's frame where nothing came back.

@@ -52,7 +52,7 @@ pub(super) fn street(ground_m: f64) -> Vec<(DVec3, Class)> {
 fn made(points: &[(DVec3, Class)], with_labels: bool) -> VoxelGrid {
     let mut cloud = Cloud::default();
     for (at, class) in points {
-        cloud.add(*at, with_labels.then_some(f64::from(class.id())));
+        cloud.add(*at, with_labels.then_some(f64::from(class.id())), None);
     }
     let loaded = cloud.scene("street", BTreeMap::new()).expect("some");
     assert_eq!(loaded.inferred.contains(&"classes"), !with_labels);
@@ -116,7 +116,7 @@ fn echoes_of_the_own_roof_are_left_out_and_the_road_beside_it_is_not() {
         (DVec3::new(1.0, 3.0, 1.5), Label::Unknown),
         (DVec3::NAN, Label::None),
     ] {
-        cloud.add_point(at, label);
+        cloud.add_point(at, label, 0.0);
     }
     let found = cloud
         .scene("roof", BTreeMap::from([("ring".into(), 1)]))
@@ -138,17 +138,17 @@ fn echoes_of_the_own_roof_are_left_out_and_the_road_beside_it_is_not() {
 #[test]
 fn many_points_are_counted_to_the_last() {
     let mut cloud = Cloud {
-        lift_m: Some(0.0),
+        level: Some(Pose::default()),
         ..Cloud::default()
     };
     let place = DVec3::new(5.1, 5.1, 1.1);
     for _ in 0..PENDING + 10 {
-        cloud.add_point(place, Label::Class(Class::Car));
+        cloud.add_point(place, Label::Class(Class::Car), 0.0);
     }
     for _ in 0..PENDING + 11 {
-        cloud.add_point(place, Label::Class(Class::Truck));
+        cloud.add_point(place, Label::Class(Class::Truck), 0.0);
     }
-    (0..1000).for_each(|_| cloud.add_point(DVec3::new(-5.1, 5.1, 1.1), Label::None));
+    (0..1000).for_each(|_| cloud.add_point(DVec3::new(-5.1, 5.1, 1.1), Label::None, 0.0));
     assert_eq!(cloud.loose.len(), usize::from(MOST_PER_VOXEL));
     assert!(cloud.counted.len() + cloud.pending.len() < PENDING + 100);
     let grid = cloud

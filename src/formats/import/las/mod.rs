@@ -108,7 +108,7 @@ pub fn read_around(source: &ImportFile<'_>, origin_m: Option<DVec3>) -> Result<C
             withheld += 1;
             return;
         }
-        cloud.add_point(record.at_m - origin_m, label);
+        cloud.add_point(record.at_m - origin_m, label, 0.0);
     })?;
     let mut left_out = BTreeMap::new();
     for (what, count) in [

@@ -151,6 +151,7 @@ fn read_drive(
         scene.change_canvas(|canvas| canvas.inferred.recorded = recorded);
     }
     let loaded = ImportedScene {
+        sweep: None,
         scene,
         inferred,
         skipped,

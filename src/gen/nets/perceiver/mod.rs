@@ -8,6 +8,7 @@ pub mod pillars;
 pub mod stands;
 #[cfg(test)]
 mod tests;
+mod views;
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
