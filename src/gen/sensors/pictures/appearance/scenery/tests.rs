@@ -207,6 +207,14 @@ fn inferred_things_must_explain_the_voxels_around_them_too() {
         matches!(hit.what, SurfaceKind::Thing(..))
     };
     assert!(is_solid(&frame));
+    let drawn = |frame: &Frame| {
+        appearance(frame, &background)
+            .things
+            .iter()
+            .filter(|t| t.is_scenery())
+            .count()
+    };
+    let before = drawn(&frame);
     // Two more rows of voxels all around: the house that was inferred is too small.
     let extent = frame.extent();
     let near = |[x, y]: &[usize; 2]| {
@@ -217,4 +225,34 @@ fn inferred_things_must_explain_the_voxels_around_them_too() {
         (1..extent.nz()).for_each(|z| frame.occupancy.set(x, y, z, Class::Manmade.id()));
     }
     assert!(!is_solid(&frame));
+    assert!(drawn(&frame) < before);
+    // A house that somebody put there is not in question.
+    frame.inferred.background = false;
+    assert_eq!(drawn(&frame), before);
+}
+
+/// A voxel is a hole if a hand took it out; one that is missing is a ragged edge.
+#[test]
+fn a_hole_of_one_voxel_is_open_if_a_hand_made_it() {
+    let background = things();
+    let mut frame = frame_of(&background);
+    let extent = frame.extent();
+    let way = Vec3::new(1.0, 0.015, 0.0);
+    let before = hit(&appearance(&frame, &background), way).expect("a house");
+    let in_hole =
+        |p: DVec3| (9.0..24.0).contains(&p.x) && (0.0..0.4).contains(&p.y) && (1.4..1.8).contains(&p.z);
+    let hole: Vec<[usize; 3]> = extent
+        .all_columns()
+        .flat_map(|[x, y]| (0..extent.nz()).map(move |z| [x, y, z]))
+        .filter(|[x, y, z]| {
+            in_hole(extent.center(*x, *y, *z)) && frame.occupancy.get(*x, *y, *z) != Class::FREE
+        })
+        .collect();
+    hole.iter()
+        .for_each(|[x, y, z]| frame.occupancy.set(*x, *y, *z, Class::FREE));
+    let ragged = hit(&appearance(&frame, &background), way).expect("still a house");
+    assert_eq!(ragged.t.to_bits(), before.t.to_bits());
+    hole.iter()
+        .for_each(|[x, y, z]| frame.painted.set(*x, *y, *z, Class::FREE));
+    assert!(hit(&appearance(&frame, &background), way).is_none_or(|h| h.t > before.t + 0.3));
 }
