@@ -46,7 +46,9 @@ fn nearer(best: vec4f, t: f32, normal: vec3f, limit: f32) -> vec4f {
     return best;
 }
 // A limb: see the processor's.
-fn cast_limb(a: vec3f, b: vec3f, radii: vec2f, o: vec3f, d: vec3f, limit: f32) -> vec4f {
+fn cast_limb(a: vec3f, b: vec3f, radii: vec2f, origin: vec3f, d: vec3f, limit: f32) -> vec4f {
+    let skipped = dot(a - origin, d) / dot(d, d);
+    let o = origin + d * skipped;
     let axis = b - a;
     let start = o - a;
     let thin = radii.x - radii.y;
@@ -57,7 +59,7 @@ fn cast_limb(a: vec3f, b: vec3f, radii: vec2f, o: vec3f, d: vec3f, limit: f32) -
         let r = select(radii.y, radii.x, k == 0);
         let roots = quadratic(dot(d, d), dot(q, d), dot(q, q) - r * r);
         if roots.z > 0.0 {
-            best = nearer(best, roots.x, (q + d * roots.x) / r, limit);
+            best = nearer(best, skipped + roots.x, (q + d * roots.x) / r, limit);
         }
     }
     if span > 0.0 {
@@ -73,7 +75,7 @@ fn cast_limb(a: vec3f, b: vec3f, radii: vec2f, o: vec3f, d: vec3f, limit: f32) -
                 let s = (w + step * t) / span;
                 let normal = (start + d * t - axis * s) / (radii.x - thin * s);
                 if s >= 0.0 && s <= 1.0 && dot(normal, d) < 0.0 {
-                    best = nearer(best, t, normal, limit);
+                    best = nearer(best, skipped + t, normal, limit);
                 }
             }
         }
@@ -234,7 +236,7 @@ fn cast_thing(i: u32, origin: vec3f, dir: vec3f, limit: f32) -> Met {
     }
     let o = thing_turn(a, origin - thing_foot(a));
     let d = thing_turn(a, dir);
-    let size = thing_size(a);
+    let size = num3(a + 20u);
     let lo = vec3f(-size.x, -size.y, -0.2) / 2.0 - 0.02;
     let hi = vec3f(size.x / 2.0, size.y / 2.0, size.z) + 0.02;
     // An axis along which the ray does not move: no number comes of 0 / 0.

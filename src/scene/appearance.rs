@@ -56,7 +56,7 @@ pub const FAR_M: f32 = 400.0;
 /// A pixel gets more samples if its tone differs from a neighbour's by more than this.
 pub const CONTRAST: f32 = 0.10;
 /// Number of words of a thing in [`AppearanceData::words`].
-pub const THING_WORDS: usize = 20;
+pub const THING_WORDS: usize = 23;
 /// Number of words of a part; see [`THING_WORDS`].
 pub const PART_WORDS: usize = 14;
 

@@ -129,7 +129,9 @@ fn frame_bytes(frame: &Frame, other: Option<&Frame>) -> usize {
     if !other.is_some_and(|f| Arc::ptr_eq(&frame.own_shapes, &f.own_shapes)) {
         bytes += own_shapes(&frame.own_shapes, other.map(|f| &*f.own_shapes));
     }
-    bytes + (frame.inferred.boxes.len() + frame.absent.len()) * (size_of::<BoxId>() + NODE_BYTES)
+    bytes
+        + (frame.inferred.boxes.len() + frame.absent.len()) * (size_of::<BoxId>() + NODE_BYTES)
+        + frame.covered_m.len() * (size_of::<(BoxId, f64)>() + NODE_BYTES)
 }
 
 fn own_shapes(shapes: &OwnShapes, other: Option<&OwnShapes>) -> usize {

@@ -99,7 +99,6 @@ fn frame_in(frame: &Frame, lattice: Lattice) -> Frame {
         occupancy,
         source: Arc::new(source),
         own_shapes: Arc::default(),
-        covered_m: frame.covered_m.clone(),
         ..frame.clone()
     }
 }

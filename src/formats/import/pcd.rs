@@ -101,7 +101,8 @@ fn read(source: &ImportFile<'_>) -> Result<Content, PcdError> {
             .ok_or_else(|| wrong("FIELDS", "no such field", name))
     };
     let mut wanted = vec![axis("x")?, axis("y")?, axis("z")?];
-    let beside = [header.field(&LABELS), header.field(&STRENGTHS)];
+    let first = |names: &[&str]| names.iter().find_map(|name| header.field(&[name]));
+    let beside = [first(&LABELS), first(&STRENGTHS)];
     let kept = wanted.iter().copied().chain(beside[0]).collect::<Vec<_>>();
     let beside = beside.map(|field| {
         wanted.extend(field);
@@ -278,11 +279,18 @@ impl PcdHeader {
             let words: Vec<&str> = line.split_whitespace().collect();
             for (value, field) in values.iter_mut().zip(&wanted) {
                 let word = words.get(field.values_before).copied().unwrap_or_default();
-                *value = word.parse().map_err(|_| PcdError::Number {
-                    point,
-                    field: quoted(&field.name, 40),
-                    found: quoted(word, 40),
-                })?;
+                *value = match word.parse() {
+                    Ok(value) => value,
+                    // A guess gets along without it.
+                    Err(_) if STRENGTHS.contains(&field.name.to_lowercase().as_str()) => f64::NAN,
+                    Err(_) => {
+                        return Err(PcdError::Number {
+                            point,
+                            field: quoted(&field.name, 40),
+                            found: quoted(word, 40),
+                        });
+                    }
+                };
             }
             take(&values);
         }

@@ -88,7 +88,9 @@ fn read(source: &ImportFile<'_>) -> Result<Content, PlyError> {
     let axis = |name: &'static str| property(&|p| p == name).ok_or(PlyError::Missing(name));
     let mut wanted = vec![axis("x")?, axis("y")?, axis("z")?];
     let beside = [LABELS.as_slice(), &STRENGTHS].map(|names| {
-        let at = property(&|p| names.contains(&p.to_lowercase().as_str()));
+        let at = names
+            .iter()
+            .find_map(|name| property(&|p| p.to_lowercase() == *name));
         wanted.extend(at);
         at.map(|_| wanted.len() - 1)
     });
@@ -98,14 +100,18 @@ fn read(source: &ImportFile<'_>) -> Result<Content, PlyError> {
         body.pass(before, &[], |_| {})?;
     }
     let mut cloud = Cloud::from_source(source);
+    let is_gaussian = |name: &str| points.properties.iter().any(|p| p.name == name);
+    let are_gaussians = is_gaussian("f_dc_0") && is_gaussian("scale_0");
+    if are_gaussians {
+        cloud.is_map();
+    }
     body.pass(points, &wanted, |v| {
         let [label, strength] = beside.map(|at| at.map(|at| v[at]));
         cloud.add(DVec3::new(v[0], v[1], v[2]), label, strength)
     })?;
 
     let mut left_out = BTreeMap::new();
-    let is_gaussian = |name: &str| points.properties.iter().any(|p| p.name == name);
-    if is_gaussian("f_dc_0") && is_gaussian("scale_0") {
+    if are_gaussians {
         let what = "colours, sizes and turns of Gaussians, read as the points in their middles";
         left_out.insert(what.to_owned(), points.count);
     } else {

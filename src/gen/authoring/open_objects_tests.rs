@@ -97,4 +97,34 @@ fn a_large_object_is_one_box_and_all_its_voxels_are_in_it() {
     );
     assert!(objects > 50 && (0.97..=1.1).contains(&per_object), "{per_object}");
     assert!(share <= 0.05, "{share}");
+    assert!(length_gap_m / f64::from(objects) < 1.5);
+}
+
+/// Objects in a row with a metre between them stay as many as they are.
+#[test]
+fn objects_that_stand_close_are_not_one() {
+    let pattern = &SensorRig::default().lidars[0];
+    let row = |class: Class, size_m: DVec3| -> BTreeMap<BoxId, SceneBox> {
+        let place = |i: u32| SceneBox {
+            id: BoxId(i + 1),
+            class,
+            center_m: DVec3::new(2.0 + f64::from(i) * (size_m.x + 1.2), 7.0, size_m.z / 2.0),
+            size_m,
+            yaw_rad: 0.0,
+            velocity_mps: DVec2::ZERO,
+            label: Default::default(),
+        };
+        (0..2).map(place).map(|b| (b.id, b)).collect()
+    };
+    for (class, size_m) in [
+        (Class::Truck, DVec3::new(5.3, 1.95, 1.9)),
+        (Class::Truck, DVec3::new(8.0, 2.5, 3.2)),
+        (Class::ConstructionVehicle, DVec3::new(4.0, 1.6, 2.4)),
+    ] {
+        let truth = row(class, size_m);
+        let world = World::with_background(BevLayout::default(), truth, Background::default(), 1);
+        let grid = labels(&world, pattern, &Drive::default(), Vertical::Occ3d, 1);
+        let found = infer::boxes(&grid);
+        assert_eq!(found.len(), 2, "{class:?} {size_m}: {found:?}");
+    }
 }

@@ -142,11 +142,21 @@ impl Clip {
             .at(time_s, |to| self.moving_within(to, time_s, left.checked_sub(1)?))
     }
 
-    /// Distance that a track has covered since its motion began, forward along its heading, m; 0 for tracks that are attached
-    /// to others, and for other ids.
+    /// Distance that a track has covered since its motion began, forward along its heading, m; of an attached one that of what it
+    /// is attached to, and 0 for other ids.
     pub fn covered_m(&self, id: BoxId, time_s: f64) -> f64 {
-        let motion = self.motion(Some(id));
-        motion.map_or(0.0, |motion| motion.covered_m(time_s))
+        self.covered_within(id, time_s, Self::MAX_ATTACHED)
+    }
+
+    fn covered_within(&self, id: BoxId, time_s: f64, left: usize) -> f64 {
+        match self.motion(Some(id)) {
+            Some(Motion::Attached { to, .. }) => {
+                let left = left.checked_sub(1);
+                left.map_or(0.0, |left| self.covered_within(*to, time_s, left))
+            }
+            Some(motion) => motion.covered_m(time_s),
+            None => 0.0,
+        }
     }
 
     /// The box of a track at a time, standing on the ground there; `None` if it is not there then.

@@ -368,22 +368,28 @@ pub(super) fn at_keys(keys: &[Key], time_s: f64) -> Option<Moving> {
     })
 }
 
-/// Time between two points of the line by which a way between keyframes is measured, s.
-const MEASURED_EVERY_S: f64 = 0.1;
+/// Steps in which the way between two keyframes is measured.
+const MEASURED_IN: usize = 12;
 
 /// Distance covered between the first key and a time, forward along the heading, m. It grows without jumps.
 fn covered_by_keys_m(keys: &[Key], time_s: f64) -> f64 {
-    let (Some(first), Some(last)) = (keys.first(), keys.last()) else {
-        return 0.0;
-    };
-    let until_s = time_s.clamp(first.time_s, last.time_s) - first.time_s;
-    let steps = (until_s / MEASURED_EVERY_S) as usize;
-    let times = (0..=steps).map(|i| i as f64 * MEASURED_EVERY_S).chain([until_s]);
-    let points: Vec<Moving> = times.filter_map(|t| at_keys(keys, first.time_s + t)).collect();
-    let ways = points
-        .windows(2)
-        .map(|pair| (pair[1].at_m - pair[0].at_m).dot(DVec2::from_angle(pair[0].yaw_rad)));
-    ways.sum()
+    let spans = keys.windows(2).take_while(|pair| pair[0].time_s < time_s);
+    let moving = spans.filter(|pair| pair[0].at_m != pair[1].at_m);
+    let covered = moving.map(|pair| {
+        let (from_s, step_s) = (
+            pair[0].time_s,
+            (pair[1].time_s - pair[0].time_s) / MEASURED_IN as f64,
+        );
+        let done = ((time_s - from_s) / step_s).min(MEASURED_IN as f64);
+        let times = (0..=done as usize).map(|i| i as f64).chain([done]);
+        let points: Vec<Moving> = times.filter_map(|n| at_keys(keys, from_s + n * step_s)).collect();
+        let ways = points.windows(2).map(|pair| {
+            let ahead = DVec2::from_angle(pair[0].yaw_rad);
+            (pair[1].at_m - pair[0].at_m).dot(ahead)
+        });
+        ways.sum::<f64>()
+    });
+    covered.sum()
 }
 
 /// Headings of keys `i - 1` (where there is one) to `i + 2`, each within half a turn of the one before, rad.

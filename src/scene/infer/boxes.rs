@@ -148,16 +148,18 @@ fn joined(class: Class, mut parts: Vec<Component>) -> Vec<Component> {
     let Some(largest) = largest(class).filter(|_| parts.len() <= MOST_PARTS) else {
         return parts;
     };
-    let usual = class
-        .typical_size_m()
-        .map_or(DVec2::ONE, |size| DVec2::new(size[0], size[1]));
+    let area_m2 = |c: &Component| c.points_m.len() as f64 * c.voxel_m.powi(2);
+    let smallest_m2 = of_class(class)
+        .map(|kind| kind.size_m[0] * kind.size_m[1])
+        .fold(f64::INFINITY, f64::min);
     // Two whole objects that stand close are two.
-    let is_part = |c: &Component| c.points_m.len() as f64 * c.voxel_m.powi(2) < 0.7 * usual.x * usual.y;
+    let is_part = |c: &Component| area_m2(c) < 0.7 * smallest_m2;
     let mut first = 0;
     while first < parts.len() {
         let joins = |other: &Component| {
             let one = &parts[first];
-            if !(is_part(one) || is_part(other)) || !are_near(one, other) {
+            let fits = area_m2(one) + area_m2(other) <= largest.x * largest.y;
+            if !fits || !(is_part(one) || is_part(other)) || !are_near(one, other) {
                 return false;
             }
             let all = [one.points_m.as_slice(), &other.points_m].concat();
@@ -283,6 +285,16 @@ fn usual_size_m(class: Class, height_m: f64) -> DVec3 {
     kinds.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(typical)
 }
 
+/// Length by which labels of an object are longer or wider than it is, at most, m.
+const LABELS_MORE_M: f64 = 1.3;
+
+/// True if a rectangle of columns is that of one of the known kinds of large objects.
+fn is_kind(class: Class, size: DVec2) -> bool {
+    let fits = |size: f64, kind: f64| (-0.6..LABELS_MORE_M).contains(&(size - kind));
+    largest(class).is_some()
+        && of_class(class).any(|kind| fits(size.x, kind.size_m[0]) && size.y - kind.size_m[1] < LABELS_MORE_M)
+}
+
 /// One rectangle per object of the component.
 fn split(class: Class, component: &Component) -> Vec<BoxFootprint> {
     let typical = usual_size_m(class, component.height_m);
@@ -296,8 +308,9 @@ fn split(class: Class, component: &Component) -> Vec<BoxFootprint> {
     let (center, size, yaw) = around(&component.points_m, component.voxel_m);
     let along = DVec2::from_angle(yaw);
     let largest = largest(class).unwrap_or(usual * SEVERAL).max(usual * SEVERAL);
-    let count = |size: f64, usual: f64, largest: f64| {
-        if size > largest {
+    let is_kind = is_kind(class, size);
+    let count = |size: f64, usual: f64| {
+        if size > usual * SEVERAL && !is_kind {
             (size / usual).round().max(2.0)
         } else {
             1.0
@@ -305,11 +318,7 @@ fn split(class: Class, component: &Component) -> Vec<BoxFootprint> {
     };
     // Cells of an object: at least a voxel each way, so that small things are not cut to crumbs.
     let cell = usual.max(DVec2::splat(2.0 * component.voxel_m));
-    let largest_cell = largest.max(cell * SEVERAL);
-    let (columns, rows) = (
-        count(size.x, cell.x, largest_cell.x),
-        count(size.y, cell.y, largest_cell.y),
-    );
+    let (columns, rows) = (count(size.x, cell.x), count(size.y, cell.y));
     let height_m = component.height_m.clamp(0.5 * typical.z, 2.0 * typical.z);
     let mut out = Vec::new();
     for i in 0..columns as usize {

@@ -45,9 +45,9 @@ const LOWEST_M: f64 = -0.9;
 /// Highest height of ground in the ego frame, m: the top of the map.
 const HIGHEST_M: f64 = scene::Window::MAX_M[2];
 /// Greatest height at which a vehicle carries a sensor, m.
-const HIGHEST_MOUNT_M: f64 = 5.0;
+pub(super) const HIGHEST_MOUNT_M: f64 = 5.0;
 /// Smallest tilt that is reported, and for which a cloud is turned, degrees: the ground is 0.7 m off at 20 m.
-const REPORTED_TILT_DEG: f64 = 2.0;
+const TILTED_DEG: f64 = 2.0;
 
 /// The ground around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,9 +117,18 @@ impl GroundPlane {
         }
     }
 
-    /// True if it is so steep that a cloud is turned for it.
+    fn tilt_deg(self) -> f64 {
+        self.slope.length().atan().to_degrees()
+    }
+
+    /// True if it is so steep that a cloud of a sensor is turned for it.
     fn is_tilted(self) -> bool {
-        self.slope.length().atan().to_degrees() >= REPORTED_TILT_DEG
+        self.tilt_deg() >= TILTED_DEG
+    }
+
+    /// True if a cloud with this ground lies in the frame of a sensor that a vehicle carries.
+    pub(super) fn is_below_a_sensor(self) -> bool {
+        self.lift_m() > 0.0 && self.lift_m() <= HIGHEST_MOUNT_M
     }
 
     /// Notes on what was done with a cloud of a sensor that was placed by its ground, for a person.
@@ -132,9 +141,8 @@ impl GroundPlane {
     }
 
     fn turned_note(self) -> Option<String> {
-        let tilt_deg = self.slope.length().atan().to_degrees();
         self.is_tilted()
-            .then(|| format!("turned by {tilt_deg:.1} degrees: its ground was tilted"))
+            .then(|| format!("turned by {:.1} degrees: its ground was tilted", self.tilt_deg()))
     }
 
     /// Notes on what was done with a cloud, for a person.
@@ -156,12 +164,13 @@ impl GroundPlane {
                 self.height_m, -m
             )],
         };
-        let tilt_deg = self.slope.length().atan().to_degrees();
-        match lift_m {
-            0.0 if self.is_tilted() => {
+        match self.is_below_a_sensor() {
+            true => out.extend(self.turned_note()),
+            false if self.is_tilted() => {
+                let tilt_deg = self.tilt_deg();
                 out.push(format!("the ground is tilted by {tilt_deg:.1} degrees: left so"));
             }
-            _ => out.extend(self.turned_note()),
+            false => {}
         }
         out
     }

@@ -34,8 +34,8 @@ pub(super) const LABELS: [&str; 6] = [
     "scalar_class",
 ];
 
-/// Fields of points whose numbers are strengths of echoes, in small letters.
-pub(super) const STRENGTHS: [&str; 4] = ["intensity", "scalar_intensity", "reflectivity", "remission"];
+/// Fields of points whose numbers are strengths of echoes, in small letters, the best first.
+pub(super) const STRENGTHS: [&str; 4] = ["reflectivity", "intensity", "scalar_intensity", "remission"];
 
 /// Layers per voxel in which heights are counted: 0.05 m each.
 const FINE: usize = 8;
@@ -180,17 +180,29 @@ impl Cloud {
             Some(_) => Label::Unknown,
             None => Label::None,
         };
-        self.add_return(at, &Pose::default(), label, strength.unwrap_or(0.0) as f32);
+        match label == Label::None && is_empty_return(at) {
+            true => self.add_empty(),
+            false => self.add_point(at, label, strength.unwrap_or(0.0) as f32),
+        }
+    }
+
+    /// Says that the points are a map of many sweeps, in which no objects are looked for.
+    pub(super) fn is_map(&mut self) {
+        self.sweep.is_map = true;
+    }
+
+    fn add_empty(&mut self) {
+        self.added += 1;
+        self.empty += 1;
     }
 
     /// One slot of a sensor, in m in its frame: a point, unless no echo came back.
     pub(super) fn add_return(&mut self, at: DVec3, ego_from_sensor: &Pose, label: Label, strength: f32) {
         if label == Label::None && is_empty_return(at) {
-            self.added += 1;
-            self.empty += 1;
+            self.add_empty();
             return;
         }
-        self.sweep.sensor_m = ego_from_sensor.translation_m;
+        self.sweep.sensor_m = Some(ego_from_sensor.translation_m);
         self.add_point(ego_from_sensor.apply(at), label, strength);
     }
 
@@ -222,16 +234,21 @@ impl Cloud {
         };
         let points = waiting.iter().filter(|(.., label)| shows_ground(*label));
         let ground = GroundPlane::from_points(points.map(|(at, ..)| *at));
-        let is_placed = |ground: &GroundPlane| self.is_guessed && ground.lift_m() == 0.0;
         let level = match ground {
-            Some(ground) if ground.lift_m() != 0.0 || is_placed(&ground) => ground.leveling(),
-            _ => Pose::default(),
+            Some(ground) if self.is_guessed || ground.is_below_a_sensor() => ground.leveling(),
+            Some(ground) => lifted(ground.lift_m()),
+            None => Pose::default(),
         };
         self.level = Some(level);
         self.sweep.ground = ground.map(|ground| ground.moved(&level));
-        self.sweep.sensor_m = level.apply(self.sweep.sensor_m);
+        if ground.is_some_and(GroundPlane::is_below_a_sensor) {
+            self.sweep.sensor_m.get_or_insert(DVec3::ZERO);
+        }
+        self.sweep.sensor_m = self.sweep.sensor_m.map(|at| level.apply(at));
         self.notes = match ground {
-            Some(ground) if is_placed(&ground) => ground.placed_notes(self.sweep.sensor_m.z),
+            Some(ground) if self.is_guessed => {
+                ground.placed_notes(self.sweep.sensor_m.map_or(0.0, |at| at.z))
+            }
             Some(ground) => ground.notes(),
             None if is_labelled => Vec::new(),
             None => vec!["no ground found around the sensor: heights stay as they are in the file".into()],
@@ -297,7 +314,7 @@ impl Cloud {
             None => self.find_level(),
             Some(by) if self.is_asked => {
                 self.notes = vec![format!("lifted by {:.2} m, as asked for", by.translation_m.z)];
-                self.sweep.ground = None;
+                self.sweep.find_ground(by.translation_m.z);
             }
             Some(_) => {}
         }

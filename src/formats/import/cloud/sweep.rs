@@ -3,16 +3,17 @@
 use std::collections::BTreeSet;
 
 use glam::DVec3;
-use scene::{BoxId, Class, SceneBox, VoxelGrid};
+use scene::{BoxId, Class, SceneBox, SensorRig, VoxelGrid};
 
-use super::GroundPlane;
+use super::level::{GroundPlane, HIGHEST_MOUNT_M};
 use crate::import::ImportedScene;
 use crate::import::importer::{labelled, of_sensor};
 
 /// Returns of a sweep at most: a larger cloud is a map of many.
 const MOST: usize = 600_000;
-/// Greatest strength of an echo of sensors that tell it as a share.
+/// Greatest strength of an echo of sensors that tell it as a share, and of others.
 const SHARE: f32 = 1.0;
+const STRONGEST: f32 = 255.0;
 /// Distance beyond a box within which voxels are its own, m.
 const BESIDE_M: f64 = 0.25;
 
@@ -20,10 +21,12 @@ const BESIDE_M: f64 = 0.25;
 #[derive(Default)]
 pub(super) struct SweepReturns {
     returns: Vec<([f32; 3], f32)>,
-    /// Where the sensor is, m.
-    pub(super) sensor_m: DVec3,
+    /// Where the sensor is, m; `None` if the points do not tell.
+    pub(super) sensor_m: Option<DVec3>,
     /// The ground around it, if the returns show it.
     pub(super) ground: Option<GroundPlane>,
+    /// The points are a map.
+    pub(super) is_map: bool,
 }
 
 impl SweepReturns {
@@ -34,26 +37,58 @@ impl SweepReturns {
         }
     }
 
-    /// All of them; `None` if their ground is not known or they are too many for a sweep.
+    /// Finds the ground of returns that were lifted by hand; the sensor was at their origin if nothing else is known.
+    pub(super) fn find_ground(&mut self, lift_m: f64) {
+        self.ground = GroundPlane::from_points(self.returns.iter().map(|(at, _)| place(*at)));
+        if lift_m > 0.0 && lift_m <= HIGHEST_MOUNT_M {
+            let at = self.sensor_m.unwrap_or_default();
+            self.sensor_m = Some(at + DVec3::Z * lift_m);
+        }
+    }
+
+    /// All of them; `None` for maps, and if their ground is not known.
     pub(super) fn finished(self) -> Option<ImportedSweep> {
-        let ground = self.ground.filter(|_| self.returns.len() <= MOST)?;
-        let strongest = self.returns.iter().map(|r| r.1).fold(0.0, f32::max);
-        let scale = if strongest <= SHARE { 255.0 } else { 1.0 };
-        let above = |([x, y, z], strength): ([f32; 3], f32)| {
-            let at = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+        let ground = self
+            .ground
+            .filter(|_| self.returns.len() <= MOST && !self.is_map)?;
+        let scale = scale(self.returns.iter().map(|r| r.1));
+        let above = |(at, strength): ([f32; 3], f32)| {
             let strength = if strength.is_finite() {
                 strength * scale
             } else {
                 0.0
             };
-            [x, y, ground.above_m(at) as f32, strength.clamp(0.0, 255.0)]
+            let height_m = ground.above_m(place(at)) as f32;
+            [at[0], at[1], height_m, strength.clamp(0.0, STRONGEST)]
         };
+        let usual_m = SensorRig::default()
+            .lidars
+            .first()
+            .map_or([0.0; 3], |lidar| lidar.translation_m);
+        let seen_from = self
+            .sensor_m
+            .map_or(DVec3::from_array(usual_m), |at| at.with_z(ground.above_m(at)));
         Some(ImportedSweep {
             returns: self.returns.into_iter().map(above).collect(),
-            sensor_m: self.sensor_m.with_z(ground.above_m(self.sensor_m)),
+            sensor_m: seen_from,
             mount_m: self.sensor_m,
             ground,
         })
+    }
+}
+
+fn place(at: [f32; 3]) -> DVec3 {
+    DVec3::from_array(at.map(f64::from))
+}
+
+/// Factor that takes strengths of any sensor to 0 to 255: by a high quantile, as single ones are wild.
+fn scale(strengths: impl Iterator<Item = f32>) -> f32 {
+    let mut known: Vec<f32> = strengths.filter(|s| s.is_finite() && *s > 0.0).collect();
+    known.sort_unstable_by(f32::total_cmp);
+    match known.get(known.len() * 99 / 100).copied() {
+        Some(high) if high <= SHARE => STRONGEST,
+        Some(high) if high > STRONGEST => STRONGEST / high,
+        _ => 1.0,
     }
 }
 
@@ -63,10 +98,10 @@ pub struct ImportedSweep {
     /// x and y in the ego frame, height above the ground (m) and strength of the echo (0 to 255) of each return; 0 where the
     /// strength is unknown.
     pub returns: Vec<[f32; 4]>,
-    /// Where the sensor is, in the same frame.
+    /// Where the sensor is, in the same frame; where the default rig has it if the file does not tell.
     pub sensor_m: DVec3,
-    /// The same in the ego frame.
-    mount_m: DVec3,
+    /// The same in the ego frame, if the file tells.
+    mount_m: Option<DVec3>,
     ground: GroundPlane,
 }
 
@@ -77,25 +112,42 @@ impl ImportedScene {
         let Some(sweep) = self.sweep.take() else {
             return self;
         };
-        let mut objects: Vec<SceneBox> = objects.into_iter().filter(|b| b.problem().is_none()).collect();
-        for (b, id) in objects.iter_mut().zip(1..) {
-            b.id = BoxId(id);
-            // The height of the ground below it.
-            b.center_m.z -= sweep.ground.above_m(b.center_m.with_z(0.0));
+        if let Some(mount_m) = sweep.mount_m {
+            of_sensor(&mut self.scene, mount_m);
         }
+        let mut objects: Vec<SceneBox> = objects.into_iter().filter(|b| b.problem().is_none()).collect();
+        if objects.is_empty() {
+            return self;
+        }
+        objects.iter_mut().zip(1..).for_each(|(b, id)| b.id = BoxId(id));
         let mut grid = self.scene.frame().occupancy.clone();
-        objects.iter().for_each(|b| relabel(&mut grid, b));
+        for b in &objects {
+            // Voxels are where the file has them.
+            let ground_m = -sweep.ground.above_m(b.center_m.with_z(0.0));
+            relabel(&mut grid, &lifted(b, ground_m));
+        }
         let recorded = self.scene.frame().inferred.recorded.clone();
         let mut scene = labelled(&self.scene.name, grid, None);
+        scene.rig = self.scene.rig.clone();
         scene.change_canvas(|canvas| {
+            // Boxes stand on the ground of the scene.
+            for b in &mut objects {
+                *b = lifted(b, canvas.layout.relief.height_m(b.center_m.truncate()));
+            }
             canvas.inferred.boxes = objects.iter().map(|b| b.id).collect::<BTreeSet<_>>();
             canvas.boxes = objects.into_iter().map(|b| (b.id, b)).collect();
             std::sync::Arc::make_mut(&mut canvas.source).boxes = canvas.boxes.clone();
             canvas.inferred.recorded = recorded;
         });
-        of_sensor(&mut scene, sweep.mount_m);
         self.scene = scene;
         self
+    }
+}
+
+fn lifted(b: &SceneBox, by_m: f64) -> SceneBox {
+    SceneBox {
+        center_m: b.center_m + DVec3::Z * by_m,
+        ..*b
     }
 }
 

@@ -110,6 +110,7 @@ pub fn read_around(source: &ImportFile<'_>, origin_m: Option<DVec3>) -> Result<C
         }
         cloud.add_point(record.at_m - origin_m, label, 0.0);
     })?;
+    cloud.is_map();
     let mut left_out = BTreeMap::new();
     for (what, count) in [
         ("points of noise", noise),

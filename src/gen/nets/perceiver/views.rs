@@ -131,10 +131,20 @@ fn gathered(mut finds: Vec<(usize, Detection)>) -> Vec<Found> {
     finds.sort_by(|a, b| b.1.score.total_cmp(&a.1.score).then(a.0.cmp(&b.0)));
     let mut out: Vec<Found> = Vec::new();
     for (look, find) in finds {
-        let same = |f: &&mut Found| {
-            kind(f.best.group) == kind(find.group) && flat_m(&f.best, &find) < same_m(find.group)
+        // A look that finds two things finds two.
+        let takes = |f: &&mut Found| {
+            kind(f.best.group) == kind(find.group)
+                && flat_m(&f.best, &find) < same_m(find.group)
+                && !f
+                    .finds
+                    .iter()
+                    .any(|(l, other)| *l == look && other.group == find.group)
         };
-        match out.iter_mut().find(same) {
+        let nearest = out
+            .iter_mut()
+            .filter(takes)
+            .min_by(|a, b| flat_m(&a.best, &find).total_cmp(&flat_m(&b.best, &find)));
+        match nearest {
             Some(found) => found.finds.push((look, find)),
             None => out.push(Found {
                 best: find,
@@ -254,15 +264,19 @@ mod tests {
             })
             .collect();
         finds.push((3, find(20.0, 2.0, 0.0, 0.9)));
+        // Of one look that finds two things in one place the second is another.
         finds.push((3, find(5.2, 2.3, 0.0, 0.3)));
         let found = gathered(finds);
-        assert_eq!(found.len(), 2);
+        assert_eq!(found.len(), 3);
         let car = found.iter().find(|f| f.finds.len() > 1).expect("the car");
         assert!((car.mean_score() - 8.0 * 0.8 / 12.0).abs() < 1e-5);
         let object = car.object(car.mean_score());
         assert!((object.center_m[0] - 5.33).abs() < 0.05, "{object:?}");
         assert!(object.yaw_rad.cos() > 0.99, "{object:?}");
-        let ghost = found.iter().find(|f| f.finds.len() == 1).expect("the ghost");
+        let ghost = found
+            .iter()
+            .find(|f| f.best.center_m[0] > 19.0)
+            .expect("the ghost");
         assert!(ghost.mean_score() < 0.1);
     }
 

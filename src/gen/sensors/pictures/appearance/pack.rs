@@ -115,6 +115,7 @@ fn pack_thing(t: &DrawnObject, first: u32, [cuts, cut_count]: [u32; 2], out: &mu
     out.extend(numbers.into_iter().map(f32::to_bits));
     out.push(u32::from(t.is_scenery()));
     out.push(cuts << 4 | cut_count);
+    out.extend(t.bound.to_array().map(f32::to_bits));
     out.resize(end, 0);
 }
 

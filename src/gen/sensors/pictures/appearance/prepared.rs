@@ -130,7 +130,7 @@ impl Appearance {
             .boxes
             .values()
             .filter_map(|b| {
-                let covered_m = frame.covered_m.get(&b.id).copied().unwrap_or_default();
+                let covered_m = frame.covered_m.get(&b.id).copied();
                 DrawnObject::from_box(b, frame.own_shapes.get(&b.id), covered_m, seed)
             })
             .chain(still.scenery.objects().cloned())
@@ -156,7 +156,7 @@ impl Appearance {
                 }
             }
         }
-        let tallest = things.iter().map(|t| t.foot.z + t.size.z).fold(0.3, f32::max);
+        let tallest = things.iter().map(|t| t.foot.z + t.bound.z).fold(0.3, f32::max);
         let air = Air::new(conditions);
         let lamps = lamps(&air, field, &things, rig);
         Self {

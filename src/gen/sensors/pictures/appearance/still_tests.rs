@@ -70,6 +70,17 @@ fn frames_look_the_same_with_a_cache() {
     {
         (5..9).for_each(|z| cut.occupancy.set(x, y, z, Class::FREE));
     }
+    let mut hole = frame.clone();
+    for [x, y] in frame
+        .extent()
+        .all_columns()
+        .filter(|[x, y]| (149..155).contains(x) && (112..118).contains(y))
+    {
+        (4..9).for_each(|z| {
+            hole.occupancy.set(x, y, z, Class::FREE);
+            hole.painted.set(x, y, z, Class::FREE);
+        });
+    }
     let mut paved = frame.clone();
     for [x, y] in frame
         .extent()
@@ -90,6 +101,8 @@ fn frames_look_the_same_with_a_cache() {
     let frames = [
         (&frame, &background),
         (&moved(&frame, 3.0), &background),
+        (&hole, &background),
+        (&moved(&hole, 1.0), &background),
         (&cut, &background),
         (&frame, &taller),
         (&paved, &taller),

@@ -93,6 +93,8 @@ pub struct DrawnObject {
     pub lamps: bool,
     /// Square of the radius of a circle on the ground that holds the thing, m^2.
     circle_m2: f32,
+    /// Length, width, height of what holds all parts, m: not below those of the box.
+    pub bound: Vec3,
     /// Parts with materials.
     pub parts: Vec<(ObjectPart, PartMaterial)>,
     /// Upright boxes in which it is not drawn: lower and upper corner, frame of the map, m.
@@ -151,8 +153,8 @@ fn usual_paint(name: &str) -> Option<Paint> {
 
 impl DrawnObject {
     /// A box as a thing to be drawn, by the shape of its class or by its own; `None` if the box has a problem. `covered_m` is the
-    /// way that it has gone.
-    pub fn from_box(b: &SceneBox, own: Option<&OwnShape>, covered_m: f64, seed: u32) -> Option<Self> {
+    /// way that it has gone, if it moves in a clip.
+    pub fn from_box(b: &SceneBox, own: Option<&OwnShape>, covered_m: Option<f64>, seed: u32) -> Option<Self> {
         if b.problem().is_some() {
             return None;
         }
@@ -183,8 +185,9 @@ impl DrawnObject {
             _ => car_paint(id),
         };
         let gait = Gait {
-            covered_m: covered_m as f32,
-            speed_mps: b.velocity_mps.length() as f32,
+            covered_m: covered_m.unwrap_or_default() as f32,
+            speed_mps: b.velocity_mps.dot(b.heading()).abs() as f32,
+            moves: covered_m.is_some() || b.velocity_mps.length() > 0.3,
         };
         match own {
             None => shape(&mut build, b.class, id, b.label.name.as_str(), gait),
@@ -195,10 +198,9 @@ impl DrawnObject {
             Some(own) => voxel_shape(&mut build, b, own, PartMaterial::Plain(paint)),
         }
         // Steps may reach beyond the box.
-        let size = build
-            .parts
-            .iter()
-            .fold(size, |size, (part, _)| size.max(part.half_reach() * 2.0));
+        let bound = build.parts.iter().fold(size, |bound, (part, _)| {
+            bound.max(part.reach() * Vec3::new(2.0, 2.0, 1.0))
+        });
         let bottom = b.center_m.z - b.size_m.z / 2.0;
         Some(Self {
             class: b.class,
@@ -211,7 +213,8 @@ impl DrawnObject {
             floor_m: 0.0,
             velocity: b.velocity_mps.as_vec2().extend(0.0),
             lamps: b.class.is_vehicle() && (b.velocity_mps.length() > 0.3 || id.is_multiple_of(3)),
-            circle_m2: (size.truncate() / 2.0 + 0.05).length_squared(),
+            circle_m2: (bound.truncate() / 2.0 + 0.05).length_squared(),
+            bound,
             parts: build.parts,
             cuts: Vec::new(),
         })
@@ -238,6 +241,7 @@ impl DrawnObject {
             velocity: Vec3::ZERO,
             lamps: false,
             circle_m2: (size.truncate() / 2.0 + 0.05).length_squared(),
+            bound: size,
             parts,
             cuts: Vec::new(),
         }
@@ -271,8 +275,8 @@ impl DrawnObject {
 
     /// Radius on the ground and height that hold it, m.
     pub fn reach(&self) -> Vec3 {
-        let r = self.size.truncate().length() / 2.0;
-        Vec3::new(r, r, self.size.z)
+        let r = self.bound.truncate().length() / 2.0;
+        Vec3::new(r, r, self.bound.z)
     }
 
     /// Half extents of the upright rectangle along the map's axes that holds it on the ground, m.
@@ -328,10 +332,10 @@ impl DrawnObject {
             return None;
         }
         let (o, d) = (self.to_local(origin), self.turn(dir));
-        // The box itself, a little grown, as a first test.
+        // What holds all parts, a little grown, as a first test.
         let (lo, hi) = (
-            Vec3::new(-self.size.x, -self.size.y, -0.2) / 2.0 - 0.02,
-            Vec3::new(self.size.x / 2.0, self.size.y / 2.0, self.size.z) + 0.02,
+            Vec3::new(-self.bound.x, -self.bound.y, -0.2) / 2.0 - 0.02,
+            Vec3::new(self.bound.x / 2.0, self.bound.y / 2.0, self.bound.z) + 0.02,
         );
         let inv = d.recip();
         let (a, b) = ((lo - o) * inv, (hi - o) * inv);

@@ -11,8 +11,10 @@ use crate::pictures::appearance::noise::{hash1, unit};
 pub struct Gait {
     /// Distance covered so far, m.
     pub covered_m: f32,
-    /// Speed over ground, m/s.
+    /// Speed along its heading, m/s.
     pub speed_mps: f32,
+    /// True if it moves now, or at another moment of its clip.
+    pub moves: bool,
 }
 
 /// Length of the thigh, and of the shank down to the ankle.
@@ -106,8 +108,9 @@ pub(super) fn on_foot(id: u32, height_m: f32, length_m: f32, gait: Gait) -> Join
         wrists[i] = shoulder + down(swing, ARM[0]) + down(swing + bend, ARM[1]) + Vec3::Y * side * 0.022;
     }
     // Some who stand look at something in their hand.
-    if amount < 0.3 && begin < 0.3 {
-        wrists[0] = shoulders + Vec3::new(0.15, 0.04, -0.13);
+    if begin < 0.3 {
+        let looks = shoulders + Vec3::new(0.15, 0.04, -0.13);
+        wrists[0] = looks.lerp(wrists[0], (3.0 * amount).min(1.0));
     }
     Joints {
         hips,
@@ -138,6 +141,7 @@ mod tests {
         let gait = Gait {
             covered_m,
             speed_mps: 1.4,
+            moves: true,
         };
         on_foot(7, 1.75, 0.73, gait)
             .ankles

@@ -36,10 +36,14 @@ pub(super) fn rounded(planes: &[Vec4], p: Vec3, normal: Vec3, reach: f32) -> Vec
 /// Where a ray meets a limb. A point of its side lies on the ball about `a + s (b - a)` with `s = w / (way^2 - thin^2)`,
 /// `w = (p - a).(b - a) - ra thin`, where balls touch what envelops them: `(way^2 - thin^2) (|p - a|^2 - ra^2) = w^2`.
 fn cast_limb([a, b]: [Vec3; 2], [ra, rb]: [f32; 2], (o, d): (Vec3, Vec3), limit: f32) -> Option<(f32, Vec3)> {
+    // From the point of the ray that is nearest to an end: far away the squares of small radii would be lost.
+    let near = (a - o).dot(d) / d.length_squared();
+    let o = o + d * near;
     let (axis, from, thin) = (b - a, o - a, ra - rb);
     let span = axis.length_squared() - thin * thin;
     let mut best: Option<(f32, Vec3)> = None;
     let mut consider = |t: f32, normal: Vec3| {
+        let t = t + near;
         if t > 1e-4 && t < limit && best.is_none_or(|b| t < b.0) {
             best = Some((t, normal));
         }
@@ -78,13 +82,23 @@ fn quadratic(a: f32, b: f32, c: f32) -> Option<(f32, f32)> {
 }
 
 impl ObjectPart {
-    /// How far a limb reaches along and across from the middle of the box, m; 0 for other parts, which lie in the box.
-    pub(super) fn half_reach(&self) -> Vec3 {
-        let ObjectPart::Limb(ends, radii, wide) = self else {
-            return Vec3::ZERO;
-        };
-        let reach = |i: usize| ends[i].abs() + Vec3::new(1.0, *wide, 1.0) * radii[i];
-        reach(0).max(reach(1)).with_z(0.0)
+    /// How far it reaches along and across from the middle of the box, and up from its bottom, m; 0 for convex bodies, which lie
+    /// in the box.
+    pub(super) fn reach(&self) -> Vec3 {
+        match self {
+            ObjectPart::Convex(_) => Vec3::ZERO,
+            ObjectPart::Wheel(c, r, half) | ObjectPart::Ring(c, r, half, _) => {
+                c.abs() + Vec3::new(*r, *half, *r)
+            }
+            ObjectPart::Round(c, r) => c.abs() + *r,
+            ObjectPart::Cone(foot, height, bottom, top) => {
+                foot.abs() + Vec2::splat(bottom.max(*top)).extend(*height)
+            }
+            ObjectPart::Limb(ends, radii, wide) => {
+                let reach = |i: usize| ends[i].abs() + Vec3::new(1.0, *wide, 1.0) * radii[i];
+                reach(0).max(reach(1))
+            }
+        }
     }
 
     /// Where a ray enters, nearer than `limit`, and the outward normal there.
@@ -267,6 +281,39 @@ mod tests {
             .map(|s| p.distance(a.lerp(b, s)) - (ra + (rb - ra) * s))
             .fold(f32::INFINITY, f32::min)
             + 2e-4
+    }
+
+    #[test]
+    fn wide_limbs_are_stretched_across() {
+        let trunk = ObjectPart::Limb([Vec3::ZERO, Vec3::Z], [0.1, 0.1], 2.0);
+        let (t, normal) = trunk.cast(Vec3::new(0.0, 3.0, 0.5), -Vec3::Y, 9.0).expect("hit");
+        assert!(
+            (t - 2.8).abs() < 1e-4 && normal.distance(Vec3::Y) < 1e-3,
+            "{t} {normal}"
+        );
+        let (t, normal) = trunk.cast(Vec3::new(3.0, 0.1, 0.5), -Vec3::X, 9.0).expect("hit");
+        // Half as far across as it reaches: cos 30 of its depth, and the normal of that ellipse.
+        assert!((t - (3.0 - 0.1 * 0.75f32.sqrt())).abs() < 1e-4, "{t}");
+        let ellipse = Vec3::new(0.75f32.sqrt() / 0.1, 0.5 / 0.2, 0.0).normalize();
+        assert!(normal.distance(ellipse) < 1e-3, "{normal}");
+        assert!(trunk.reach().distance(Vec3::new(0.1, 0.2, 1.1)) < 1e-6);
+    }
+
+    #[test]
+    fn thin_limbs_far_away_are_met() {
+        let stay = ObjectPart::Limb(
+            [Vec3::new(0.2, 0.1, 0.3), Vec3::new(-0.3, 0.15, 0.9)],
+            [0.011; 2],
+            1.0,
+        );
+        for i in 0..400 {
+            let turn = i as f32 * 0.7;
+            let o = Vec3::new(turn.cos() * 50.0, turn.sin() * 50.0, 1.5 + (i % 5) as f32);
+            let at = Vec3::new(0.2, 0.1, 0.3).lerp(Vec3::new(-0.3, 0.15, 0.9), (i % 9) as f32 / 8.0);
+            let d = (at - o).normalize();
+            let (t, _) = stay.cast(o, d, 99.0).expect("through its middle");
+            assert!((t - (at - o).length()).abs() < 0.06, "{i}: {t}");
+        }
     }
 
     #[test]

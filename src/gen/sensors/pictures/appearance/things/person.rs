@@ -102,14 +102,20 @@ const HAIR: [[u8; 3]; 6] = [
     [18, 16, 16],
 ];
 
-/// Adds a person in a box, by its shape: in a wheelchair, with a pram, else on foot.
+/// Adds a person in a box, by name, else by its shape: in a wheelchair, lying, with a pram, else on foot.
 pub(super) fn person(b: &mut ObjectBuilder, id: u32, name: &str, gait: Gait) {
     let s = b.s;
     let mut looks = Looks::new(id, name);
-    if s.x > 0.9 && s.z < 1.5 {
+    let is = |part: &str| name.contains(part);
+    let (sits, pushes) = (is("wheelchair"), is("pram") || is("stroller"));
+    let is_named = sits || pushes;
+    if sits || !is_named && (0.95..1.4).contains(&s.x) && s.y > 0.55 && (1.15..1.5).contains(&s.z) {
         (looks.long_coat, looks.backpack) = (false, false);
         wheelchair(b, id, &looks);
-    } else if s.x > 1.25 {
+    } else if s.z < 0.8 && s.x > 1.5 * s.z {
+        (looks.long_coat, looks.backpack) = (false, false);
+        lying(b, id, &looks);
+    } else if pushes || !is_named && (1.25..2.2).contains(&s.x) && s.z > 1.4 {
         let foot = Vec3::new(-0.5 * s.x + 0.36, 0.0, 0.0);
         let mut joints = on_foot(id, s.z, 0.72, gait);
         let push = |side: f32| Vec3::new(0.2, side * 0.09, 0.58);
@@ -120,6 +126,30 @@ pub(super) fn person(b: &mut ObjectBuilder, id: u32, name: &str, gait: Gait) {
     } else {
         let joints = on_foot(id, s.z, s.x, gait);
         body(b, Vec3::ZERO, s.z, id, &joints, &looks);
+    }
+}
+
+/// Somebody who lies on the ground, as long as the box: the standing figure, laid on its back.
+fn lying(b: &mut ObjectBuilder, id: u32, looks: &Looks) {
+    let (length_m, first) = (b.s.x.min(2.0), b.parts.len());
+    body(
+        b,
+        Vec3::ZERO,
+        length_m,
+        id,
+        &on_foot(id, length_m, 0.7, Gait::default()),
+        looks,
+    );
+    let back_m = 0.08 * length_m;
+    let laid = |p: Vec3| Vec3::new(p.z - length_m / 2.0, p.y, back_m - p.x);
+    for (part, _) in &mut b.parts[first..] {
+        match part {
+            ObjectPart::Limb(ends, ..) => *ends = ends.map(laid),
+            ObjectPart::Round(middle, radii) => {
+                (*middle, *radii) = (laid(*middle), Vec3::new(radii.z, radii.y, radii.x))
+            }
+            _ => {}
+        }
     }
 }
 

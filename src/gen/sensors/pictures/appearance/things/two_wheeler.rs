@@ -28,7 +28,7 @@ const RIDERLESS: f32 = 1.2;
 pub(super) fn bicycle(b: &mut ObjectBuilder, id: u32, name: &str, gait: Gait) {
     let s = b.s;
     // Those between a bicycle's and a rider's height are with a rider or without, by their number.
-    let ridden = s.z > 1.45 || (s.z > RIDERLESS && (gait.speed_mps > 0.3 || unit(hash1(id, 3)) < 0.7));
+    let ridden = s.z > 1.45 || (s.z > RIDERLESS && (gait.moves || unit(hash1(id, 3)) < 0.7));
     let with_rider = SADDLE_M + GROWN_M * (0.6 * TORSO + NECK_AND_HEAD);
     let scale = match ridden {
         true => (s.z / with_rider).min(1.0),
@@ -87,7 +87,7 @@ fn crank_angle(covered_m: f32, gear_m: f32, begin: f32) -> f32 {
 /// Adds a motorcycle or a scooter; someone rides it if the box is high enough.
 pub(super) fn motorcycle(b: &mut ObjectBuilder, id: u32, name: &str, gait: Gait) {
     let s = b.s;
-    let ridden = s.z > 1.35 || gait.speed_mps > 0.3 && s.z > 1.1;
+    let ridden = s.z > 1.35 || gait.moves && s.z > 1.1;
     let with_rider = SEAT_M + GROWN_M * (0.7 * TORSO + NECK_AND_HEAD);
     let scale = match ridden {
         true => (s.z / with_rider).min(1.05),
