@@ -143,10 +143,10 @@ fn text(report: &Value) -> String {
         lines.push(format!("  {class}: +{} -{}", of["gained"], of["lost"]));
     }
     let lidar = &report["lidar"];
-    lines.push(format!(
-        "LiDAR: {} of {} rays changed",
-        lidar["rays_changed"], lidar["rays"]
-    ));
+    lines.push(match lidar["rays_changed"].as_u64() {
+        Some(changed) => format!("LiDAR: {changed} of {} rays changed", lidar["rays"]),
+        None => "LiDAR: not compared, as the sensors differ".to_owned(),
+    });
     lines.join("\n")
 }
 

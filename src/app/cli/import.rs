@@ -102,6 +102,13 @@ impl Import {
         };
         let (importer, content) = read::file_with(&self.file, options)?;
         match content {
+            Content::Scene(_) if self.is_placed() => {
+                let file = self.file.display();
+                Err(anyhow!(
+                    "{file}: a scene; --at, --heading, --size, --empty and --bare are for road files"
+                )
+                .into())
+            }
             Content::Scene(loaded) => self.whole(importer, &loaded),
             Content::Recipe(recipe) => {
                 let loaded = ImportedScene {
@@ -133,6 +140,11 @@ impl Import {
                 self.roads(importer, &open::on_roads(*network, &name, &placement))
             }
         }
+    }
+
+    /// True if something is said that road files alone understand.
+    fn is_placed(&self) -> bool {
+        self.at.is_some() || self.heading.is_some() || self.size.is_some() || self.empty || self.bare
     }
 
     /// A place on roads.

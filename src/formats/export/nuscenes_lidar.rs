@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use scene::{LidarPattern, LidarSweep};
 
+use super::pcd::physical_sweep;
 use super::{ExportSpan, Exporter, OutFile, Product};
 use crate::{FormatError, Holds};
 
@@ -17,7 +18,7 @@ pub const EXPORTER: Exporter = Exporter {
     span: ExportSpan::Moment,
     needs: &[Product::Sweep],
     write: |scene, products| {
-        let sweep = products.sweep()?;
+        let sweep = physical_sweep(scene, products)?;
         // The sweep is of the first one.
         let pattern = scene
             .rig

@@ -27,7 +27,7 @@ fn large_objects(seed: u64) -> BTreeMap<BoxId, SceneBox> {
     let mut out: BTreeMap<BoxId, SceneBox> = BTreeMap::new();
     while out.len() < OBJECTS as usize {
         let kind = kinds[draw.range(0.0, kinds.len() as f64) as usize % kinds.len()];
-        let at = DVec2::from_angle(draw.range(0.0, 6.28)) * draw.range(9.0, 28.0);
+        let at = DVec2::from_angle(draw.range(0.0, std::f64::consts::TAU)) * draw.range(9.0, 28.0);
         let size_m = DVec3::from_array(kind.size_m);
         let reach = |b: &SceneBox| b.size_m.truncate().length() / 2.0;
         let b = SceneBox {
@@ -35,7 +35,7 @@ fn large_objects(seed: u64) -> BTreeMap<BoxId, SceneBox> {
             class: kind.class,
             center_m: at.extend(size_m.z / 2.0),
             size_m,
-            yaw_rad: draw.range(0.0, 6.28),
+            yaw_rad: draw.range(0.0, std::f64::consts::TAU),
             velocity_mps: DVec2::ZERO,
             label: Default::default(),
         };

@@ -44,6 +44,8 @@ const LEAST_DIRECTIONS: u32 = 3;
 const LOWEST_M: f64 = -0.9;
 /// Highest height of ground in the ego frame, m: the top of the map.
 const HIGHEST_M: f64 = scene::Window::MAX_M[2];
+/// Height by which the ground of a cloud without labels is off at least if the cloud is moved, m.
+const OFF_M: f64 = 0.25;
 /// Greatest height at which a vehicle carries a sensor, m.
 pub(super) const HIGHEST_MOUNT_M: f64 = 5.0;
 /// Smallest tilt that is reported, and for which a cloud is turned, degrees: the ground is 0.7 m off at 20 m.
@@ -87,6 +89,14 @@ impl GroundPlane {
     /// How far a cloud with this ground must be lifted to lie on the map, m, to the centimetre; 0 where it does.
     pub(super) fn lift_m(self) -> f64 {
         match self.is_off_heights && !(LOWEST_M..=HIGHEST_M).contains(&self.height_m) {
+            true => -(self.height_m * 100.0).round() / 100.0,
+            false => 0.0,
+        }
+    }
+
+    /// The same for a cloud without labels, whose ground lies where vehicles stand on it.
+    pub(super) fn unlabelled_lift_m(self) -> f64 {
+        match self.height_m.abs() > OFF_M {
             true => -(self.height_m * 100.0).round() / 100.0,
             false => 0.0,
         }
@@ -145,14 +155,13 @@ impl GroundPlane {
             .then(|| format!("turned by {:.1} degrees: its ground was tilted", self.tilt_deg()))
     }
 
-    /// Notes on what was done with a cloud, for a person.
-    pub(super) fn notes(self) -> Vec<String> {
-        let lift_m = self.lift_m();
+    /// Notes on what was done with a cloud that was lifted so far, for a person.
+    pub(super) fn notes(self, lift_m: f64) -> Vec<String> {
         let mut out = match lift_m {
             0.0 => Vec::new(),
-            m if (0.0..=HIGHEST_MOUNT_M).contains(&m) => {
+            _ if self.is_below_a_sensor() => {
                 vec![format!(
-                    "the sweep lies in its sensor's frame: lifted by {m:.2} m"
+                    "the sweep lies in its sensor's frame: lifted by {lift_m:.2} m"
                 )]
             }
             m if m > 0.0 => vec![format!(
@@ -361,10 +370,10 @@ mod tests {
         };
         for height_m in [-0.83, -0.37, 0.0, 1.0] {
             assert_eq!(ground(height_m).lift_m(), 0.0, "{height_m}");
-            assert_eq!(ground(height_m).notes(), Vec::<String>::new());
+            assert_eq!(ground(height_m).notes(0.0), Vec::<String>::new());
         }
         assert_eq!(ground(-1.838).lift_m(), 1.84);
-        let notes = |height_m| ground(height_m).notes().concat();
+        let notes = |height_m| ground(height_m).notes(-height_m).concat();
         assert_eq!(
             notes(-1.838),
             "the sweep lies in its sensor's frame: lifted by 1.84 m"
@@ -375,12 +384,18 @@ mod tests {
             slope: DVec2::new(0.1, 0.0),
             ..ground(0.0)
         };
-        assert_eq!(tilted.notes(), ["the ground is tilted by 5.7 degrees: left so"]);
+        assert_eq!(
+            tilted.notes(0.0),
+            ["the ground is tilted by 5.7 degrees: left so"]
+        );
         let turned = GroundPlane {
             slope: DVec2::new(0.1, 0.0),
             ..ground(-2.0)
         };
-        assert_eq!(turned.notes()[1], "turned by 5.7 degrees: its ground was tilted");
+        assert_eq!(
+            turned.notes(2.0)[1],
+            "turned by 5.7 degrees: its ground was tilted"
+        );
         let level = turned.leveling();
         for at in [DVec2::ZERO, DVec2::new(20.0, 0.0), DVec2::new(-8.0, 13.0)] {
             let foot = at.extend(turned.height_m + turned.slope.dot(at));

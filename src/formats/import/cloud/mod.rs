@@ -122,6 +122,7 @@ pub(super) struct Cloud {
     added: usize,
     not_finite: usize,
     elsewhere: usize,
+    above: usize,
     unknown: usize,
     own: usize,
     empty: usize,
@@ -234,10 +235,14 @@ impl Cloud {
         };
         let points = waiting.iter().filter(|(.., label)| shows_ground(*label));
         let ground = GroundPlane::from_points(points.map(|(at, ..)| *at));
+        let is_placed = self.is_guessed && !is_labelled;
+        let lift_m = ground.map_or(0.0, |ground| match is_labelled {
+            true => ground.lift_m(),
+            false => ground.unlabelled_lift_m(),
+        });
         let level = match ground {
-            Some(ground) if self.is_guessed || ground.is_below_a_sensor() => ground.leveling(),
-            Some(ground) => lifted(ground.lift_m()),
-            None => Pose::default(),
+            Some(ground) if is_placed || ground.is_below_a_sensor() => ground.leveling(),
+            _ => lifted(lift_m),
         };
         self.level = Some(level);
         self.sweep.ground = ground.map(|ground| ground.moved(&level));
@@ -246,10 +251,8 @@ impl Cloud {
         }
         self.sweep.sensor_m = self.sweep.sensor_m.map(|at| level.apply(at));
         self.notes = match ground {
-            Some(ground) if self.is_guessed => {
-                ground.placed_notes(self.sweep.sensor_m.map_or(0.0, |at| at.z))
-            }
-            Some(ground) => ground.notes(),
+            Some(ground) if is_placed => ground.placed_notes(self.sweep.sensor_m.map_or(0.0, |at| at.z)),
+            Some(ground) => ground.notes(lift_m),
             None if is_labelled => Vec::new(),
             None => vec!["no ground found around the sensor: heights stay as they are in the file".into()],
         };
@@ -261,7 +264,8 @@ impl Cloud {
     /// One point, in m in the ego frame.
     fn place(&mut self, at: DVec3, label: Label, strength: f32) {
         let Some([x, y, z]) = Window::voxel_at(at) else {
-            self.elsewhere += 1;
+            // Those beside the map were counted before.
+            self.above += 1;
             return;
         };
         let class = match label {
@@ -297,6 +301,7 @@ impl Cloud {
             ("empty returns, at the sensor itself", self.empty),
             ("points that are not finite", self.not_finite),
             ("points beside the map", self.elsewhere),
+            ("points above or below the map", self.above),
             ("points on the own vehicle", self.own),
             ("labels without a class, taken as others", self.unknown),
         ];

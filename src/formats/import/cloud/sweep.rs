@@ -132,7 +132,8 @@ impl ImportedScene {
         scene.change_canvas(|canvas| {
             // Boxes stand on the ground of the scene.
             for b in &mut objects {
-                *b = lifted(b, canvas.layout.relief.height_m(b.center_m.truncate()));
+                let ground_m = canvas.layout.relief.height_m(b.center_m.truncate());
+                b.center_m.z = ground_m + b.size_m.z / 2.0;
             }
             canvas.inferred.boxes = objects.iter().map(|b| b.id).collect::<BTreeSet<_>>();
             canvas.boxes = objects.into_iter().map(|b| (b.id, b)).collect();

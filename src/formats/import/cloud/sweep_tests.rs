@@ -64,10 +64,33 @@ fn a_sweep_in_its_sensors_frame_keeps_its_road_and_says_so() {
 #[test]
 fn a_cloud_on_the_map_is_not_moved_unless_that_is_asked_for() {
     for ground_m in [-0.8, -0.4, 0.0, 1.0] {
-        for with_labels in [false, true] {
-            let found = loaded(&street(ground_m), with_labels, None);
-            assert_eq!(found.notes, Vec::<String>::new(), "{ground_m} {with_labels}");
-        }
+        assert_eq!(
+            loaded(&street(ground_m), true, None).notes,
+            Vec::<String>::new(),
+            "{ground_m}"
+        );
+    }
+    // Without labels the ground is where vehicles stand.
+    for (ground_m, told) in [
+        (-0.5, "lifted by 0."),
+        (0.0, ""),
+        (1.0, "lowered by 1."),
+        (3.5, "lowered by 3."),
+    ] {
+        let found = loaded(&street(ground_m), false, None);
+        let notes = found.notes.concat();
+        assert_eq!(
+            notes.contains("the ground lies at"),
+            !told.is_empty(),
+            "{ground_m}: {notes}"
+        );
+        assert!(notes.contains(told), "{ground_m}: {notes}");
+        let sweep = found.sweep.expect("a sweep");
+        assert!(
+            found.scene.frame().layout.count(BevLayer::DrivableArea) > 500,
+            "{ground_m}"
+        );
+        assert!(sweep.returns.iter().all(|r| r[2] > -0.5), "{ground_m}");
     }
     let asked = loaded(&street(-1.84), true, Some(1.84));
     assert_eq!(asked.notes, ["lifted by 1.84 m, as asked for"]);

@@ -17,6 +17,10 @@ const ROWS: usize = 128;
 /// Quarter turns.
 const TURNS: usize = 4;
 const LOOKS: f32 = (THINNED.len() * TURNS) as f32;
+/// Depth by which boxes may reach into each other, m: they are guesses.
+const INTO_M: f32 = 0.15;
+/// Height above the ground from which something is no object that stands on it, m.
+const FLOATS_M: f32 = 0.5;
 /// Least score of a look that counts.
 const LEAST: f32 = 0.2;
 
@@ -79,7 +83,8 @@ impl LidarPerceiver {
             .iter()
             .filter_map(|found| {
                 let mean = found.mean_score();
-                (mean >= least_mean(found.best.group)?).then(|| found.object(mean))
+                let object = (mean >= least_mean(found.best.group)?).then(|| found.object(mean))?;
+                (object.center_m[2] - object.size_m[2] / 2.0 < FLOATS_M).then_some(object)
             })
             .collect();
         objects.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -198,23 +203,34 @@ impl Found {
     }
 }
 
-/// Leaves out objects whose middle lies in the box of a surer one.
+/// Leaves out objects that overlap a surer one.
 fn apart(objects: Vec<Detection>) -> Vec<Detection> {
     let mut kept: Vec<Detection> = Vec::new();
     for one in objects {
-        let within = |other: &Detection| {
-            let way = Vec2::new(
-                one.center_m[0] - other.center_m[0],
-                one.center_m[1] - other.center_m[1],
-            );
-            let local = Vec2::from_angle(-other.yaw_rad).rotate(way).abs();
-            local.x < other.size_m[0] / 2.0 + 0.3 && local.y < other.size_m[1] / 2.0 + 0.3
-        };
-        if !kept.iter().any(within) {
+        if !kept
+            .iter()
+            .any(|other| reaches_into(&one, other) || reaches_into(other, &one))
+        {
             kept.push(one);
         }
     }
     kept
+}
+
+/// True if the middle, a corner or the middle of a side of one box lies in another by more than a hand.
+fn reaches_into(one: &Detection, other: &Detection) -> bool {
+    let [ahead, aside] = [0.0, std::f32::consts::FRAC_PI_2].map(|turn| Vec2::from_angle(one.yaw_rad + turn));
+    let steps = [-0.5, 0.0, 0.5];
+    let points = steps.iter().flat_map(|a| steps.iter().map(move |b| (a, b)));
+    points.into_iter().any(|(a, b)| {
+        let at = ahead * one.size_m[0] * *a + aside * one.size_m[1] * *b;
+        let way = Vec2::new(
+            one.center_m[0] - other.center_m[0],
+            one.center_m[1] - other.center_m[1],
+        ) + at;
+        let local = Vec2::from_angle(-other.yaw_rad).rotate(way).abs();
+        local.x < other.size_m[0] / 2.0 - INTO_M && local.y < other.size_m[1] / 2.0 - INTO_M
+    })
 }
 
 #[cfg(test)]
@@ -285,6 +301,7 @@ mod tests {
         let kept = apart(vec![
             find(0.0, 0.0, 0.0, 0.9),
             find(2.1, 0.3, 90.0, 0.5),
+            find(3.6, 0.0, 90.0, 0.45),
             find(0.0, 3.0, 0.0, 0.4),
         ]);
         assert_eq!(kept.iter().map(|d| d.score).collect::<Vec<_>>(), [0.9, 0.4]);
