@@ -250,7 +250,7 @@ fn lidar_files_hold_the_sweep() {
         );
         assert_eq!(found["intensity"][i], f64::from(p.intensity));
     }
-    // As the nuScenes devkit reads it: five floats a point, in the sensor's frame.
+    // As the nuScenes devkit reads it: five floats a point, in the sensor's frame, the ground where vehicles stand.
     let written = export(&path, "nuscenes-lidar", &dir.path("top.pcd.bin"), &[]);
     let bytes = std::fs::read(&written[0]).expect("there");
     let floats: Vec<f32> = bytes
@@ -259,21 +259,19 @@ fn lidar_files_hold_the_sweep() {
         .collect();
     assert_eq!(floats.len(), 5 * sweep.points.len());
     let mount = scene.rig.lidars[0].ego_from_sensor();
-    let mut ground = (0, 0);
+    let mut ground = [0; 2];
     for (of, p) in floats.chunks_exact(5).zip(&sweep.points) {
         let in_ego = mount.apply(DVec3::new(of[0].into(), of[1].into(), of[2].into()));
         let before = DVec3::from_array(p.position_in_ego.map(f64::from));
         assert_eq!([of[3], of[4]], [p.intensity, f32::from(p.ring)]);
-        // On the same ray; the ground lies where vehicles stand on it, not where labels have it.
         let ways = [in_ego, before].map(|at| (at - mount.translation_m).normalize());
         assert!(ways[0].dot(ways[1]) > 1.0 - 1e-6);
         assert!(in_ego.z > before.z - 1e-3, "{in_ego} {before}");
         if p.class.is_ground() {
-            ground.0 += usize::from(in_ego.z.abs() < 0.05);
-            ground.1 += 1;
+            ground = [ground[0] + usize::from(in_ego.z.abs() < 0.05), ground[1] + 1];
         }
     }
-    assert!(ground.0 * 10 > ground.1 * 8 && ground.1 > 1000, "{ground:?}");
+    assert!(ground[0] * 10 > ground[1] * 8 && ground[1] > 1000, "{ground:?}");
 }
 
 /// Chunks of a PNG: type and body.

@@ -11,7 +11,7 @@ use scene::{
     infer,
 };
 
-use super::cloud::ImportedSweep;
+use super::imported_sweep::ImportedSweep;
 use crate::opendrive::RoadNetwork;
 use crate::recipe::Recipe;
 use crate::voxels::DataMap;

@@ -11,6 +11,7 @@ mod commonroad_tests;
 mod far_tests;
 mod foreign;
 pub mod glb;
+mod imported_sweep;
 mod importer;
 pub mod kitti;
 pub mod lanelet2;
@@ -36,7 +37,7 @@ use std::path::{Path, PathBuf};
 use scene::message::quoted;
 
 use super::{FormatError, input};
-pub use cloud::ImportedSweep;
+pub use imported_sweep::ImportedSweep;
 pub use importer::{Content, ImportFile, ImportOptions, ImportedScene, Importer};
 use importer::{GUESSED, first_entry_ends, labelled, on_data_map};
 

@@ -57,7 +57,7 @@ pub(super) struct GroundPlane {
     /// Height at the origin, m.
     pub(super) height_m: f64,
     /// Slope along x and y.
-    slope: DVec2,
+    pub(super) slope: DVec2,
     /// True if most of it lies below or above the heights that ground of the ego frame has.
     is_off_heights: bool,
 }

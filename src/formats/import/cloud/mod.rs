@@ -21,7 +21,6 @@ use scene::{Class, Pose, Recorded, SensorRig, VoxelGrid, Window};
 
 use super::{GUESSED, ImportFile, ImportedScene, labelled};
 use level::GroundPlane;
-pub use sweep::ImportedSweep;
 use sweep::SweepReturns;
 
 /// Fields of points whose numbers are classes of Occ3D, in small letters.
