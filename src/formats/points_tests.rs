@@ -225,8 +225,17 @@ fn kitti_brings_back_the_classes_it_knows() {
 /// A scan without labels keeps what stands where it is; ground may be lowered, and classes are told by shape.
 #[test]
 fn scans_without_labels_bring_back_where_something_is() {
+    let checked = std::cell::Cell::new(0);
     each_scene(&[&export::nuscenes_lidar::EXPORTER], |exporter, scene| {
-        let found = back(exporter, scene, middles(scene));
+        // As it is: nothing is taken to the physical ground.
+        let mut sweep = middles(scene);
+        sweep.physical = true;
+        let found = back(exporter, scene, sweep);
+        // Voxels at random may look like ground on which the sweep is put.
+        if !found.notes.is_empty() {
+            return;
+        }
+        checked.set(checked.get() + 1);
         let before = expected(scene, |_| Class::Others);
         let (before, after) = (&before, &found.scene.frame().occupancy);
         for [x, y] in after.extent().all_columns() {
@@ -239,4 +248,5 @@ fn scans_without_labels_bring_back_where_something_is() {
         }
         assert_eq!(found.inferred[0], "classes");
     });
+    assert!(checked.get() > 50, "{}", checked.get());
 }

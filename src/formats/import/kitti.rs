@@ -60,9 +60,9 @@ fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
         Some(pose) => pose,
         None => {
             let pose = kitti::ego_from_default_velo();
-            let [x, y, _] = pose.translation_m.to_array();
+            let [x, y, z] = pose.translation_m.to_array();
             let what = format!(
-                "place of the sensor ahead and aside, taken as {x:.2}, {y:.2} m as in the default rig"
+                "place of the sensor, taken as {x:.2}, {y:.2}, {z:.2} m as in the default rig, unless the ground shows another height"
             );
             left_out.insert(what, 1);
             pose

@@ -68,7 +68,7 @@ fn a_car_ahead_to_the_left_lands_there_with_its_label() {
             skipped,
             [
                 (
-                    "place of the sensor, taken as 0.94, 0.00, 1.84 m as in the default rig",
+                    "place of the sensor, taken as 0.94, 0.00, 1.84 m as in the default rig, unless the ground shows another height",
                     1
                 ),
                 ("points beside the map", 1),

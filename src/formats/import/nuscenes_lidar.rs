@@ -96,11 +96,11 @@ pub(super) fn read(source: &ImportFile<'_>) -> Result<Content, FormatError> {
         };
         cloud.add_return(at, &ego_from_sensor, label, strength);
     }
-    let [x, y, _] = ego_from_sensor.translation_m.to_array();
+    let [x, y, z] = ego_from_sensor.translation_m.to_array();
     let mut left_out = BTreeMap::from([
         (
             format!(
-                "pose of the sensor, taken as in the default rig: {x:.2} m ahead, {y:.2} m aside, x to the right"
+                "pose of the sensor, taken as in the default rig: {x:.2}, {y:.2}, {z:.2} m (unless the ground shows another height), x to the right"
             ),
             1,
         ),

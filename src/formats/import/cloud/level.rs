@@ -146,8 +146,14 @@ impl GroundPlane {
         let mut out = vec![format!(
             "the sensor stands {mount_m:.2} m above the road, as the sweep shows"
         )];
-        out.extend(self.turned_note());
+        out.extend(self.left_note());
         out
+    }
+
+    /// Note on ground that is not level and was left so.
+    fn left_note(self) -> Option<String> {
+        self.is_tilted()
+            .then(|| format!("the ground is tilted by {:.1} degrees: left so", self.tilt_deg()))
     }
 
     fn turned_note(self) -> Option<String> {
@@ -175,11 +181,7 @@ impl GroundPlane {
         };
         match self.is_below_a_sensor() {
             true => out.extend(self.turned_note()),
-            false if self.is_tilted() => {
-                let tilt_deg = self.tilt_deg();
-                out.push(format!("the ground is tilted by {tilt_deg:.1} degrees: left so"));
-            }
-            false => {}
+            false => out.extend(self.left_note()),
         }
         out
     }

@@ -58,6 +58,8 @@ const LEAST_FOR_LEVEL: u64 = 20;
 /// Ground below the first layer is where labels have it; ground above the last one (0.3 m) is a hill and stays.
 const LOWEST_LEVEL: usize = FINE - 1;
 const HIGHEST_LEVEL: usize = 25;
+/// Heights above the road at which vehicles carry sensors, m.
+const MOUNTS_M: std::ops::RangeInclusive<f64> = 1.2..=4.5;
 /// A point of the own vehicle lies higher above the ground than the first and at most the second beyond its box, m.
 const OWN_FROM_M: f64 = 0.3;
 const OWN_MARGIN_M: f64 = 0.2;
@@ -234,13 +236,19 @@ impl Cloud {
         };
         let points = waiting.iter().filter(|(.., label)| shows_ground(*label));
         let ground = GroundPlane::from_points(points.map(|(at, ..)| *at));
-        let is_placed = self.is_guessed && !is_labelled;
         let lift_m = ground.map_or(0.0, |ground| match is_labelled {
             true => ground.lift_m(),
             false => ground.unlabelled_lift_m(),
         });
+        // A sensor whose place is a guess stands as high as its ground shows, if a vehicle can carry it there.
+        let mount_m = self.sweep.sensor_m.map_or(0.0, |at| at.z) + lift_m;
+        let is_placed = self.is_guessed && !is_labelled && MOUNTS_M.contains(&mount_m);
+        let lift_m = match self.is_guessed && !is_placed {
+            true => ground.map_or(0.0, GroundPlane::lift_m),
+            false => lift_m,
+        };
         let level = match ground {
-            Some(ground) if is_placed || ground.is_below_a_sensor() => ground.leveling(),
+            Some(ground) if !self.is_guessed && ground.is_below_a_sensor() => ground.leveling(),
             _ => lifted(lift_m),
         };
         self.level = Some(level);
@@ -250,7 +258,9 @@ impl Cloud {
         }
         self.sweep.sensor_m = self.sweep.sensor_m.map(|at| level.apply(at));
         self.notes = match ground {
-            Some(ground) if is_placed => ground.placed_notes(self.sweep.sensor_m.map_or(0.0, |at| at.z)),
+            Some(ground) if is_placed && lift_m != 0.0 => {
+                ground.placed_notes(self.sweep.sensor_m.map_or(0.0, |at| at.z))
+            }
             Some(ground) => ground.notes(lift_m),
             None if is_labelled => Vec::new(),
             None => vec!["no ground found around the sensor: heights stay as they are in the file".into()],

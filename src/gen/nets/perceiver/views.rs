@@ -304,7 +304,7 @@ mod tests {
             find(3.6, 0.0, 90.0, 0.45),
             find(0.0, 3.0, 0.0, 0.4),
         ]);
-        assert_eq!(kept.iter().map(|d| d.score).collect::<Vec<_>>(), [0.9, 0.4]);
+        assert_eq!(kept.iter().map(|d| d.score).collect::<Vec<_>>(), [0.9, 0.45, 0.4]);
     }
 
     #[test]
