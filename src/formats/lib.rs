@@ -39,6 +39,7 @@ pub mod recipe;
 mod semantic_kitti;
 pub mod sensor_names;
 mod sparse_npy;
+pub mod sweep_file;
 pub mod table;
 #[cfg(test)]
 mod table_tests;

@@ -33,6 +33,13 @@ pub fn decompress(bytes: &[u8], size: usize) -> Option<Vec<u8>> {
     (out.len() == size).then_some(out)
 }
 
+/// Bytes that unpack to these, none of them packed.
+pub fn stored(bytes: &[u8]) -> Vec<u8> {
+    let runs = bytes.chunks(32);
+    runs.flat_map(|run| std::iter::once(run.len() as u8 - 1).chain(run.iter().copied()))
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,10 +1,11 @@
-//! Parts of a project beside its scene: versions to return to, the texts that were typed, and the log of its changes.
+//! Parts of a project beside its scene: versions to return to, the texts that were typed, the log of its changes, and the sweep
+//! that it was imported from.
 
 use std::sync::Arc;
 
-use crate::OpLog;
+use crate::{OpLog, SweepRecording};
 
-/// Versions, typed words and the log. They belong to a file, not to a state of the scene: undo leaves them as they are.
+/// Versions, typed words, the log, and the recording that the scene came from. They belong to a file, not to a state of the scene: undo leaves them as they are.
 #[derive(Clone, Debug, Default)]
 pub struct ProjectHistory {
     /// The versions, the oldest first.
@@ -15,6 +16,8 @@ pub struct ProjectHistory {
     pub log: Option<Arc<OpLog>>,
     /// Reason why the file's log cannot be used, in one line; the scene is whole all the same.
     pub log_problem: Option<Arc<str>>,
+    /// The recorded sweep that the scene was imported from.
+    pub sweep: Option<Arc<SweepRecording>>,
 }
 
 impl ProjectHistory {
@@ -26,7 +29,7 @@ impl ProjectHistory {
     /// True if there is nothing beside the scene.
     pub fn is_empty(&self) -> bool {
         let no_log = self.log.is_none() && self.log_problem.is_none();
-        self.versions.is_empty() && self.typed.is_empty() && no_log
+        self.versions.is_empty() && self.typed.is_empty() && no_log && self.sweep.is_none()
     }
 }
 

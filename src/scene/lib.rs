@@ -52,6 +52,7 @@ pub mod solid;
 pub mod speed_limits;
 pub mod splats;
 pub mod support;
+mod sweep_recording;
 pub mod truth;
 pub mod variants;
 pub mod waiver;
@@ -90,6 +91,7 @@ pub use rig::{Camera, LidarPattern, SensorRig};
 pub use roads::{Road, RoadChange, RoadId, RoadLane, RoadNetwork, RoadNode, RoadWish};
 pub use sensor_data::{CameraMaps, LidarPoint, LidarSweep, MultiPlaneImage, PerspectiveMap};
 pub use shape::Shape;
+pub use sweep_recording::{Provenance, RecordedReturn, SweepEdits, SweepRecording, SyntheticReturn};
 pub use truth::{CameraTruth, SeenBox, TruthPixel};
 pub use waiver::Waiver;
 

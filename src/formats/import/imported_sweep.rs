@@ -1,20 +1,23 @@
-//! A sweep without labels, and what becomes of the objects that are found in it.
+//! The sweep that a scene is of: what becomes of the objects that are found in it, and its file, which stays with the scene.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use glam::DVec3;
-use scene::{BoxId, Class, SceneBox, VoxelGrid};
+use scene::{BoxId, Class, Pose, SceneBox, SweepRecording, VoxelGrid};
 
 use super::importer::{ImportedScene, labelled, of_sensor};
+use crate::FormatError;
+use crate::sweep_file::SweepFile;
 
 /// Distance beyond a box within which voxels are its own, m.
 const BESIDE_M: f64 = 0.25;
 
-/// A sweep without labels: its returns around the vehicle.
+/// A sweep, and its returns around the vehicle if these have no labels.
 #[derive(Clone, Debug)]
 pub struct ImportedSweep {
     /// x and y in the ego frame, height above the ground (m) and strength of the echo (0 to 255) of each return; 0 where the
-    /// strength is unknown.
+    /// strength is unknown. Empty for a sweep with labels, of unknown ground, or of too many returns.
     pub returns: Vec<[f32; 4]>,
     /// Where the sensor is, in the same frame; where the default rig has it if the file does not tell.
     pub sensor_m: DVec3,
@@ -22,13 +25,51 @@ pub struct ImportedSweep {
     pub(super) mount_m: Option<DVec3>,
     /// Height of the ground at the origin, m, and its slopes along x and y.
     pub(super) ground_m: [f64; 3],
+    /// Pose of the file's frame in the world frame.
+    pub(super) world_from_file: Pose,
+    /// Name and bytes of the file.
+    pub(super) file: Option<(String, Arc<Vec<u8>>)>,
+}
+
+impl ImportedSweep {
+    /// A sweep in whose returns no objects are looked for.
+    pub(super) fn without_returns(world_from_file: Pose, sensor_m: DVec3) -> Self {
+        Self {
+            returns: Vec::new(),
+            sensor_m,
+            mount_m: None,
+            ground_m: [0.0; 3],
+            world_from_file,
+            file: None,
+        }
+    }
+
+    /// The recording of a scene from this sweep. Errors in one line if the file cannot be kept.
+    fn recording(&self, scene: &scene::Scene) -> Result<Option<SweepRecording>, FormatError> {
+        let Some((name, bytes)) = &self.file else {
+            return Ok(None);
+        };
+        if bytes.len() > SweepRecording::LARGEST {
+            let line = format!("{} bytes, expected at most {}", bytes.len(), SweepRecording::LARGEST);
+            return Err(FormatError::new(line));
+        }
+        let returns = SweepFile::open(name, bytes)?.returns(&self.world_from_file);
+        Ok(Some(SweepRecording {
+            file: name.as_str().into(),
+            bytes: bytes.clone(),
+            world_from_file: self.world_from_file,
+            sensor_m: self.mount_m.unwrap_or(self.sensor_m),
+            returns: Arc::new(returns),
+            before: Arc::new(scene.clone()),
+        }))
+    }
 }
 
 impl ImportedScene {
     /// The scene with objects that were found in its sweep, in the frame of [`ImportedSweep::returns`]; their ids are given
     /// anew. Voxels within them get their class, and what was guessed of voxels is guessed again.
     pub fn with_objects(mut self, objects: Vec<SceneBox>) -> Self {
-        let Some(sweep) = self.sweep.take() else {
+        let Some(sweep) = self.sweep.clone() else {
             return self;
         };
         if let Some(mount_m) = sweep.mount_m {
@@ -61,6 +102,21 @@ impl ImportedScene {
             canvas.inferred.recorded = recorded;
         });
         self.scene = scene;
+        self
+    }
+
+    /// The scene with its sweep kept beside it, as it came; a note says if it cannot be kept.
+    pub fn with_recording(mut self) -> Self {
+        let Some(sweep) = self.sweep.take() else {
+            return self;
+        };
+        match sweep.recording(&self.scene) {
+            Ok(Some(recording)) => {
+                Arc::make_mut(&mut self.scene.kept).sweep = Some(Arc::new(recording));
+            }
+            Ok(None) => {}
+            Err(why) => self.notes.push(format!("the sweep is not kept with the scene: {why}")),
+        }
         self
     }
 }

@@ -105,7 +105,7 @@ pub struct ImportedScene {
     pub skipped: BTreeMap<String, usize>,
     /// Notes on changes that were made without being asked for, a line each, for a person.
     pub notes: Vec<String>,
-    /// Returns of a sweep without labels, in which objects can be found; see [`ImportedScene::with_objects`].
+    /// The sweep that it is of; see [`ImportedScene::with_objects`] and [`ImportedScene::with_recording`].
     pub sweep: Option<ImportedSweep>,
 }
 

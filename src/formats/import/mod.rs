@@ -33,6 +33,7 @@ pub mod sparse_npy;
 pub mod vox;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use scene::message::quoted;
 
@@ -225,7 +226,14 @@ fn read_file(importer: &Importer, path: &Path, options: ImportOptions) -> Result
         path: Some(path),
         options,
     };
-    (importer.read)(&source).map_err(|e| e.at(&path.display()))
+    let mut content = (importer.read)(&source).map_err(|e| e.at(&path.display()))?;
+    if let Content::Scene(loaded) = &mut content
+        && let Some(sweep) = &mut loaded.sweep
+        && importer.id != las::IMPORTER.id
+    {
+        sweep.file = Some((scan::file_name(Some(path)), Arc::new(bytes)));
+    }
+    Ok(content)
 }
 
 /// Name of a scene from this file: that of the file, or of its folder where data sets name the folder after the frame

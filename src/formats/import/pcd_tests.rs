@@ -28,7 +28,7 @@ fn binary(points: &[([f64; 3], u16)], promised: usize) -> Vec<u8> {
     out
 }
 
-fn loaded(bytes: &[u8]) -> Result<ImportedScene, PcdError> {
+fn loaded(bytes: &[u8]) -> Result<ImportedScene, FormatError> {
     match read(&ImportFile {
         bytes,
         name: "cloud",

@@ -56,8 +56,8 @@ fn binary(is_big: bool) -> Vec<u8> {
     out
 }
 
-fn loaded(bytes: &[u8]) -> Result<ImportedScene, PlyError> {
-    match read(&ImportFile {
+fn loaded(bytes: &[u8]) -> Result<ImportedScene, FormatError> {
+    match (IMPORTER.read)(&ImportFile {
         bytes,
         name: "cloud",
         path: None,

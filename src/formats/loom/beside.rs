@@ -1,4 +1,4 @@
-//! `kept.json` and the versions beside it: the parts of a project that do not belong to its scene.
+//! `kept.json`, the versions beside it and the recording: the parts of a project that do not belong to its scene.
 
 use std::io::{Read, Seek};
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use scene::kept::{KeptVersion, ProjectHistory};
 use scene::message::{of_lines, quoted};
 
 use super::archive::{MAX_JSON, Reader, Writer, parse, within};
-use super::log;
+use super::{log, recording};
 use super::{LARGEST_FILE, ProjectError};
 
 const KEPT: &str = "kept.json";
@@ -58,6 +58,9 @@ pub(super) fn write(out: &mut Writer, kept: &ProjectHistory) -> Result<(), Proje
     if !kept.versions.is_empty() || !kept.typed.is_empty() {
         write_versions(out, kept)?;
     }
+    if let Some(sweep) = &kept.sweep {
+        recording::write(out, sweep)?;
+    }
     log::write(out, kept)
 }
 
@@ -80,9 +83,10 @@ fn write_versions(out: &mut Writer, kept: &ProjectHistory) -> Result<(), Project
     Ok(())
 }
 
-/// Reads the kept versions, typed texts and the log; the versions are not opened.
+/// Reads the kept versions, typed texts, the recording and the log; the versions are not opened.
 pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<ProjectHistory, ProjectError> {
     let mut kept = read_versions(file)?;
+    kept.sweep = recording::read(file)?.map(Arc::new);
     log::read(file, &mut kept);
     Ok(kept)
 }

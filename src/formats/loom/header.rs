@@ -1,4 +1,4 @@
-//! `scene.json`: all of a scene but its grids, as versions 5 to 10 keep it. A change here is a new version, see `migrate`.
+//! `scene.json`: all of a scene but its grids, as versions 5 to 12 keep it. A change here is a new version, see `migrate`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

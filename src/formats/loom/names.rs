@@ -1,7 +1,7 @@
 //! Names, version and limits of a project file.
 
 /// Version written.
-pub const VERSION: u32 = 11;
+pub const VERSION: u32 = 12;
 /// Frames that a project of version 1 to 4 may hold.
 pub(super) const MAX_FRAMES: usize = 10_000;
 /// Largest project file that is written and read, bytes.

@@ -7,18 +7,22 @@ use formats::import::{self, Content, ImportOptions, ImportedScene, Importer};
 use nets::perceiver::LidarPerceiver;
 use scene::BoxId;
 
-/// Reads a file as [`import::read_with`] does; in a sweep without labels objects are found, each a guess.
+/// Reads a file as [`import::read_with`] does; in a sweep without labels objects are found, each a guess. The file of a
+/// sweep is kept with the scene.
 pub fn file_with(path: &Path, options: ImportOptions) -> Result<(&'static Importer, Content), FormatError> {
     let (importer, content) = import::read_with(path, options)?;
     Ok(match content {
-        Content::Scene(loaded) => (importer, Content::Scene(Box::new(with_objects(*loaded)))),
+        Content::Scene(loaded) => {
+            let loaded = with_objects(*loaded).with_recording();
+            (importer, Content::Scene(Box::new(loaded)))
+        }
         other => (importer, other),
     })
 }
 
 /// The scene with the objects that the network finds in its sweep, if it has one.
 fn with_objects(mut loaded: ImportedScene) -> ImportedScene {
-    let Some(sweep) = &loaded.sweep else {
+    let Some(sweep) = loaded.sweep.as_ref().filter(|sweep| !sweep.returns.is_empty()) else {
         return loaded;
     };
     let found = LidarPerceiver::bundled()

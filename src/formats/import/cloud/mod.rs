@@ -23,19 +23,6 @@ use super::{GUESSED, ImportFile, ImportedScene, labelled};
 use level::GroundPlane;
 use sweep::SweepReturns;
 
-/// Fields of points whose numbers are classes of Occ3D, in small letters.
-pub(super) const LABELS: [&str; 6] = [
-    "label",
-    "labels",
-    "class",
-    "semantic",
-    "scalar_label",
-    "scalar_class",
-];
-
-/// Fields of points whose numbers are strengths of echoes, in small letters, the best first.
-pub(super) const STRENGTHS: [&str; 4] = ["reflectivity", "intensity", "scalar_intensity", "remission"];
-
 /// Layers per voxel in which heights are counted: 0.05 m each.
 const FINE: usize = 8;
 /// Layers of the window.
@@ -205,6 +192,7 @@ impl Cloud {
             return;
         }
         self.sweep.sensor_m = Some(ego_from_sensor.translation_m);
+        self.sweep.ego_from_file = *ego_from_sensor;
         self.add_point(ego_from_sensor.apply(at), label, strength);
     }
 
@@ -352,14 +340,17 @@ impl Cloud {
                 }
             }
         }
-        let sweep = std::mem::take(&mut self.sweep);
+        let (mut sweep, level) = (std::mem::take(&mut self.sweep), self.level.unwrap_or_default());
+        if !by_shape {
+            sweep.ground = None;
+        }
         let mut scene = labelled(name, self.grid(), None);
         if by_shape {
             scene.change_canvas(|canvas| canvas.inferred.recorded = Arc::new(Recorded::of_voxels()));
         }
         Ok(ImportedScene {
             scene,
-            sweep: by_shape.then(|| sweep.finished()).flatten(),
+            sweep: sweep.finished(&level),
             inferred: match by_shape {
                 true => &GUESSED_BY_SHAPE,
                 false => &GUESSED,

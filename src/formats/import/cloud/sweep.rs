@@ -1,7 +1,7 @@
 //! The returns of a sweep without labels as they come, for a network that finds objects in it.
 
 use glam::DVec3;
-use scene::SensorRig;
+use scene::{Pose, SensorRig};
 
 use super::level::{GroundPlane, HIGHEST_MOUNT_M};
 use crate::import::ImportedSweep;
@@ -20,6 +20,8 @@ pub(super) struct SweepReturns {
     pub(super) sensor_m: Option<DVec3>,
     /// The ground around it, if the returns show it.
     pub(super) ground: Option<GroundPlane>,
+    /// Pose of the file's frame in the ego frame before the points were leveled.
+    pub(super) ego_from_file: Pose,
     /// The points are a map.
     pub(super) is_map: bool,
 }
@@ -41,11 +43,23 @@ impl SweepReturns {
         }
     }
 
-    /// All of them; `None` for maps, and if their ground is not known.
-    pub(super) fn finished(self) -> Option<ImportedSweep> {
-        let ground = self
-            .ground
-            .filter(|_| self.returns.len() <= MOST && !self.is_map)?;
+    /// The sweep, of points that were moved by `level`; `None` for maps. Without returns if there are too many, or if their
+    /// ground is not known.
+    pub(super) fn finished(self, level: &Pose) -> Option<ImportedSweep> {
+        if self.is_map {
+            return None;
+        }
+        let usual_m = SensorRig::default()
+            .lidars
+            .first()
+            .map_or([0.0; 3], |lidar| lidar.translation_m);
+        let world_from_file = *level * self.ego_from_file;
+        let Some(ground) = self.ground.filter(|_| self.returns.len() <= MOST) else {
+            return Some(ImportedSweep::without_returns(
+                world_from_file,
+                self.sensor_m.unwrap_or(DVec3::from_array(usual_m)),
+            ));
+        };
         let scale = scale(self.returns.iter().map(|r| r.1));
         let above = |(at, strength): ([f32; 3], f32)| {
             let strength = if strength.is_finite() {
@@ -56,10 +70,6 @@ impl SweepReturns {
             let height_m = ground.above_m(place(at)) as f32;
             [at[0], at[1], height_m, strength.clamp(0.0, STRONGEST)]
         };
-        let usual_m = SensorRig::default()
-            .lidars
-            .first()
-            .map_or([0.0; 3], |lidar| lidar.translation_m);
         let seen_from = self
             .sensor_m
             .map_or(DVec3::from_array(usual_m), |at| at.with_z(ground.above_m(at)));
@@ -67,6 +77,8 @@ impl SweepReturns {
             returns: self.returns.into_iter().map(above).collect(),
             sensor_m: seen_from,
             mount_m: self.sensor_m,
+            world_from_file,
+            file: None,
             ground_m: [ground.height_m, ground.slope.x, ground.slope.y],
         })
     }

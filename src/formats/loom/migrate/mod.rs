@@ -4,6 +4,7 @@
 mod old_prompt;
 mod v1;
 mod v10;
+mod v11;
 mod v2;
 mod v3;
 mod v4;
@@ -40,7 +41,7 @@ pub enum MigrationChange {
 }
 
 /// Every step, oldest first, each to the version that the next one takes.
-pub const ALL: [Migration; 10] = [
+pub const ALL: [Migration; 11] = [
     v1::TO_V2,
     v2::TO_V3,
     v3::TO_V4,
@@ -51,6 +52,7 @@ pub const ALL: [Migration; 10] = [
     v8::TO_V9,
     v9::TO_V10,
     v10::TO_V11,
+    v11::TO_V12,
 ];
 
 /// The entries of a file that a step may change.

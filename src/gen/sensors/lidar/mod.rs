@@ -7,6 +7,7 @@ pub mod learned_caster;
 pub mod material;
 pub mod observed;
 pub mod own_body;
+pub mod recorded;
 pub mod rolling;
 #[cfg(test)]
 mod scenery_tests;

@@ -1,0 +1,97 @@
+//! The file of a sweep with some of its records changed.
+
+use scene::{Pose, Provenance, SweepEdits, SyntheticReturn};
+
+use super::records::NewRecord;
+use super::{SweepFile, SweepFileKind, packed};
+
+impl SweepFile<'_> {
+    /// The bytes of the file after edits, and the origin of each of its records. Without edits the bytes are those of the file.
+    /// A ray that meets something else keeps its record; a record without a return is emptied where the file has empty
+    /// records, and left out where it has none; new ones come last.
+    pub fn edited(&self, edits: &SweepEdits, file_from_world: &Pose) -> (Vec<u8>, Vec<Provenance>) {
+        let count = self.records.count;
+        if edits.is_empty() {
+            return (self.bytes.to_vec(), vec![Provenance::Recorded; count]);
+        }
+        let empty = self.empty_place();
+        let (mut records, mut origins) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut put = |record: NewRecord, provenance: Provenance| {
+            records.push(record);
+            origins.push(provenance);
+        };
+        for record in 0..count {
+            match edits.changed.get(&(record as u32)) {
+                None => put(NewRecord::Kept(record), Provenance::Recorded),
+                Some(Some(new)) => put(self.record(record, new, file_from_world), new.provenance),
+                Some(None) => {
+                    let emptied = |at: f64| self.axes.iter().map(move |axis| (*axis, at));
+                    if let Some(at) = empty {
+                        let strength = self.strength.map(|field| (field, 0.0));
+                        let values = emptied(at).chain(strength).collect();
+                        put(NewRecord::Like(record, values), Provenance::Recorded);
+                    }
+                }
+            }
+        }
+        for new in edits.added.iter().filter(|new| (new.like as usize) < count) {
+            put(self.record(new.like as usize, new, file_from_world), new.provenance);
+        }
+        let body = self.records.written(&records);
+        let body = match self.kind {
+            SweepFileKind::Pcd { is_packed: true, .. } => packed(&body),
+            _ => body,
+        };
+        let head = self.head(records.len());
+        ([head, body, self.records.after.to_vec()].concat(), origins)
+    }
+
+    fn record(&self, like: usize, new: &SyntheticReturn, file_from_world: &Pose) -> NewRecord {
+        let at = file_from_world.apply(new.at_m).to_array();
+        let place = self.axes.into_iter().zip(at);
+        let strength = self.strength.filter(|_| new.strength.is_finite());
+        let strength = strength.map(|field| (field, f64::from(new.strength)));
+        let label = self.label.map(|field| (field, f64::from(new.class.id())));
+        NewRecord::Like(like, place.chain(strength).chain(label).collect())
+    }
+
+    /// Coordinate of records without a return; `None` if the file has none of these.
+    fn empty_place(&self) -> Option<f64> {
+        let of_first = (0..self.records.count).map(|i| self.place(i));
+        let is_empty = |at: &glam::DVec3| !at.is_finite() || at.length() < super::NEAREST_M;
+        let first = of_first.into_iter().find(is_empty);
+        let is_organized = matches!(self.kind, SweepFileKind::Pcd { is_organized: true, .. });
+        match first {
+            Some(at) if at.is_finite() => Some(0.0),
+            Some(_) => Some(f64::NAN),
+            None => is_organized.then_some(f64::NAN),
+        }
+    }
+
+    /// The bytes before the records, with their number.
+    fn head(&self, count: usize) -> Vec<u8> {
+        let before = self.records.before;
+        if count == self.records.count || self.kind == SweepFileKind::Scan {
+            return before.to_vec();
+        }
+        let line = |line: &[u8]| {
+            let text = String::from_utf8_lossy(line);
+            let words: Vec<&str> = text.split_whitespace().collect();
+            let ending = match text.ends_with("\r\n") {
+                true => "\r\n",
+                false => "\n",
+            };
+            let new = match (self.kind, words.as_slice()) {
+                (SweepFileKind::Ply, ["element", "vertex", _]) => format!("element vertex {count}{ending}"),
+                (SweepFileKind::Pcd { .. }, [key, ..]) => match key.to_uppercase().as_str() {
+                    "WIDTH" | "POINTS" => format!("{key} {count}{ending}"),
+                    "HEIGHT" => format!("{key} 1{ending}"),
+                    _ => return line.to_vec(),
+                },
+                _ => return line.to_vec(),
+            };
+            new.into_bytes()
+        };
+        before.split_inclusive(|b| *b == b'\n').flat_map(line).collect()
+    }
+}

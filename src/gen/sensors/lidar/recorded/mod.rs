@@ -1,0 +1,426 @@
+//! A recorded sweep under edits: which of its returns go, and what their rays meet instead. All other returns stay as they are.
+//!
+//! - Returns of an object whose box was removed or moved go, those of voxels that were painted free too, and those hidden by
+//!   what is new.
+//! - A ray that is free again goes on to the measured **ground** ([`ground`]), or to an upright **surface** that is seen above
+//!   the object ([`surfaces`]); voxels of 0.4 m tell too little. So do rays between these from which nothing came back before
+//!   ([`beams`]).
+//! - Rays that meet what is **new** end on its solids.
+//! - What generation changed beside an edit changes no return.
+
+mod beams;
+mod changes;
+mod ground;
+mod surfaces;
+#[cfg(test)]
+mod tests;
+pub mod trial;
+
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use numeric::splitmix::{hash, scatter};
+use rayon::prelude::*;
+use scene::solid::Solid;
+use scene::{
+    Class, Lattice, LidarPoint, LidarSweep, Provenance, RecordedReturn, Scene, SceneBox, SweepEdits,
+    SweepRecording, SyntheticReturn,
+};
+use world::objects;
+
+use crate::pictures::march::solids::SolidIndex;
+use crate::raycast::ColumnMasks;
+use beams::EmptyRay;
+use changes::{BESIDE_M, LOWEST_M, SceneChanges};
+use ground::GroundMap;
+use surfaces::StandingReturns;
+
+/// Range up to which rays are cast, m.
+const FARTHEST_M: f64 = 120.0;
+/// Nearest return, m.
+const NEAREST_M: f64 = 0.5;
+/// Distance in front of a return within which something new does not hide it, m.
+const BEFORE_M: f64 = 0.05;
+/// Standard deviation of ranges, m.
+const NOISE_M: f64 = 0.02;
+/// Height above the ground from which returns stand on it, m.
+const STANDING_M: f64 = 0.3;
+/// Rays that one thread works on in a row.
+const RAYS: usize = 2048;
+
+/// A recorded sweep, with what its returns tell of the ground and of surfaces.
+#[derive(Debug)]
+pub struct EditableSweep {
+    recording: Arc<SweepRecording>,
+    ground: GroundMap,
+    standing: StandingReturns,
+    empty: Vec<EmptyRay>,
+    /// Median strength of returns by class, and of all.
+    strengths: BTreeMap<Class, f32>,
+    strength: f32,
+    /// Height of each return above the ground, m; 0 where it is not known.
+    heights_m: Vec<f32>,
+}
+
+/// What a ray ends on.
+struct RayEnd {
+    t_m: f64,
+    class: Class,
+    strength: f32,
+    provenance: Provenance,
+}
+
+/// What is new, as rays meet it.
+struct NewSolids {
+    solids: SolidIndex,
+    voxels: Option<(ColumnMasks, scene::VoxelGrid)>,
+    boxes: Vec<SceneBox>,
+    /// Directions and half widths of what is new, rad.
+    windows: Vec<[f64; 2]>,
+}
+
+impl EditableSweep {
+    /// Looks at a recording; this is needed once, however often its scene is edited.
+    pub fn new(recording: Arc<SweepRecording>) -> Self {
+        let before = recording.before.clone();
+        let boxes: Vec<SceneBox> = before.frame().boxes.values().copied().collect();
+        let sensor = recording.sensor_m;
+        let returns = || recording.returns.iter().zip(0u32..).filter_map(|(r, i)| Some(((*r)?, i)));
+        let near = |r: &RecordedReturn| r.place().distance_squared(sensor) > 1.0;
+        let in_a_box = |p: DVec3| {
+            let over = |b: &SceneBox| {
+                let at = b.to_local(p.with_z(b.center_m.z));
+                (at.truncate().abs() - b.size_m.truncate() / 2.0 - DVec2::splat(BESIDE_M)).max_element() < 0.0
+            };
+            boxes.iter().any(over)
+        };
+        let on_ground = returns()
+            .filter(|(r, _)| near(r) && !in_a_box(r.place()))
+            .map(|(r, _)| (r.place(), r.strength));
+        let ground = GroundMap::new(sensor.truncate(), on_ground);
+        let height = |r: &Option<RecordedReturn>| {
+            r.and_then(|r| Some(r.place().z - ground.height_m(r.place().truncate())?))
+                .unwrap_or_default() as f32
+        };
+        let heights_m: Vec<f32> = recording.returns.par_iter().map(height).collect();
+        let standing = returns()
+            .map(|(r, i)| (i, r.place(), f64::from(heights_m[i as usize]), r.strength))
+            .filter(|(_, at, height_m, _)| *height_m > STANDING_M && at.distance_squared(sensor) > 1.0);
+        let standing = StandingReturns::new(sensor, standing);
+        let mut by_class: BTreeMap<Class, Vec<f32>> = BTreeMap::new();
+        for (r, _) in returns().filter(|(r, _)| r.strength.is_finite()) {
+            by_class.entry(class_of(&before, &r)).or_default().push(r.strength);
+        }
+        let mut all: Vec<f32> = by_class.values().flatten().copied().collect();
+        Self {
+            empty: beams::empty_rays(&recording),
+            strength: median(&mut all),
+            strengths: by_class
+                .into_iter()
+                .map(|(class, mut strengths)| (class, median(&mut strengths)))
+                .collect(),
+            recording,
+            ground,
+            standing,
+            heights_m,
+        }
+    }
+
+    /// The recording.
+    pub fn recording(&self) -> &Arc<SweepRecording> {
+        &self.recording
+    }
+
+    /// The changes that edits of its scene make to it, in the scene's moment that is shown. They do not depend on the number of
+    /// threads.
+    pub fn edits(&self, scene: &Scene) -> SweepEdits {
+        let holds = |b: &SceneBox, beside_m: f64| self.held(b, beside_m).count();
+        let changes = SceneChanges::between(&self.recording.before, scene, &self.ground, holds);
+        if changes.is_empty() {
+            return SweepEdits::default();
+        }
+        let gone = self.gone(&changes);
+        let new = NewSolids::new(&changes, self.recording.sensor_m, scene.seed);
+        let returns = self.recording.returns.par_iter().enumerate().with_min_len(RAYS);
+        let changed = returns.filter_map(|(i, r)| {
+            let way = (*r)?.place() - self.recording.sensor_m;
+            let range_m = way.length();
+            let direction = way.try_normalize()?;
+            let end = match gone[i] {
+                true => self.end(direction, range_m - STANDING_M, &new, Some(&gone)),
+                false => Some(new.met_by(self.recording.sensor_m, direction, range_m - BEFORE_M)?)
+                    .map(|(t_m, class)| self.added(t_m, class)),
+            };
+            Some((i as u32, end.map(|end| self.synthetic(&end, direction, i as u32, i as u64))))
+        });
+        let changed: BTreeMap<u32, Option<SyntheticReturn>> = changed.collect();
+        let empty = self.empty.par_iter().enumerate().with_min_len(RAYS);
+        let added = empty.filter_map(|(i, ray)| {
+            let opened = changes
+                .gone
+                .iter()
+                .filter_map(|b| entered(b, self.recording.sensor_m, ray.direction))
+                .min_by(f64::total_cmp);
+            let end = match opened {
+                Some(from_m) => self.end(ray.direction, from_m, &new, Some(&gone))?,
+                None => {
+                    let (t_m, class) = new.met_by(self.recording.sensor_m, ray.direction, FARTHEST_M)?;
+                    self.added(t_m, class)
+                }
+            };
+            let number = (i + self.heights_m.len()) as u64;
+            Some(self.synthetic(&end, ray.direction, ray.like, number))
+        });
+        SweepEdits {
+            changed,
+            added: added.collect(),
+        }
+    }
+
+    /// The sweep after edits, as the sensors of the program give one: in the world frame, each return with its class. Strengths
+    /// are told from 0 to 255.
+    pub fn sweep(&self, edits: &SweepEdits, scene: &Scene) -> LidarSweep {
+        let strongest = match self.strongest() {
+            most if most <= 1.0 => 255.0,
+            most if most > 255.0 => 255.0 / most,
+            _ => 1.0,
+        };
+        let sensor = self.recording.sensor_m;
+        let point = |at: DVec3, strength: f32, ring: u16, class: Class| LidarPoint {
+            position_in_ego: at.as_vec3().to_array(),
+            range_m: (at - sensor).length() as f32,
+            ring: if ring == RecordedReturn::NO_RING { 0 } else { ring },
+            azimuth: 0,
+            class,
+            intensity: match strength.is_finite() {
+                true => (strength * strongest).clamp(0.0, 255.0),
+                false => 0.0,
+            },
+            drop_probability: 0.0,
+            time_s: 0.0,
+            velocity_mps: [0.0; 2],
+        };
+        let ring_of = |record: u32| {
+            let like = self.recording.returns.get(record as usize).copied().flatten();
+            like.map_or(RecordedReturn::NO_RING, |r| r.ring)
+        };
+        let synthetic = |s: &SyntheticReturn| point(s.at_m, s.strength, ring_of(s.like), s.class);
+        let recorded = self.recording.returns.par_iter().enumerate().filter_map(|(i, r)| {
+            match edits.changed.get(&(i as u32)) {
+                Some(instead) => instead.as_ref().map(synthetic),
+                None => r.map(|r| point(r.place(), r.strength, r.ring, class_of(scene, &r))),
+            }
+        });
+        let mut points: Vec<LidarPoint> = recorded.collect();
+        points.extend(edits.added.iter().map(synthetic));
+        LidarSweep {
+            points,
+            rays: self.recording.returns.len() + self.empty.len(),
+            physical: true,
+        }
+    }
+
+    /// Largest strength, but for the strongest hundredth.
+    fn strongest(&self) -> f32 {
+        let returns = self.recording.returns.iter().flatten();
+        let mut known: Vec<f32> = returns.map(|r| r.strength).filter(|s| s.is_finite()).collect();
+        known.sort_by(f32::total_cmp);
+        known.get(known.len() * 99 / 100).copied().unwrap_or(1.0)
+    }
+
+    /// Records whose returns are in a box, but for those on the ground below it.
+    fn held(&self, b: &SceneBox, beside_m: f64) -> impl Iterator<Item = usize> {
+        let bottom_m = b.center_m.z - b.size_m.z / 2.0;
+        let (reach, middle, b) = (b.size_m.truncate().length() / 2.0 + beside_m, b.center_m.truncate(), *b);
+        let returns = self.recording.returns.iter().enumerate();
+        returns.filter_map(move |(i, r)| {
+            let at = (*r)?.place();
+            let is_near = at.truncate().distance_squared(middle) <= reach * reach;
+            let is_above = at.z > bottom_m + LOWEST_M && f64::from(self.heights_m[i]) > LOWEST_M;
+            (is_near && is_above && b.contains(at, beside_m)).then_some(i)
+        })
+    }
+
+    /// Records whose returns are not there any more, one flag each.
+    fn gone(&self, changes: &SceneChanges) -> Vec<bool> {
+        let mut gone = vec![false; self.recording.returns.len()];
+        let others: Vec<&SceneBox> = changes.kept.iter().collect();
+        for b in &changes.gone {
+            for i in self.held(b, BESIDE_M) {
+                let Some(r) = self.recording.returns[i] else { continue };
+                gone[i] = !others.iter().any(|other| other.contains(r.place(), 0.0));
+            }
+        }
+        if !changes.freed.is_empty() {
+            for (i, r) in self.recording.returns.iter().enumerate() {
+                let voxel = r.and_then(|r| changes.extent.voxel_at(r.place()));
+                gone[i] |= voxel.is_some_and(|voxel| changes.freed.contains(&voxel));
+            }
+        }
+        gone
+    }
+
+    /// What a ray meets beyond a distance, where something was taken away.
+    fn end(&self, direction: DVec3, from_m: f64, new: &NewSolids, gone: Option<&[bool]>) -> Option<RayEnd> {
+        let sensor = self.recording.sensor_m;
+        let there = |record: u32| gone.is_none_or(|gone| !gone[record as usize]);
+        let added = new.met_by(sensor, direction, FARTHEST_M);
+        let ground = self.ground.met_by(sensor, direction, FARTHEST_M).map(|t_m| {
+            let at = sensor + direction * t_m;
+            RayEnd {
+                t_m,
+                class: self.ground_class(at),
+                strength: self.ground.strength(at.truncate()).unwrap_or(self.strength),
+                provenance: Provenance::Ground,
+            }
+        });
+        let surface = self.standing.met_by(direction, from_m, there).map(|hit| {
+            let like = self.recording.returns[hit.record as usize];
+            RayEnd {
+                t_m: hit.t_m,
+                class: like.map_or(Class::Others, |r| class_of(&self.recording.before, &r)),
+                strength: hit.strength,
+                provenance: Provenance::Continued,
+            }
+        });
+        let added = added.map(|(t_m, class)| self.added(t_m, class));
+        let ends = [added, ground, surface].into_iter().flatten();
+        ends.min_by(|a, b| a.t_m.total_cmp(&b.t_m))
+            .filter(|end| end.t_m >= NEAREST_M)
+    }
+
+    fn ground_class(&self, at: DVec3) -> Class {
+        let frame = self.recording.before.frame();
+        let column = frame.extent().column_at(at.x, at.y);
+        let labels = column.map(|[x, y]| frame.occupancy.column(x, y));
+        let ground = labels.and_then(|labels| {
+            let classes = labels.iter().filter_map(|label| Class::from_id(*label));
+            classes.into_iter().find(|class| class.is_ground())
+        });
+        ground.unwrap_or(Class::DriveableSurface)
+    }
+
+    fn added(&self, t_m: f64, class: Class) -> RayEnd {
+        RayEnd {
+            t_m,
+            class,
+            strength: self.strengths.get(&class).copied().unwrap_or(self.strength),
+            provenance: Provenance::Added,
+        }
+    }
+
+    fn synthetic(&self, end: &RayEnd, direction: DVec3, like: u32, number: u64) -> SyntheticReturn {
+        // The sum of three even draws is nearly normal.
+        let draw = |k: u64| scatter(hash(number * 3 + k)) - 0.5;
+        let noise_m = (draw(0) + draw(1) + draw(2)) * 2.0 * NOISE_M;
+        SyntheticReturn {
+            at_m: self.recording.sensor_m + direction * (end.t_m + noise_m),
+            strength: end.strength,
+            class: end.class,
+            provenance: end.provenance,
+            like,
+        }
+    }
+}
+
+impl NewSolids {
+    fn new(changes: &SceneChanges, sensor: DVec3, seed: u64) -> Self {
+        let mut groups: Vec<Vec<Solid>> = changes.things.clone();
+        let mut boxes = Vec::new();
+        let mut windows = Vec::new();
+        for b in &changes.added {
+            let mut solids = Vec::new();
+            objects::object(b, seed, &mut solids);
+            windows.push(window(b.center_m.truncate(), b.size_m.truncate().length() / 2.0, sensor));
+            match solids.is_empty() {
+                true => boxes.push(*b),
+                false => groups.push(solids),
+            }
+        }
+        for solid in changes.things.iter().flatten() {
+            let reach = solid.reach().truncate().length();
+            windows.push(window(solid.center.truncate(), reach, sensor));
+        }
+        if changes.voxels.is_some() {
+            windows.push([0.0, PI]);
+        }
+        let voxels = changes.voxels.as_ref();
+        Self {
+            solids: SolidIndex::of_groups(changes.extent, groups.into_iter()),
+            voxels: voxels.map(|grid| (ColumnMasks::from_grid(grid), grid.clone())),
+            boxes,
+            windows,
+        }
+    }
+
+    /// Where a ray meets something new, nearer than `limit_m`.
+    fn met_by(&self, origin: DVec3, direction: DVec3, limit_m: f64) -> Option<(f64, Class)> {
+        let turn = direction.y.atan2(direction.x);
+        let is_in = |[middle, half]: &[f64; 2]| ((turn - middle + PI).rem_euclid(TAU) - PI).abs() <= *half;
+        if !self.windows.iter().any(is_in) {
+            return None;
+        }
+        let solid = self.solids.cast(origin, direction, limit_m);
+        let solid = solid.map(|hit| (hit.t_m, hit.solid.class));
+        let boxes = self.boxes.iter().filter_map(|b| {
+            let t_m = entered(b, origin, direction)?;
+            (t_m < limit_m).then_some((t_m, b.class))
+        });
+        let voxel = self.voxels.as_ref().and_then(|(masks, grid)| {
+            let voxel_m = Lattice::OCC3D.voxel_m();
+            let from = grid.extent().to_voxel_units(origin);
+            let (t, [x, y, z]) = masks.cast_in_voxels(from, direction, limit_m / voxel_m)?;
+            Some((t * voxel_m, Class::from_id(grid.get(x, y, z)).unwrap_or(Class::Others)))
+        });
+        let all = boxes.chain(solid).chain(voxel);
+        all.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}
+
+/// Direction and half width of a circle as seen from above the sensor, rad.
+fn window(middle: DVec2, radius_m: f64, sensor: DVec3) -> [f64; 2] {
+    let way = middle - sensor.truncate();
+    match way.length() > radius_m {
+        true => [way.y.atan2(way.x), (radius_m / way.length()).asin() + 1e-6],
+        false => [0.0, PI],
+    }
+}
+
+/// Distance at which a ray enters a box, m.
+fn entered(b: &SceneBox, origin: DVec3, direction: DVec3) -> Option<f64> {
+    let (from, way) = (b.to_local(origin), b.to_local(origin + direction) - b.to_local(origin));
+    let half = b.size_m / 2.0;
+    let (mut near, mut far) = (0.0f64, f64::INFINITY);
+    for axis in 0..3 {
+        if way[axis].abs() < 1e-12 {
+            if from[axis].abs() > half[axis] {
+                return None;
+            }
+            continue;
+        }
+        let ends = [-half[axis], half[axis]].map(|side| (side - from[axis]) / way[axis]);
+        (near, far) = (near.max(ends[0].min(ends[1])), far.min(ends[0].max(ends[1])));
+    }
+    (near <= far).then_some(near)
+}
+
+/// Class of what a recorded return lies on: that of its box, else of its voxel, else of the ground below.
+fn class_of(scene: &Scene, r: &RecordedReturn) -> Class {
+    let (frame, at) = (scene.frame(), r.place());
+    let extent = frame.extent();
+    let Some([x, y]) = extent.column_at(at.x, at.y) else {
+        return Class::Others;
+    };
+    let labels = frame.occupancy.column(x, y);
+    let known = |label: u8| Class::from_id(label).filter(|c| *c != Class::Free);
+    let own = extent.voxel_at(at).and_then(|[_, _, z]| known(labels[z]));
+    own.or_else(|| labels.iter().filter_map(|l| known(*l)).find(|c| c.is_ground()))
+        .unwrap_or(Class::Others)
+}
+
+fn median(values: &mut [f32]) -> f32 {
+    values.sort_by(f32::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f32::NAN)
+}
