@@ -8,6 +8,7 @@ use egui::{Color32, ColorImage};
 use language::t;
 use scene::{RadarReturn, Scene};
 use sensors::cameras::{self, CameraInput, CameraSource, Detail, SourceId, SourceView, ViewId};
+use sensors::lidar::recorded;
 use sensors::pictures::march::MarchScene;
 use sensors::pictures::painter::PaintInput;
 use viewport::LidarColorMode;
@@ -148,11 +149,23 @@ impl CamerasShown {
 /// How the LiDAR sweep is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LidarModel {
-    /// Every ray ends at the first voxel.
+    /// The sweep that the scene was imported from, with its edits; exact for a scene of no recording.
     #[default]
+    Recorded,
+    /// Every ray ends at the first voxel.
     Exact,
     /// The network: ranges within voxels, intensity, lost echoes.
     Learned,
+}
+
+impl LidarModel {
+    /// The model by which the sweep of a scene is computed.
+    pub fn of_scene(self, scene: &Scene) -> Self {
+        match self == Self::Recorded && recorded::recording_of(scene).is_none() {
+            true => Self::Exact,
+            false => self,
+        }
+    }
 }
 
 /// Settings of the LiDAR sweep.

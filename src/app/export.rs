@@ -19,7 +19,9 @@ use formats::FormatError;
 use formats::export::{BoxVisibility, ExportPicture, ExportSpan, Exporter, ObservationMasks, Products};
 use formats::recipe::Recipe;
 use nets::lidar::LidarNet;
-use scene::{CameraMaps, CameraTruth, GaussianScene, Lattice, LidarSweep, Pose, RadarScan, Scene};
+use scene::{
+    CameraMaps, CameraTruth, GaussianScene, Lattice, LidarSweep, Pose, RadarScan, Scene, SweepEdits,
+};
 use sensors::bake::{self, BakeOptions};
 use sensors::cameras::{
     self, CameraPicture, Detail, PreparedSource, RenderContext, RenderOptions, SourceId, ViewId, bounds,
@@ -27,6 +29,7 @@ use sensors::cameras::{
 };
 use sensors::lidar::learned::Drops;
 use sensors::lidar::observed;
+use sensors::lidar::recorded::{self, EditableSweep};
 use sensors::lidar::rolling;
 use sensors::pictures::appearance::Quality;
 use sensors::radar;
@@ -227,8 +230,10 @@ impl Making<'_> {
         if scene.rig.lidars.is_empty() {
             bail!("the rig {:?} has no LiDAR", scene.rig.name);
         }
-        if self.options.lidar == LidarModel::Exact {
-            return Ok(rolling::exact(scene));
+        match self.options.lidar.of_scene(scene) {
+            LidarModel::Recorded => return Ok(recorded::sweep_of(scene).unwrap_or_default()),
+            LidarModel::Exact => return Ok(rolling::exact(scene)),
+            LidarModel::Learned => {}
         }
         let net = LidarNet::bundled().context("the LiDAR network")?;
         rolling::learned(&net, scene, Drops::Likely).context("the LiDAR network")
@@ -272,6 +277,13 @@ impl Products for Making<'_> {
         let mut sweep = self.swept().map_err(FormatError::new)?;
         sweep.place(&self.scene.rig.vehicle.inverse());
         Ok(sweep)
+    }
+
+    fn sweep_edits(&mut self) -> Result<SweepEdits, FormatError> {
+        let recording = self.scene.kept.sweep.as_ref();
+        let recording =
+            recording.ok_or_else(|| FormatError::new("the scene was not imported from a sweep"))?;
+        Ok(EditableSweep::new(recording.clone()).edits(&self.scene))
     }
 
     fn radars(&mut self) -> Result<Vec<RadarScan>, FormatError> {

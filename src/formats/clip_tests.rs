@@ -186,7 +186,12 @@ impl Products for Plain {
             rays: points.len(),
             points,
             physical: false,
+            provenance: Vec::new(),
         })
+    }
+
+    fn sweep_edits(&mut self) -> Result<scene::SweepEdits, FormatError> {
+        Ok(scene::SweepEdits::default())
     }
 
     fn radars(&mut self) -> Result<Vec<scene::RadarScan>, FormatError> {

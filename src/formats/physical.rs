@@ -51,6 +51,7 @@ mod tests {
             ],
             rays: 3,
             physical: false,
+            provenance: Vec::new(),
         };
         let above = sweep.points[2];
         to_physical_ground(&mut sweep, DVec3::new(0.0, 0.0, 1.8), &frame);

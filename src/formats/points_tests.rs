@@ -30,6 +30,10 @@ impl Products for OneSweep {
         Ok(self.0.clone())
     }
 
+    fn sweep_edits(&mut self) -> Result<scene::SweepEdits, FormatError> {
+        absent()
+    }
+
     fn radars(&mut self) -> Result<Vec<scene::RadarScan>, FormatError> {
         absent()
     }
@@ -97,6 +101,7 @@ pub(crate) fn sweep(points: Vec<LidarPoint>) -> LidarSweep {
         rays: points.len(),
         points,
         physical: true,
+        provenance: Vec::new(),
     }
 }
 

@@ -173,7 +173,12 @@ impl Products for Small {
             points: vec![point],
             rays: 2,
             physical: true,
+            provenance: Vec::new(),
         })
+    }
+
+    fn sweep_edits(&mut self) -> Result<scene::SweepEdits, FormatError> {
+        Ok(scene::SweepEdits::default())
     }
 
     fn radars(&mut self) -> Result<Vec<scene::RadarScan>, FormatError> {
@@ -323,6 +328,9 @@ fn assert_holds(holds: Holds, a: &Scene, b: &Scene) {
 
 /// A scene written in a format and read again, if the format is read at all.
 pub(crate) fn round_trip(exporter: &Exporter, scene: &Scene) -> Option<Content> {
+    if exporter.needs == [export::Product::Recording] {
+        return None;
+    }
     let files = (exporter.write)(scene, &mut Small).expect(exporter.id);
     let names: BTreeSet<&str> = files.iter().map(|f| f.name.as_str()).collect();
     assert_eq!(names.len(), files.len(), "{}: a name twice", exporter.id);

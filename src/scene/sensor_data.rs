@@ -1,6 +1,6 @@
 //! Output of sensors: label and depth maps of a camera, points of a LiDAR sweep.
 
-use super::{BevLayer, Class};
+use super::{BevLayer, Class, Provenance};
 
 /// Label of a splat map, a type apart from [`super::Class`] because 17 to 19 mean lines here:
 /// 0 nothing, 1 to 16 as the occupancy classes, 17 crossing, 18 road divider, 19 lane divider.
@@ -186,12 +186,14 @@ pub struct LidarSweep {
     pub rays: usize,
     /// True if the ground is at its true height, and not two bins lower as in the labels.
     pub physical: bool,
+    /// Origin of each point; empty if all were computed.
+    pub provenance: Vec<Provenance>,
 }
 
 impl LidarSweep {
     /// Memory that its points take, bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.points)
+        size_of_val(&*self.points) + size_of_val(&*self.provenance)
     }
 
     /// Gives the points in another frame.

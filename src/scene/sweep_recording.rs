@@ -121,7 +121,12 @@ impl SweepEdits {
 
     /// Number of measured returns that are not there any more.
     pub fn dropped(&self, recording: &SweepRecording) -> usize {
-        let was_there = |record: &&u32| recording.returns.get(**record as usize).is_some_and(Option::is_some);
+        let was_there = |record: &&u32| {
+            recording
+                .returns
+                .get(**record as usize)
+                .is_some_and(Option::is_some)
+        };
         self.changed.keys().filter(was_there).count()
     }
 }

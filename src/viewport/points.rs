@@ -10,7 +10,7 @@ use super::LidarView;
 use super::change::{EgoBounds, PictureChange, may_be_seen};
 use super::drawable::{DrawContext, DrawInput, DrawLayer, Drawable, Gpu, Pipelines};
 use super::shared::{PipelineSpec, VertexBuffer};
-use scene::{Class, LidarPoint, LidarSweep};
+use scene::{Class, LidarPoint, LidarSweep, Provenance};
 
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -34,12 +34,25 @@ pub enum LidarColorMode {
     Intensity,
     /// How likely the echo is lost: pale is sure, red is lost more often than not.
     Drop,
+    /// Origin in a recorded sweep: grey is recorded, green was added, orange and violet are told from what was measured nearby.
+    Origin,
 }
 
 /// One sRGB colour per return, alpha 255.
 pub fn lidar_colors(sweep: &LidarSweep, mode: LidarColorMode) -> Vec<[u8; 4]> {
     let rings = sweep.points.iter().map(|p| p.ring).max().unwrap_or(0).max(1);
-    let color = |p: &LidarPoint| match mode {
+    let origins = sweep
+        .provenance
+        .iter()
+        .copied()
+        .chain(std::iter::repeat(Provenance::Added));
+    let color = |(p, origin): (&LidarPoint, Provenance)| match mode {
+        LidarColorMode::Origin => match origin {
+            Provenance::Recorded => [150, 158, 168, 255],
+            Provenance::Ground => [255, 178, 66, 255],
+            Provenance::Added => [92, 214, 130, 255],
+            Provenance::Continued => [190, 124, 240, 255],
+        },
         LidarColorMode::Range => ramp(p.range_m / 50.0),
         LidarColorMode::Ring => ramp(f32::from(p.ring) / f32::from(rings)),
         LidarColorMode::Intensity => ramp(1.0 - (p.intensity / 64.0).sqrt()),
@@ -62,7 +75,7 @@ pub fn lidar_colors(sweep: &LidarSweep, mode: LidarColorMode) -> Vec<[u8; 4]> {
             [r, g, b, 255]
         }
     };
-    sweep.points.iter().map(color).collect()
+    sweep.points.iter().zip(origins).map(color).collect()
 }
 
 /// A ramp of even lightness steps: amber, rose, violet, blue, cyan; NaN gives the far end.
@@ -249,6 +262,7 @@ mod tests {
             ],
             rays: 3,
             physical: false,
+            provenance: Vec::new(),
         };
         for mode in [LidarColorMode::Range, LidarColorMode::Class, LidarColorMode::Ring] {
             let colors = lidar_colors(&sweep, mode);

@@ -37,8 +37,8 @@ pub struct Export {
     /// Source that classes and depths are rendered from.
     #[arg(long, value_name = "NAME", value_parser = source(), default_value = "truth")]
     source: SourceId,
-    /// How the LiDAR sweep comes about.
-    #[arg(long, value_name = "MODEL", value_parser = ["exact", "learned"], default_value = "exact")]
+    /// How the LiDAR sweep comes about; recorded is exact for a scene that was not imported from a sweep.
+    #[arg(long, value_name = "MODEL", value_parser = ["recorded", "exact", "learned"], default_value = "recorded")]
     lidar: String,
     #[command(flatten)]
     viewpoint: Viewpoint,
@@ -131,13 +131,14 @@ impl Export {
         let scene = self
             .moment
             .apply_to(open::scene(&self.scene.context("the scene to read is missing")?)?)?;
-        let formats = one.map_or_else(|| formats::export::usual(&scene.rig), |format| vec![format]);
+        let formats = one.map_or_else(|| formats::export::usual(&scene), |format| vec![format]);
         let options = ExportOptions {
             camera_size: self.size,
             source: self.source,
             lidar: match self.lidar.as_str() {
                 "learned" => LidarModel::Learned,
-                _ => LidarModel::Exact,
+                "exact" => LidarModel::Exact,
+                _ => LidarModel::Recorded,
             },
             shot: ShotOptions {
                 camera: self.viewpoint.camera(&scene)?,

@@ -13,6 +13,7 @@ use crate::camera_views::LidarModel;
 use crate::command::Command;
 use language::t;
 use scene::{LidarSweep, Scene};
+use sensors::lidar::recorded;
 use viewport::LidarColorMode;
 use widgets::icons::Icon;
 use widgets::theme;
@@ -42,14 +43,24 @@ impl Pane for Lidar {
     }
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
-        let models = [(LidarModel::Exact, "Exact"), (LidarModel::Learned, "Learned")];
-        let model = models.iter().find(|(m, _)| *m == cx.state.lidar.model);
+        let is_recorded = recorded::recording_of(cx.scene).is_some();
+        let models = [
+            (LidarModel::Recorded, "Recorded"),
+            (LidarModel::Exact, "Exact"),
+            (LidarModel::Learned, "Learned"),
+        ];
+        let models = &models[usize::from(!is_recorded)..];
+        let of_scene = cx.state.lidar.model.of_scene(cx.scene);
+        let model = models.iter().find(|(m, _)| *m == of_scene);
         egui::ComboBox::from_id_salt("sweep model")
             .selected_text(t(model.map_or("Exact", |(_, name)| name)))
             .width(84.0)
             .show_ui(ui, |ui| {
                 for (model, name) in models {
-                    ui.selectable_value(&mut cx.state.lidar.model, model, t(name));
+                    let is_chosen = *model == of_scene;
+                    if ui.selectable_label(is_chosen, t(name)).clicked() {
+                        cx.state.lidar.model = *model;
+                    }
                 }
             })
             .response
@@ -60,6 +71,7 @@ impl Pane for Lidar {
             (LidarColorMode::Ring, "Ring"),
             (LidarColorMode::Intensity, "Intensity"),
             (LidarColorMode::Drop, "Loss"),
+            (LidarColorMode::Origin, "Origin"),
         ];
         let shown = colors.iter().find(|(mode, _)| *mode == cx.state.lidar.colors);
         egui::ComboBox::from_id_salt("sweep colours")

@@ -335,6 +335,7 @@ mod tests {
             points: vec![point(-8.0, 1.0, 3), point(-8.0, -1.0, 5), point(9.0, 0.0, 0)],
             rays: 3,
             physical: true,
+            provenance: Vec::new(),
         };
         let found = outlines(&sweep, &here, 10, &b);
         assert_eq!(found.len(), 2, "{found:?}");

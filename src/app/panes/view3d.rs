@@ -221,6 +221,11 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, shown: &mut ViewsShown, swe
         ui,
         &mut sweep.model,
         &[
+            (
+                LidarModel::Recorded,
+                t("Recorded"),
+                t("the imported sweep, where the scene has one"),
+            ),
             (LidarModel::Exact, t("Exact"), t("every ray to the first voxel")),
             (
                 LidarModel::Learned,
@@ -250,6 +255,11 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, shown: &mut ViewsShown, swe
                 LidarColorMode::Drop,
                 t("Loss"),
                 t("how likely an echo is lost, from the learned LiDAR"),
+            ),
+            (
+                LidarColorMode::Origin,
+                t("Origin"),
+                t("grey: recorded; green: added; orange, violet: told from what was measured nearby"),
             ),
         ],
     );

@@ -19,6 +19,7 @@ use sensors::lidar::EgoBox;
 use sensors::lidar::caster::Caster;
 use sensors::lidar::learned::Drops;
 use sensors::lidar::learned_caster::LearnedCaster;
+use sensors::lidar::recorded::{self, EditableSweep};
 use sensors::lidar::rolling;
 use sensors::lidar::shaped::onto_shapes;
 use sensors::pictures::appearance::AppearanceCache;
@@ -102,6 +103,8 @@ impl Product for Senses {
 pub(super) struct SensorCache {
     pub(super) lidar: Option<(Arc<SensorRig>, Caster)>,
     pub(super) net: Option<Arc<LidarNet>>,
+    /// The recorded sweep that the last scene came from.
+    pub(super) recorded: Option<EditableSweep>,
     pub(super) learned: Option<(Arc<SensorRig>, LearnedCaster)>,
     pub(super) views: Option<((SceneRev, PicturesKey), Vec<CameraView>)>,
     /// State of the last full pictures, whatever moment they show.
@@ -129,6 +132,18 @@ pub(super) struct SensorCache {
 
 impl SensorCache {
     fn sweep(&mut self, scene: &Scene, wanted: &Wanted) -> LidarSweep {
+        if wanted.lidar == LidarModel::Recorded
+            && let Some(recording) = recorded::recording_of(scene)
+        {
+            let known = self
+                .recorded
+                .take()
+                .filter(|known| Arc::ptr_eq(known.recording(), recording));
+            let sweep = known.unwrap_or_else(|| EditableSweep::new(recording.clone()));
+            let made = sweep.sweep(&sweep.edits(scene), scene);
+            self.recorded = Some(sweep);
+            return made;
+        }
         if rolling::is_rolling(scene) {
             return self.rolling(scene, wanted);
         }
@@ -158,7 +173,7 @@ impl SensorCache {
     fn rolling(&mut self, scene: &Scene, wanted: &Wanted) -> LidarSweep {
         let net = match wanted.lidar {
             LidarModel::Learned => self.net(),
-            LidarModel::Exact => None,
+            LidarModel::Recorded | LidarModel::Exact => None,
         };
         let learned = net.and_then(|net| rolling::learned(&net, scene, drops(wanted.lost_echoes)).ok());
         learned.unwrap_or_else(|| {
@@ -210,7 +225,7 @@ fn sense(request: &SensingRequest, kept: &mut SensorCache, ctx: &Ctx<'_, Sensing
         (scene.content(), wanted.lidar, wanted.lost_echoes),
     );
     // Where the network sampled its rays is told of a scene at rest.
-    let again = plays || wanted.lidar == LidarModel::Exact;
+    let again = plays || wanted.lidar != LidarModel::Learned;
     let again = again && kept.swept != Some(swept);
     if let Some(sweep) = kept.sweeps.get(&of, at, 0).filter(|_| again).cloned() {
         let pose = scene.frame().world_from_ego;

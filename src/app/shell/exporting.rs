@@ -60,7 +60,7 @@ impl SceneloomApp {
         let input = ExportInput {
             browse: self.files.dialogs.is_native(),
             busy: self.files.exporting.running.as_ref().map(|r| &*r.progress),
-            rig: &self.document.scene().rig,
+            scene: self.document.scene(),
             errors: findings.map_or(0, |f| {
                 let open = waive::open(self.document.settled_scene().frame(), f);
                 open.filter(|f| f.severity == Severity::Error).count()

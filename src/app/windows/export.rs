@@ -8,7 +8,7 @@ use crate::camera_views::LidarModel;
 use crate::export::{ExportOptions, ExportProgress, Format};
 use formats::export::{ExportSpan, Product};
 use language::{t, tf};
-use scene::SensorRig;
+use scene::Scene;
 use sensors::cameras::{self, ViewId};
 use widgets::{icons, theme};
 
@@ -23,8 +23,8 @@ pub struct ExportInput<'a> {
     pub browse: bool,
     /// Number of findings of severity error.
     pub errors: usize,
-    /// Sensors of the scene.
-    pub rig: &'a SensorRig,
+    /// The scene.
+    pub scene: &'a Scene,
 }
 
 /// Request of the user.
@@ -152,7 +152,7 @@ pub fn export_window(
                 if ui.add_enabled(enabled, button).clicked() {
                     let formats = dialog
                         .format
-                        .map_or_else(|| formats::export::usual(input.rig), |f| vec![f]);
+                        .map_or_else(|| formats::export::usual(input.scene), |f| vec![f]);
                     asked = Some(ExportAction::Write(formats));
                 }
                 if let Some(progress) = input.busy {
@@ -337,6 +337,11 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
             Product::Sweep => {
                 ui.horizontal(|ui| {
                     ui.label(t("Sweep"));
+                    ui.radio_value(
+                        &mut options.lidar,
+                        LidarModel::Recorded,
+                        t("recorded, where there is one"),
+                    );
                     ui.radio_value(&mut options.lidar, LidarModel::Exact, t("exact"));
                     ui.radio_value(
                         &mut options.lidar,
@@ -345,7 +350,7 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
                     );
                 });
             }
-            Product::Radar => {}
+            Product::Radar | Product::Recording => {}
             Product::View => {
                 size(ui, &mut options.shot.size);
                 ui.horizontal(|ui| {

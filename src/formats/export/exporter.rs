@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use scene::{BoxId, CameraMaps, CameraTruth, Extent, GaussianScene, LidarSweep, Pose, RadarScan, Scene};
+use scene::{
+    BoxId, CameraMaps, CameraTruth, Extent, GaussianScene, LidarSweep, Pose, RadarScan, Scene, SweepEdits,
+};
 
 use crate::recipe::Recipe;
 use crate::{FormatError, Holds};
@@ -60,6 +62,8 @@ pub enum Product {
     Observed,
     /// A sweep of the first LiDAR.
     Sweep,
+    /// The edits of the sweep that the scene was imported from.
+    Recording,
     /// A scan of every radar.
     Radar,
     /// Classes and depths of every camera.
@@ -86,6 +90,8 @@ pub trait Products {
     fn observed(&mut self) -> Result<ObservationMasks, FormatError>;
     /// A sweep of the rig's first LiDAR.
     fn sweep(&mut self) -> Result<LidarSweep, FormatError>;
+    /// What edits change in the sweep that the scene was imported from. Errors if it was imported from none.
+    fn sweep_edits(&mut self) -> Result<SweepEdits, FormatError>;
     /// A scan of each of the rig's radars, in its order, in the ego frame; empty if it has none.
     fn radars(&mut self) -> Result<Vec<RadarScan>, FormatError>;
     /// Classes and depths of every camera, in the order of the rig; each is taken before the next is made.

@@ -24,6 +24,7 @@ pub mod openscenario;
 pub mod pcd;
 pub mod pictures;
 pub mod ply;
+pub mod recording;
 pub mod semantic;
 pub mod semantic_kitti;
 pub mod surroundocc;
@@ -32,7 +33,7 @@ pub mod view;
 pub mod vox;
 pub mod world_scenario;
 
-use scene::{Scene, SensorRig};
+use scene::Scene;
 
 use crate::sparse_npy;
 
@@ -57,6 +58,7 @@ const TABLE: &[&Exporter] = &[
     &pcd::EXPORTER,
     &las::EXPORTER,
     &las::PACKED,
+    &recording::EXPORTER,
     &kitti::EXPORTER,
     &semantic::EXPORTER,
     &depth::EXPORTER,
@@ -93,10 +95,14 @@ pub fn keeps_lattice(format: &Exporter, scene: &Scene) -> bool {
     }
 }
 
-/// The formats that *all* writes of a scene with these sensors: every format but Gaussians, which take a minute and more, MP4 where the program lacks
-/// its encoder, and radar scans where the rig has no radar.
-pub fn usual(rig: &SensorRig) -> Vec<&'static Exporter> {
-    let lacks = |f: &&'static Exporter| f.needs == [Product::Radar] && rig.radars.is_empty();
+/// The formats that *all* writes of a scene: every format but Gaussians, which take a minute and more, MP4 where the program lacks
+/// its encoder, radar scans where the rig has no radar, and the recording of a scene that has none.
+pub fn usual(scene: &Scene) -> Vec<&'static Exporter> {
+    let lacks = |f: &&'static Exporter| match f.needs {
+        [Product::Radar] => scene.rig.radars.is_empty(),
+        [Product::Recording] => scene.kept.sweep.is_none(),
+        _ => false,
+    };
     let is_slow = |f: &&'static Exporter| f.needs.contains(&Product::Gaussians);
     let is_absent = |f: &&'static Exporter| !cfg!(feature = "video") && f.id == control_video::EXPORTER.id;
     let written = all().iter().copied();

@@ -234,8 +234,13 @@ mod tests {
                     ],
                     rays: 3,
                     physical: false,
+                    provenance: Vec::new(),
                 })
             }
+            fn sweep_edits(&mut self) -> Result<scene::SweepEdits, FormatError> {
+                Small.sweep_edits()
+            }
+
             fn radars(&mut self) -> Result<Vec<scene::RadarScan>, FormatError> {
                 Small.radars()
             }

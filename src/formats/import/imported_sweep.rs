@@ -50,7 +50,11 @@ impl ImportedSweep {
             return Ok(None);
         };
         if bytes.len() > SweepRecording::LARGEST {
-            let line = format!("{} bytes, expected at most {}", bytes.len(), SweepRecording::LARGEST);
+            let line = format!(
+                "{} bytes, expected at most {}",
+                bytes.len(),
+                SweepRecording::LARGEST
+            );
             return Err(FormatError::new(line));
         }
         let returns = SweepFile::open(name, bytes)?.returns(&self.world_from_file);
@@ -115,7 +119,9 @@ impl ImportedScene {
                 Arc::make_mut(&mut self.scene.kept).sweep = Some(Arc::new(recording));
             }
             Ok(None) => {}
-            Err(why) => self.notes.push(format!("the sweep is not kept with the scene: {why}")),
+            Err(why) => self
+                .notes
+                .push(format!("the sweep is not kept with the scene: {why}")),
         }
         self
     }

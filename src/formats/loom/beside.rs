@@ -10,8 +10,8 @@ use scene::kept::{KeptVersion, ProjectHistory};
 use scene::message::{of_lines, quoted};
 
 use super::archive::{MAX_JSON, Reader, Writer, parse, within};
-use super::{log, recording};
 use super::{LARGEST_FILE, ProjectError};
+use super::{log, recording};
 
 const KEPT: &str = "kept.json";
 

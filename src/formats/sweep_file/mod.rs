@@ -17,10 +17,10 @@ use glam::DVec3;
 use scene::{Pose, RecordedReturn};
 
 use crate::{FormatError, lzf};
-pub(crate) use pcd::{LARGEST_PCD, PcdError, PcdHeader};
 use pcd::PcdData;
-pub(crate) use ply::{PlyBody, PlyError, PlyHeader, Property};
+pub(crate) use pcd::{LARGEST_PCD, PcdError, PcdHeader};
 use ply::Encoding;
+pub(crate) use ply::{PlyBody, PlyError, PlyHeader, Property};
 use records::{RecordField, RecordOrder, Records, lines};
 use scalar::Scalar;
 
@@ -60,7 +60,10 @@ enum SweepFileKind {
     /// By the length of the file.
     Scan,
     /// By lines of a header; slots of an organized cloud stay.
-    Pcd { is_packed: bool, is_organized: bool },
+    Pcd {
+        is_packed: bool,
+        is_organized: bool,
+    },
     Ply,
 }
 
@@ -96,7 +99,9 @@ impl<'a> SweepFile<'a> {
             let far = at.is_finite() && at.length_squared() >= NEAREST_M * NEAREST_M;
             far.then(|| RecordedReturn {
                 at_m: world_from_file.apply(at).as_vec3().to_array(),
-                strength: self.strength.map_or(f32::NAN, |f| self.records.value(i, f) as f32),
+                strength: self
+                    .strength
+                    .map_or(f32::NAN, |f| self.records.value(i, f) as f32),
                 ring: self.ring(i),
             })
         });

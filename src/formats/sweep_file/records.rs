@@ -166,7 +166,9 @@ impl NewRecord {
 /// Digits behind the point of a number.
 fn decimals(word: &[u8]) -> usize {
     let point = word.iter().position(|b| *b == b'.');
-    point.map_or(0, |at| word[at + 1..].iter().take_while(|b| b.is_ascii_digit()).count())
+    point.map_or(0, |at| {
+        word[at + 1..].iter().take_while(|b| b.is_ascii_digit()).count()
+    })
 }
 
 /// Where lines that are not empty lie, with their ends: at most `count` of them.

@@ -35,7 +35,10 @@ impl SweepFile<'_> {
             }
         }
         for new in edits.added.iter().filter(|new| (new.like as usize) < count) {
-            put(self.record(new.like as usize, new, file_from_world), new.provenance);
+            put(
+                self.record(new.like as usize, new, file_from_world),
+                new.provenance,
+            );
         }
         let body = self.records.written(&records);
         let body = match self.kind {
@@ -60,7 +63,13 @@ impl SweepFile<'_> {
         let of_first = (0..self.records.count).map(|i| self.place(i));
         let is_empty = |at: &glam::DVec3| !at.is_finite() || at.length() < super::NEAREST_M;
         let first = of_first.into_iter().find(is_empty);
-        let is_organized = matches!(self.kind, SweepFileKind::Pcd { is_organized: true, .. });
+        let is_organized = matches!(
+            self.kind,
+            SweepFileKind::Pcd {
+                is_organized: true,
+                ..
+            }
+        );
         match first {
             Some(at) if at.is_finite() => Some(0.0),
             Some(_) => Some(f64::NAN),

@@ -1,23 +1,51 @@
 //! Files of any format, read with what the networks add: objects in sweeps without labels.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use formats::FormatError;
 use formats::import::{self, Content, ImportOptions, ImportedScene, Importer};
 use nets::perceiver::LidarPerceiver;
-use scene::BoxId;
+use scene::{BoxId, Scene, SensorRig, SweepRecording};
+use sensors::lidar::recorded::EditableSweep;
 
 /// Reads a file as [`import::read_with`] does; in a sweep without labels objects are found, each a guess. The file of a
-/// sweep is kept with the scene.
+/// sweep is kept with the scene, whose LiDAR gets the beams of the sweep.
 pub fn file_with(path: &Path, options: ImportOptions) -> Result<(&'static Importer, Content), FormatError> {
     let (importer, content) = import::read_with(path, options)?;
     Ok(match content {
         Content::Scene(loaded) => {
-            let loaded = with_objects(*loaded).with_recording();
+            let mut loaded = with_objects(*loaded).with_recording();
+            take_pattern(&mut loaded.scene);
             (importer, Content::Scene(Box::new(loaded)))
         }
         other => (importer, other),
     })
+}
+
+/// Gives the first LiDAR of a scene the beams of the sweep that it was imported from.
+fn take_pattern(scene: &mut Scene) {
+    let Some(recording) = scene.kept.sweep.clone() else {
+        return;
+    };
+    let Some(like) = scene.rig.lidars.first() else {
+        return;
+    };
+    let Some(pattern) = EditableSweep::new(recording.clone()).pattern(like) else {
+        return;
+    };
+    let mut rig = SensorRig::clone(&scene.rig);
+    rig.lidars[0] = pattern;
+    if rig.problem().is_some() {
+        return;
+    }
+    scene.rig = Arc::new(rig);
+    let mut before = Scene::clone(&recording.before);
+    before.rig = scene.rig.clone();
+    Arc::make_mut(&mut scene.kept).sweep = Some(Arc::new(SweepRecording {
+        before: Arc::new(before),
+        ..SweepRecording::clone(&recording)
+    }));
 }
 
 /// The scene with the objects that the network finds in its sweep, if it has one.
@@ -45,6 +73,9 @@ fn with_objects(mut loaded: ImportedScene) -> ImportedScene {
     }
 }
 
+#[cfg(test)]
+#[path = "recorded_tests.rs"]
+mod recorded_tests;
 #[cfg(test)]
 #[path = "read_tests.rs"]
 mod tests;

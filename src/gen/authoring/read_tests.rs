@@ -7,7 +7,7 @@ use scene::Scene;
 
 use super::*;
 
-fn real_sweeps() -> Option<PathBuf> {
+pub(super) fn real_sweeps() -> Option<PathBuf> {
     let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../shared/data");
     let folder = std::env::var_os("SCENELOOM_DATA").map_or_else(|| PathBuf::from(beside), PathBuf::from);
     let folder = folder.join("sweeps");
@@ -20,7 +20,7 @@ fn real_sweeps() -> Option<PathBuf> {
     }
 }
 
-fn opened(path: &Path) -> Scene {
+pub(super) fn opened(path: &Path) -> Scene {
     match file_with(path, ImportOptions::default()).expect("a sweep").1 {
         Content::Scene(loaded) => loaded.scene,
         other => panic!("{other:?}"),
@@ -85,38 +85,5 @@ fn sweeps_of_a_drive_agree() {
         let own = frame.occupancy.iter_set().filter(|v| v.3 == b.class.id());
         let inside = own.filter(|&(x, y, z, _)| b.contains(frame.extent().center(x, y, z), 0.6));
         assert!(inside.count() > 3, "{b:?}");
-    }
-}
-
-/// What is told behind a car that was never there, against what the sensor measured.
-#[test]
-fn the_ground_behind_a_removed_car_is_where_it_was() {
-    let Some(folder) = real_sweeps() else { return };
-    for name in [
-        "os1_drive/000000.pcd",
-        "vls128_junction.pcd",
-        "os0_street.pcd.bin",
-        "two_sensors/first.bin",
-        "two_sensors/second.ply",
-        "registration/source.ply",
-    ] {
-        let scene = opened(&folder.join(name));
-        let recording = scene.kept.sweep.as_ref().expect(name);
-        let since = std::time::Instant::now();
-        let trials = sensors::lidar::recorded::trial::holes(recording);
-        let mut off_m: Vec<f64> = trials.iter().flat_map(|t| &t.errors_m).map(|e| e.abs()).collect();
-        off_m.sort_by(f64::total_cmp);
-        let hidden: usize = trials.iter().map(|t| t.hidden).sum();
-        let within = |m: f64| off_m.iter().filter(|e| **e <= m).count() as f64 / hidden as f64;
-        println!(
-            "{name}: {} holes, {hidden} rays, median {:.3} m, within .1 m {:.2}, .5 m {:.2}, 2 m {:.2}; none {:.2}; {:?}",
-            trials.len(),
-            off_m.get(hidden / 2).copied().unwrap_or(f64::NAN),
-            within(0.1),
-            within(0.5),
-            within(2.0),
-            1.0 - off_m.len() as f64 / hidden as f64,
-            since.elapsed()
-        );
     }
 }

@@ -259,6 +259,7 @@ mod tests {
             ],
             rays: 10,
             physical: true,
+            provenance: Vec::new(),
         };
         product.add_sweep(&sweep, &pattern);
         let found = product.figures();

@@ -442,6 +442,7 @@ fn odd_input_is_refused_or_drawn_but_never_a_panic() {
         }],
         rays: 1,
         physical: false,
+        provenance: Vec::new(),
     };
     let scene = ViewScene {
         boxes: &[&b],

@@ -253,5 +253,6 @@ fn sweep(grid: &VoxelGrid) -> LidarSweep {
         points,
         rays: 32 * 1084,
         physical: false,
+        provenance: Vec::new(),
     }
 }

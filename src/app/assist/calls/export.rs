@@ -96,7 +96,7 @@ impl Operation for Export {
             camera_size: self.size,
             lidar: match self.learned_lidar {
                 true => LidarModel::Learned,
-                false => LidarModel::Exact,
+                false => LidarModel::Recorded,
             },
             ..ExportOptions::default()
         };

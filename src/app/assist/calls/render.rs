@@ -191,7 +191,7 @@ impl Operation for Render {
             preview: self.preview,
             lidar: match self.learned_lidar {
                 true => LidarModel::Learned,
-                false => LidarModel::Exact,
+                false => LidarModel::Recorded,
             },
             paint: None,
         };

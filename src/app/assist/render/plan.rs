@@ -13,7 +13,7 @@ use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene};
 use sensors::cameras::{self, CameraSource, SourceView, bounds};
 use sensors::lidar::learned::Drops;
-use sensors::lidar::rolling;
+use sensors::lidar::{recorded, rolling};
 
 /// Pictures of one source.
 pub struct Cameras {
@@ -25,6 +25,8 @@ pub struct Cameras {
 
 /// How the LiDAR sweep is made.
 pub enum LoadedLidarModel {
+    /// The sweep that the scene was imported from, with its edits.
+    Recorded,
     /// Every ray to the first voxel.
     Exact,
     /// By the network.
@@ -97,7 +99,8 @@ impl LoadedLidarModel {
         if scene.rig.lidars.is_empty() {
             bail!("the rig {:?} has no lidar", scene.rig.name);
         }
-        match wanted.lidar {
+        match wanted.lidar.of_scene(scene) {
+            camera_views::LidarModel::Recorded => Ok(Self::Recorded),
             camera_views::LidarModel::Exact => Ok(Self::Exact),
             camera_views::LidarModel::Learned => {
                 Ok(Self::Learned(LidarNet::bundled().context("the LiDAR network")?))
@@ -108,6 +111,9 @@ impl LoadedLidarModel {
     /// The sweep of a scene.
     pub fn sweep(&self, scene: &Scene) -> anyhow::Result<LidarSweep> {
         match self {
+            Self::Recorded => {
+                recorded::sweep_of(scene).context("the vehicle was not there when the sweep was recorded")
+            }
             Self::Exact => Ok(rolling::exact(scene)),
             Self::Learned(net) => rolling::learned(net, scene, Drops::Likely).context("the LiDAR network"),
         }

@@ -45,8 +45,8 @@ pub struct Render {
     /// One sample per pixel for appearance: several times faster, rougher edges.
     #[arg(long)]
     preview: bool,
-    /// How the LiDAR sweep comes about.
-    #[arg(long, value_name = "MODEL", value_parser = ["exact", "learned"], default_value = "exact")]
+    /// How the LiDAR sweep comes about; recorded is exact for a scene that was not imported from a sweep.
+    #[arg(long, value_name = "MODEL", value_parser = ["recorded", "exact", "learned"], default_value = "recorded")]
     lidar: String,
     /// Folder to write into.
     #[arg(short, long, value_name = "DIR")]
@@ -91,7 +91,8 @@ impl Render {
             preview: self.preview,
             lidar: match self.lidar.as_str() {
                 "learned" => LidarModel::Learned,
-                _ => LidarModel::Exact,
+                "exact" => LidarModel::Exact,
+                _ => LidarModel::Recorded,
             },
             paint,
         };

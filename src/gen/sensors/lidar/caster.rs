@@ -164,6 +164,7 @@ impl Caster {
             points: self.found.iter().enumerate().filter_map(end).collect(),
             rays: self.found.len(),
             physical: false,
+            provenance: Vec::new(),
         }
     }
 

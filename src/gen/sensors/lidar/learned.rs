@@ -222,6 +222,7 @@ pub fn points(
         points,
         rays: rays.len(),
         physical: true,
+        provenance: Vec::new(),
     }
 }
 

@@ -1,12 +1,19 @@
-//! Rays of a recorded sweep from which nothing came back: gaps between the returns of a beam.
+//! Beams of a recorded sweep: the returns beside one on its beam, and the rays from which nothing came back.
+
+use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
-use scene::{Pose, RecordedReturn, SweepRecording};
+use scene::{LidarPattern, Pose, RecordedReturn, SweepRecording};
 
 /// Beams of a sweep at most.
 const MOST_BEAMS: usize = 256;
 /// Largest difference in elevation between neighbours of one beam where files tell no rings, rad.
-const SAME_RAD: f64 = 0.015 * std::f64::consts::PI / 180.0;
+const SAME_RAD: f64 = 0.015 * PI / 180.0;
+/// Columns of a turn, the least and the most.
+const MOST_APART: f64 = 90.0;
+const MOST_COLUMNS: f64 = 8192.0;
+/// Width of a part without any return that the sensor does not look at, degrees.
+const WIDE_DEG: usize = 60;
 /// Returns of a beam at least.
 const LEAST: usize = 20;
 /// Gap from which rays are missing, in steps of the beam, and largest gap, rad.
@@ -20,18 +27,145 @@ pub struct EmptyRay {
     pub direction: DVec3,
     /// Record of a return beside it on its beam.
     pub like: u32,
+    /// Its direction on the beam, rad.
+    azimuth_rad: f64,
+}
+
+/// The beams of a sweep; none if they cannot be told.
+#[derive(Clone, Debug, Default)]
+pub struct Beams {
+    /// Returns of each beam by their direction.
+    beams: Vec<Vec<BeamReturn>>,
+    /// Beam and place on it of each record that has a return on a beam.
+    places: Vec<Option<[u32; 2]>>,
+    /// Rays without a return.
+    pub empty: Vec<EmptyRay>,
+    /// Mean elevation of each beam in the sensor's frame, rad; the lowest first.
+    elevations_rad: Vec<f64>,
+    /// Middle step between two returns of a beam, rad.
+    step_rad: f64,
+}
+
+/// A return beside a ray on its beam.
+#[derive(Clone, Copy, Debug)]
+pub struct BesideRay {
+    /// Its record.
+    pub record: u32,
+    /// Angle between both, rad.
+    pub apart_rad: f64,
 }
 
 /// A return as its beam has it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct BeamReturn {
     azimuth_rad: f64,
     elevation_rad: f64,
     record: u32,
 }
 
-/// The rays without a return of a sweep; none if its beams cannot be told.
-pub fn empty_rays(recording: &SweepRecording) -> Vec<EmptyRay> {
+impl Beams {
+    /// The beams of a recording.
+    pub fn new(recording: &SweepRecording) -> Self {
+        let beams = sorted_beams(recording);
+        let mut steps: Vec<f64> = beams.iter().filter_map(|beam| step(beam)).collect();
+        steps.sort_by(f64::total_cmp);
+        let mut all = Self {
+            elevations_rad: beams.iter().map(|beam| elevation(beam)).collect(),
+            step_rad: steps.get(steps.len() / 2).copied().unwrap_or_default(),
+            beams,
+            places: vec![None; recording.returns.len()],
+            empty: Vec::new(),
+        };
+        for (beam, number) in all.beams.iter().zip(0u32..) {
+            for (r, at) in beam.iter().zip(0u32..) {
+                all.places[r.record as usize] = Some([number, at]);
+            }
+            fill_gaps(beam, &recording.world_from_file, &mut all.empty);
+        }
+        all
+    }
+
+    /// The beam of a record, 0 for the lowest; of a return on no beam the one nearest to its elevation in rad. `None` without
+    /// beams.
+    pub fn ring(&self, record: u32, elevation_rad: f64) -> Option<u16> {
+        if let Some([beam, _]) = self.places.get(record as usize).copied().flatten() {
+            return Some(beam as u16);
+        }
+        let off = |i: &usize| (self.elevations_rad[*i] - elevation_rad).abs();
+        let nearest = (0..self.elevations_rad.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
+        nearest.map(|ring| ring as u16)
+    }
+
+    /// The pattern of the sensor, with what its beams do not tell from another one. `None` without beams.
+    pub fn pattern(&self, recording: &SweepRecording, like: &LidarPattern) -> Option<LidarPattern> {
+        let turn = recording.world_from_file.rotation;
+        let columns = (TAU / self.step_rad).round();
+        if self.elevations_rad.is_empty() || !(MOST_APART..=MOST_COLUMNS).contains(&columns) {
+            return None;
+        }
+        let [first_deg, sector_deg] = sector(self.beams.iter().flatten());
+        Some(LidarPattern {
+            elevations_deg: self.elevations_rad.iter().map(|e| e.to_degrees()).collect(),
+            columns: columns as u32,
+            first_azimuth_deg: first_deg,
+            sector_deg,
+            rotation_wxyz: [turn.w, turn.x, turn.y, turn.z],
+            translation_m: recording.sensor_m.to_array(),
+            ..like.clone()
+        })
+    }
+
+    /// The nearest returns on both sides of a record on its beam, of those that are `there`, at most [`WIDEST_RAD`] away.
+    pub fn beside(&self, record: u32, there: impl Fn(u32) -> bool) -> [Option<BesideRay>; 2] {
+        let Some([beam, at]) = self.places.get(record as usize).copied().flatten() else {
+            return [None; 2];
+        };
+        let beam = &self.beams[beam as usize];
+        let azimuth_rad = beam[at as usize].azimuth_rad;
+        self.around(beam, at as usize, azimuth_rad, there)
+    }
+
+    /// The same for a ray without a return.
+    pub fn beside_empty(&self, ray: &EmptyRay, there: impl Fn(u32) -> bool) -> [Option<BesideRay>; 2] {
+        let Some([beam, at]) = self.places.get(ray.like as usize).copied().flatten() else {
+            return [None; 2];
+        };
+        self.around(&self.beams[beam as usize], at as usize, ray.azimuth_rad, there)
+    }
+
+    fn around(
+        &self,
+        beam: &[BeamReturn],
+        at: usize,
+        azimuth_rad: f64,
+        there: impl Fn(u32) -> bool,
+    ) -> [Option<BesideRay>; 2] {
+        let n = beam.len();
+        let apart = |r: &BeamReturn, forward: bool| match forward {
+            true => (r.azimuth_rad - azimuth_rad).rem_euclid(TAU),
+            false => (azimuth_rad - r.azimuth_rad).rem_euclid(TAU),
+        };
+        [false, true].map(|forward| {
+            let order = (0..n).map(|i| match forward {
+                true => (at + i) % n,
+                false => (at + n - i) % n,
+            });
+            let near = order
+                .map(|i| (&beam[i], apart(&beam[i], forward)))
+                .skip_while(|(_, apart)| *apart > PI)
+                .take_while(|(_, apart)| *apart <= WIDEST_RAD);
+            near.filter(|(r, _)| there(r.record))
+                .map(|(r, apart_rad)| BesideRay {
+                    record: r.record,
+                    apart_rad,
+                })
+                .next()
+        })
+    }
+}
+
+/// Returns of each beam by their direction.
+fn sorted_beams(recording: &SweepRecording) -> Vec<Vec<BeamReturn>> {
     let file_from_world = recording.world_from_file.inverse();
     let sensor = file_from_world.apply(recording.sensor_m);
     let places = recording.returns.iter().zip(0..).filter_map(|(r, record)| {
@@ -45,12 +179,44 @@ pub fn empty_rays(recording: &SweepRecording) -> Vec<EmptyRay> {
         };
         Some((r.ring, of_beam))
     });
-    let mut rays = Vec::new();
-    for mut beam in beams(places.collect()) {
+    let mut beams = beams(places.collect());
+    for beam in &mut beams {
         beam.sort_by(|a, b| a.azimuth_rad.total_cmp(&b.azimuth_rad));
-        fill_gaps(&beam, &recording.world_from_file, &mut rays);
     }
-    rays
+    beams.sort_by(|a, b| elevation(a).total_cmp(&elevation(b)));
+    beams
+}
+
+/// Mean elevation of a beam, rad.
+fn elevation(beam: &[BeamReturn]) -> f64 {
+    beam.iter().map(|r| r.elevation_rad).sum::<f64>() / beam.len().max(1) as f64
+}
+
+/// Angle from a return to the next on its beam, rad.
+fn gap(a: &BeamReturn, b: &BeamReturn) -> f64 {
+    (b.azimuth_rad - a.azimuth_rad).rem_euclid(TAU)
+}
+
+/// Middle step of a beam, rad.
+fn step(beam: &[BeamReturn]) -> Option<f64> {
+    let mut steps: Vec<f64> = beam.windows(2).map(|two| gap(&two[0], &two[1])).collect();
+    steps.retain(|step| *step > 1e-5);
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied()
+}
+
+/// First direction and width of the sector that returns come from, degrees: all round unless a wide part is empty.
+fn sector<'a>(returns: impl Iterator<Item = &'a BeamReturn>) -> [f64; 2] {
+    let mut seen = [false; 360];
+    for r in returns {
+        seen[(r.azimuth_rad.to_degrees().rem_euclid(360.0) as usize).min(359)] = true;
+    }
+    let empty_from = |from: usize| (0..360).take_while(|i| !seen[(from + i) % 360]).count();
+    let widest = (0..360).max_by_key(|from| empty_from(*from)).unwrap_or(0);
+    match empty_from(widest) {
+        wide if wide < WIDE_DEG || wide == 360 => [0.0, 360.0],
+        wide => [((widest + wide) % 360) as f64, (360 - wide) as f64],
+    }
 }
 
 /// Returns by beam: by ring, or by elevation if there are no rings.
@@ -82,15 +248,7 @@ fn thickness(beam: &[BeamReturn]) -> f64 {
 }
 
 fn fill_gaps(beam: &[BeamReturn], world_from_file: &Pose, rays: &mut Vec<EmptyRay>) {
-    let gap = |a: &BeamReturn, b: &BeamReturn| {
-        (b.azimuth_rad - a.azimuth_rad).rem_euclid(std::f64::consts::TAU)
-    };
-    let mut steps: Vec<f64> = beam.windows(2).map(|two| gap(&two[0], &two[1])).collect();
-    steps.retain(|step| *step > 1e-5);
-    steps.sort_by(f64::total_cmp);
-    let Some(step) = steps.get(steps.len() / 2).copied() else {
-        return;
-    };
+    let Some(step) = step(beam) else { return };
     let Some((first, last)) = beam.first().zip(beam.last()) else {
         return;
     };
@@ -110,6 +268,7 @@ fn fill_gaps(beam: &[BeamReturn], world_from_file: &Pose, rays: &mut Vec<EmptyRa
             rays.push(EmptyRay {
                 direction: world_from_file.rotation * in_file,
                 like: if share < 0.5 { a.record } else { b.record },
+                azimuth_rad: azimuth,
             });
         }
     }

@@ -113,10 +113,14 @@ impl SceneChanges {
         let redrawn: Vec<bool> = cells.map(|(a, b)| a != b).collect();
         let mut new = VoxelGrid::over(extent);
         let mut any_new = false;
-        let columns = was.occupancy.changed_bricks(&occupancy).into_iter().flat_map(|brick| {
-            let ([x0, y0], [nx, ny]) = was.occupancy.brick_columns(brick);
-            (x0..x0 + nx).flat_map(move |x| (y0..y0 + ny).map(move |y| [x, y]))
-        });
+        let columns = was
+            .occupancy
+            .changed_bricks(&occupancy)
+            .into_iter()
+            .flat_map(|brick| {
+                let ([x0, y0], [nx, ny]) = was.occupancy.brick_columns(brick);
+                (x0..x0 + nx).flat_map(move |x| (y0..y0 + ny).map(move |y| [x, y]))
+            });
         for [x, y] in columns {
             let is_touched = redrawn[extent.index(x, y)] || touched.contains(&[x, y]);
             let (old, now, paint) = (
@@ -167,7 +171,9 @@ fn is_correction(old: &SceneBox, new: &SceneBox, holds: &impl Fn(&SceneBox, f64)
 /// A box on the measured ground in place of that of the scene.
 fn on_ground(b: &SceneBox, frame: &Frame, ground: &GroundMap) -> SceneBox {
     let p = b.center_m.truncate();
-    let up_m = ground.height_m(p).map_or(0.0, |m| m - frame.layout.relief.height_m(p));
+    let up_m = ground
+        .height_m(p)
+        .map_or(0.0, |m| m - frame.layout.relief.height_m(p));
     SceneBox {
         center_m: b.center_m + DVec3::Z * up_m,
         ..*b

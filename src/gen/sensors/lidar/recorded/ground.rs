@@ -143,7 +143,9 @@ fn square_at(corner: DVec2, p: DVec2) -> Option<usize> {
 /// The lowest return of a square that two others lie just above; of few returns the lowest. Sorts the returns by height.
 fn lowest(returns: &mut [(DVec3, f32)]) -> Option<f64> {
     returns.sort_by(|a, b| a.0.z.total_cmp(&b.0.z));
-    let supported = returns.windows(3).find(|three| three[2].0.z - three[0].0.z <= SUPPORT_M);
+    let supported = returns
+        .windows(3)
+        .find(|three| three[2].0.z - three[0].0.z <= SUPPORT_M);
     let lowest = supported.and_then(|three| three.first()).or(match returns.len() {
         1 | 2 => returns.first(),
         _ => None,
@@ -211,7 +213,9 @@ fn patch(corner: DVec2, means: &[Option<GroundSquare>], i: usize) -> Option<Grou
     let (mut strength, mut weights) = (0.0, 0.0);
     for square in &known {
         let d = square.middle.truncate() - middle;
-        let w = (-d.length_squared() / (2.0 * WEIGHT_M * WEIGHT_M)).exp().max(1e-9);
+        let w = (-d.length_squared() / (2.0 * WEIGHT_M * WEIGHT_M))
+            .exp()
+            .max(1e-9);
         let row = [1.0, d.x, d.y];
         for (a, sum) in sums.iter_mut().enumerate() {
             for b in 0..3 {

@@ -25,14 +25,14 @@ use numeric::splitmix::{hash, scatter};
 use rayon::prelude::*;
 use scene::solid::Solid;
 use scene::{
-    Class, Lattice, LidarPoint, LidarSweep, Provenance, RecordedReturn, Scene, SceneBox, SweepEdits,
-    SweepRecording, SyntheticReturn,
+    Class, Lattice, LidarPattern, LidarPoint, LidarSweep, Provenance, RecordedReturn, Scene, SceneBox,
+    SweepEdits, SweepRecording, SyntheticReturn,
 };
 use world::objects;
 
 use crate::pictures::march::solids::SolidIndex;
 use crate::raycast::ColumnMasks;
-use beams::EmptyRay;
+use beams::{Beams, BesideRay};
 use changes::{BESIDE_M, LOWEST_M, SceneChanges};
 use ground::GroundMap;
 use surfaces::StandingReturns;
@@ -50,13 +50,26 @@ const STANDING_M: f64 = 0.3;
 /// Rays that one thread works on in a row.
 const RAYS: usize = 2048;
 
+/// The recording of a scene, if its vehicle stands where it was recorded at the moment that is shown.
+pub fn recording_of(scene: &Scene) -> Option<&Arc<SweepRecording>> {
+    let recording = scene.kept.sweep.as_ref()?;
+    let there = recording.before.frame().world_from_ego;
+    (scene.frame().world_from_ego == there).then_some(recording)
+}
+
+/// The recorded sweep of a scene after its edits, in the world frame; `None` if it has none.
+pub fn sweep_of(scene: &Scene) -> Option<LidarSweep> {
+    let sweep = EditableSweep::new(recording_of(scene)?.clone());
+    Some(sweep.sweep(&sweep.edits(scene), scene))
+}
+
 /// A recorded sweep, with what its returns tell of the ground and of surfaces.
 #[derive(Debug)]
 pub struct EditableSweep {
     recording: Arc<SweepRecording>,
     ground: GroundMap,
     standing: StandingReturns,
-    empty: Vec<EmptyRay>,
+    beams: Beams,
     /// Median strength of returns by class, and of all.
     strengths: BTreeMap<Class, f32>,
     strength: f32,
@@ -87,7 +100,13 @@ impl EditableSweep {
         let before = recording.before.clone();
         let boxes: Vec<SceneBox> = before.frame().boxes.values().copied().collect();
         let sensor = recording.sensor_m;
-        let returns = || recording.returns.iter().zip(0u32..).filter_map(|(r, i)| Some(((*r)?, i)));
+        let returns = || {
+            recording
+                .returns
+                .iter()
+                .zip(0u32..)
+                .filter_map(|(r, i)| Some(((*r)?, i)))
+        };
         let near = |r: &RecordedReturn| r.place().distance_squared(sensor) > 1.0;
         let in_a_box = |p: DVec3| {
             let over = |b: &SceneBox| {
@@ -111,11 +130,14 @@ impl EditableSweep {
         let standing = StandingReturns::new(sensor, standing);
         let mut by_class: BTreeMap<Class, Vec<f32>> = BTreeMap::new();
         for (r, _) in returns().filter(|(r, _)| r.strength.is_finite()) {
-            by_class.entry(class_of(&before, &r)).or_default().push(r.strength);
+            by_class
+                .entry(class_of(&before, &r))
+                .or_default()
+                .push(r.strength);
         }
         let mut all: Vec<f32> = by_class.values().flatten().copied().collect();
         Self {
-            empty: beams::empty_rays(&recording),
+            beams: Beams::new(&recording),
             strength: median(&mut all),
             strengths: by_class
                 .into_iter()
@@ -131,6 +153,11 @@ impl EditableSweep {
     /// The recording.
     pub fn recording(&self) -> &Arc<SweepRecording> {
         &self.recording
+    }
+
+    /// The pattern of the sensor, with what the sweep does not tell from another one; `None` if its beams cannot be told.
+    pub fn pattern(&self, like: &LidarPattern) -> Option<LidarPattern> {
+        self.beams.pattern(&self.recording, like)
     }
 
     /// The changes that edits of its scene make to it, in the scene's moment that is shown. They do not depend on the number of
@@ -149,14 +176,20 @@ impl EditableSweep {
             let range_m = way.length();
             let direction = way.try_normalize()?;
             let end = match gone[i] {
-                true => self.end(direction, range_m - STANDING_M, &new, Some(&gone)),
+                true => {
+                    let beside = self.beams.beside(i as u32, |record| !gone[record as usize]);
+                    self.end(direction, range_m - STANDING_M, &new, &gone, beside)
+                }
                 false => Some(new.met_by(self.recording.sensor_m, direction, range_m - BEFORE_M)?)
                     .map(|(t_m, class)| self.added(t_m, class)),
             };
-            Some((i as u32, end.map(|end| self.synthetic(&end, direction, i as u32, i as u64))))
+            Some((
+                i as u32,
+                end.map(|end| self.synthetic(&end, direction, i as u32, i as u64)),
+            ))
         });
         let changed: BTreeMap<u32, Option<SyntheticReturn>> = changed.collect();
-        let empty = self.empty.par_iter().enumerate().with_min_len(RAYS);
+        let empty = self.beams.empty.par_iter().enumerate().with_min_len(RAYS);
         let added = empty.filter_map(|(i, ray)| {
             let opened = changes
                 .gone
@@ -164,7 +197,10 @@ impl EditableSweep {
                 .filter_map(|b| entered(b, self.recording.sensor_m, ray.direction))
                 .min_by(f64::total_cmp);
             let end = match opened {
-                Some(from_m) => self.end(ray.direction, from_m, &new, Some(&gone))?,
+                Some(from_m) => {
+                    let beside = self.beams.beside_empty(ray, |record| !gone[record as usize]);
+                    self.end(ray.direction, from_m, &new, &gone, beside)?
+                }
                 None => {
                     let (t_m, class) = new.met_by(self.recording.sensor_m, ray.direction, FARTHEST_M)?;
                     self.added(t_m, class)
@@ -188,37 +224,48 @@ impl EditableSweep {
             _ => 1.0,
         };
         let sensor = self.recording.sensor_m;
-        let point = |at: DVec3, strength: f32, ring: u16, class: Class| LidarPoint {
-            position_in_ego: at.as_vec3().to_array(),
-            range_m: (at - sensor).length() as f32,
-            ring: if ring == RecordedReturn::NO_RING { 0 } else { ring },
-            azimuth: 0,
-            class,
-            intensity: match strength.is_finite() {
-                true => (strength * strongest).clamp(0.0, 255.0),
-                false => 0.0,
-            },
-            drop_probability: 0.0,
-            time_s: 0.0,
-            velocity_mps: [0.0; 2],
-        };
-        let ring_of = |record: u32| {
-            let like = self.recording.returns.get(record as usize).copied().flatten();
-            like.map_or(RecordedReturn::NO_RING, |r| r.ring)
-        };
-        let synthetic = |s: &SyntheticReturn| point(s.at_m, s.strength, ring_of(s.like), s.class);
-        let recorded = self.recording.returns.par_iter().enumerate().filter_map(|(i, r)| {
-            match edits.changed.get(&(i as u32)) {
-                Some(instead) => instead.as_ref().map(synthetic),
-                None => r.map(|r| point(r.place(), r.strength, r.ring, class_of(scene, &r))),
+        let file_from_world = self.recording.world_from_file.inverse().rotation;
+        let columns = scene.rig.lidars.first().map_or(1, |lidar| lidar.columns.max(1));
+        let point = |at: DVec3, strength: f32, record: u32, class: Class| {
+            let way = file_from_world * (at - sensor);
+            let turn = way.y.atan2(way.x).rem_euclid(TAU) / TAU;
+            let up_rad = way.z.atan2(way.truncate().length());
+            LidarPoint {
+                position_in_ego: at.as_vec3().to_array(),
+                range_m: (at - sensor).length() as f32,
+                ring: self.beams.ring(record, up_rad).unwrap_or_default(),
+                azimuth: (turn * f64::from(columns)) as u16,
+                class,
+                intensity: match strength.is_finite() {
+                    true => (strength * strongest).clamp(0.0, 255.0),
+                    false => 0.0,
+                },
+                drop_probability: 0.0,
+                time_s: 0.0,
+                velocity_mps: [0.0; 2],
             }
-        });
-        let mut points: Vec<LidarPoint> = recorded.collect();
+        };
+        let synthetic = |s: &SyntheticReturn| point(s.at_m, s.strength, s.like, s.class);
+        let recorded = self
+            .recording
+            .returns
+            .par_iter()
+            .enumerate()
+            .filter_map(|(i, r)| match edits.changed.get(&(i as u32)) {
+                Some(instead) => instead.as_ref().map(|new| (synthetic(new), new.provenance)),
+                None => {
+                    let of_file = r.map(|r| point(r.place(), r.strength, i as u32, class_of(scene, &r)));
+                    of_file.map(|point| (point, Provenance::Recorded))
+                }
+            });
+        let (mut points, mut provenance): (Vec<LidarPoint>, Vec<Provenance>) = recorded.unzip();
         points.extend(edits.added.iter().map(synthetic));
+        provenance.extend(edits.added.iter().map(|new| new.provenance));
         LidarSweep {
             points,
-            rays: self.recording.returns.len() + self.empty.len(),
+            rays: self.recording.returns.len() + self.beams.empty.len(),
             physical: true,
+            provenance,
         }
     }
 
@@ -233,7 +280,11 @@ impl EditableSweep {
     /// Records whose returns are in a box, but for those on the ground below it.
     fn held(&self, b: &SceneBox, beside_m: f64) -> impl Iterator<Item = usize> {
         let bottom_m = b.center_m.z - b.size_m.z / 2.0;
-        let (reach, middle, b) = (b.size_m.truncate().length() / 2.0 + beside_m, b.center_m.truncate(), *b);
+        let (reach, middle, b) = (
+            b.size_m.truncate().length() / 2.0 + beside_m,
+            b.center_m.truncate(),
+            *b,
+        );
         let returns = self.recording.returns.iter().enumerate();
         returns.filter_map(move |(i, r)| {
             let at = (*r)?.place();
@@ -249,7 +300,9 @@ impl EditableSweep {
         let others: Vec<&SceneBox> = changes.kept.iter().collect();
         for b in &changes.gone {
             for i in self.held(b, BESIDE_M) {
-                let Some(r) = self.recording.returns[i] else { continue };
+                let Some(r) = self.recording.returns[i] else {
+                    continue;
+                };
                 gone[i] = !others.iter().any(|other| other.contains(r.place(), 0.0));
             }
         }
@@ -262,12 +315,23 @@ impl EditableSweep {
         gone
     }
 
-    /// What a ray meets beyond a distance, where something was taken away.
-    fn end(&self, direction: DVec3, from_m: f64, new: &NewSolids, gone: Option<&[bool]>) -> Option<RayEnd> {
+    /// What a ray meets beyond a distance, where something was taken away. `beside` are the returns that stay on both sides of
+    /// it on its beam.
+    fn end(
+        &self,
+        direction: DVec3,
+        from_m: f64,
+        new: &NewSolids,
+        gone: &[bool],
+        beside: [Option<BesideRay>; 2],
+    ) -> Option<RayEnd> {
         let sensor = self.recording.sensor_m;
-        let there = |record: u32| gone.is_none_or(|gone| !gone[record as usize]);
+        let there = |record: u32| !gone[record as usize];
         let added = new.met_by(sensor, direction, FARTHEST_M);
-        let ground = self.ground.met_by(sensor, direction, FARTHEST_M).map(|t_m| {
+        // The beam's own error of height, and relief finer than the map, go on between its returns.
+        let above_m = self.ground_offset_m(beside);
+        let from = sensor - DVec3::Z * above_m;
+        let ground = self.ground.met_by(from, direction, FARTHEST_M).map(|t_m| {
             let at = sensor + direction * t_m;
             RayEnd {
                 t_m,
@@ -289,6 +353,19 @@ impl EditableSweep {
         let ends = [added, ground, surface].into_iter().flatten();
         ends.min_by(|a, b| a.t_m.total_cmp(&b.t_m))
             .filter(|end| end.t_m >= NEAREST_M)
+    }
+
+    /// Height of the ground above the map's, as returns of a beam on both sides of a ray have it, m.
+    fn ground_offset_m(&self, beside: [Option<BesideRay>; 2]) -> f64 {
+        let on_ground = |b: BesideRay| {
+            let above_m = f64::from(self.heights_m[b.record as usize]);
+            (above_m.abs() < STANDING_M).then_some((above_m, b.apart_rad))
+        };
+        match beside.map(|b| b.and_then(on_ground)) {
+            [Some((a_m, a)), Some((b_m, b))] if a + b > 0.0 => (a_m * b + b_m * a) / (a + b),
+            [Some((m, _)), _] | [None, Some((m, _))] => m,
+            [None, None] => 0.0,
+        }
     }
 
     fn ground_class(&self, at: DVec3) -> Class {
@@ -333,7 +410,11 @@ impl NewSolids {
         for b in &changes.added {
             let mut solids = Vec::new();
             objects::object(b, seed, &mut solids);
-            windows.push(window(b.center_m.truncate(), b.size_m.truncate().length() / 2.0, sensor));
+            windows.push(window(
+                b.center_m.truncate(),
+                b.size_m.truncate().length() / 2.0,
+                sensor,
+            ));
             match solids.is_empty() {
                 true => boxes.push(*b),
                 false => groups.push(solids),
@@ -372,7 +453,10 @@ impl NewSolids {
             let voxel_m = Lattice::OCC3D.voxel_m();
             let from = grid.extent().to_voxel_units(origin);
             let (t, [x, y, z]) = masks.cast_in_voxels(from, direction, limit_m / voxel_m)?;
-            Some((t * voxel_m, Class::from_id(grid.get(x, y, z)).unwrap_or(Class::Others)))
+            Some((
+                t * voxel_m,
+                Class::from_id(grid.get(x, y, z)).unwrap_or(Class::Others),
+            ))
         });
         let all = boxes.chain(solid).chain(voxel);
         all.min_by(|a, b| a.0.total_cmp(&b.0))
@@ -390,7 +474,10 @@ fn window(middle: DVec2, radius_m: f64, sensor: DVec3) -> [f64; 2] {
 
 /// Distance at which a ray enters a box, m.
 fn entered(b: &SceneBox, origin: DVec3, direction: DVec3) -> Option<f64> {
-    let (from, way) = (b.to_local(origin), b.to_local(origin + direction) - b.to_local(origin));
+    let (from, way) = (
+        b.to_local(origin),
+        b.to_local(origin + direction) - b.to_local(origin),
+    );
     let half = b.size_m / 2.0;
     let (mut near, mut far) = (0.0f64, f64::INFINITY);
     for axis in 0..3 {

@@ -9,6 +9,8 @@ const WIDE_RAD: f64 = 0.25 * std::f64::consts::PI / 180.0;
 const DIRECTIONS: usize = 1440;
 /// Largest distance between two returns of one surface in a direction, m.
 const APART_M: f64 = 0.4;
+/// Distance behind a surface from which a return that is seen below it lies beyond it, m.
+const BEYOND_M: f64 = 1.0;
 /// Returns of a surface at least.
 const LEAST: usize = 4;
 /// Height above the ground down to which a surface must be seen, and its least height, m.
@@ -31,6 +33,8 @@ struct StandingReturn {
     height_m: f64,
     /// Height in the frame of the ray, m.
     z: f64,
+    /// Rise of its ray, m for each m along the ground.
+    rise: f64,
     strength: f32,
 }
 
@@ -55,6 +59,7 @@ impl StandingReturns {
                 far_m: way.length(),
                 height_m,
                 z: at.z,
+                rise: (at.z - sensor.z) / way.length().max(1e-6),
                 strength,
             });
         }
@@ -76,11 +81,19 @@ impl StandingReturns {
             .collect();
         returns.sort_by(|a, b| a.far_m.total_cmp(&b.far_m));
         let surfaces = returns.chunk_by(|a, b| b.far_m - a.far_m <= APART_M);
+        let rise = way.z / cos.max(1e-6);
         surfaces.into_iter().find_map(|surface| {
             let low = surface.iter().map(|r| r.height_m).fold(f64::INFINITY, f64::min);
             let high = surface.iter().map(|r| r.height_m).fold(0.0, f64::max);
             let top_z = surface.iter().map(|r| r.z).fold(f64::NEG_INFINITY, f64::max);
             if surface.len() < LEAST || low > SEEN_M || high - low < TALL_M {
+                return None;
+            }
+            // What is seen below a surface and beyond it shows that it does not go on.
+            let lowest_rise = surface.iter().map(|r| r.rise).fold(f64::INFINITY, f64::min);
+            let end_m = surface.last().map_or(0.0, |r| r.far_m) + BEYOND_M;
+            let is_below = |r: &&&StandingReturn| r.rise > rise && r.rise < lowest_rise;
+            if returns.iter().filter(is_below).any(|r| r.far_m > end_m) {
                 return None;
             }
             // The lower part of a surface that leans is nearest to its lowest returns.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use scene::{BoxId, Class, Frame, RecordedReturn, Scene, SceneBox, SweepRecording};
 
+use super::changes::LOWEST_M;
 use super::{EditableSweep, entered};
 
 /// Size of the car, m.
@@ -63,11 +64,17 @@ fn trial(recording: &Arc<SweepRecording>, car: &SceneBox) -> Option<HoleTrial> {
     let sensor = recording.sensor_m;
     let (mut returns, mut hidden) = (recording.returns.to_vec(), Vec::new());
     for (i, r) in returns.iter_mut().enumerate() {
-        let Some(way) = r.map(|r| r.place() - sensor) else { continue };
+        let Some(way) = r.map(|r| r.place() - sensor) else {
+            continue;
+        };
         let direction = way.normalize_or_zero();
         let Some(t_m) = entered(car, sensor, direction).filter(|t| *t < way.length()) else {
             continue;
         };
+        let lowest_m = car.center_m.z - CAR_M.z / 2.0 + 2.0 * LOWEST_M;
+        if (sensor + direction * t_m).z < lowest_m {
+            continue;
+        }
         hidden.push((i as u32, way.length()));
         // A little inside, as returns on its faces are its own.
         let at = sensor + direction * (t_m + 0.01);

@@ -1,0 +1,40 @@
+//! The sweep that a scene was imported from, in the format of its file, with its edits.
+
+use scene::{Provenance, Scene};
+
+use super::{ExportSpan, Exporter, OutFile, Product, Products};
+use crate::sweep_file::SweepFile;
+use crate::{FormatError, Holds};
+
+/// Ending of the file of origins: a byte for each record, the number of its [`Provenance`].
+const ORIGINS: &str = ".provenance";
+
+/// The file under its own name, and the origin of each of its records beside it. Records that no edit touches keep their
+/// bytes; without edits the file is the same.
+pub const EXPORTER: Exporter = Exporter {
+    id: "recording",
+    title: "LiDAR: the imported sweep in its own format, only what edits touch changed",
+    file_name: None,
+    holds: &[Holds::Points],
+    lost: "classes and boxes: only the returns of the sweep are written",
+    span: ExportSpan::Moment,
+    needs: &[Product::Recording],
+    write,
+};
+
+fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, FormatError> {
+    let edits = products.sweep_edits()?;
+    let Some(recording) = &scene.kept.sweep else {
+        return Err(FormatError::new("the scene was not imported from a sweep"));
+    };
+    let file = SweepFile::open(&recording.file, &recording.bytes)?;
+    let (bytes, origins) = file.edited(&edits, &recording.world_from_file.inverse());
+    let origins: Vec<u8> = origins
+        .into_iter()
+        .map(|origin: Provenance| origin as u8)
+        .collect();
+    Ok(vec![
+        OutFile::new(&recording.file, bytes),
+        OutFile::new(&format!("{}{ORIGINS}", recording.file), origins),
+    ])
+}
