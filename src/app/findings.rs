@@ -8,7 +8,7 @@ use crate::camera_views::march;
 use editor::checks::{self, Finding, VisibilityCounts};
 use formats::physical;
 use scene::{BoxId, LidarPoint, Pose, Returns, Scene};
-use sensors::lidar::rolling;
+use sensors::lidar::recorded;
 use sensors::splat::PREVIEW_SIZE;
 
 /// Counts the camera pixels and LiDAR returns of every box of the current frame. Pixels come from exact rays to voxels
@@ -39,7 +39,7 @@ pub fn seen(scene: &Scene) -> VisibilityCounts {
         pixels
     });
     let lidar_returns = (!scene.rig.lidars.is_empty()).then(|| {
-        let mut sweep = rolling::exact(scene);
+        let mut sweep = recorded::sweep_or_exact(scene);
         sweep.place(&frame.world_from_ego.inverse());
         let lidar = scene.rig.standing_at(&Pose::IDENTITY).lidars[0].ego_from_sensor();
         physical::to_physical_ground(&mut sweep, lidar.translation_m, frame);
@@ -68,6 +68,7 @@ mod tests {
     use crate::open;
     use editor::{Apply, Edit};
     use scene::{BoxLabel, Class, Extent, Key, Motion, Window};
+    use sensors::lidar::rolling;
 
     #[test]
     fn sensors_see_near_boxes_and_not_those_inside_a_wall() {

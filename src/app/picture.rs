@@ -11,7 +11,7 @@ use scene::{
 };
 use sensors::cameras::bounds;
 use sensors::pictures::appearance::AppearanceCache;
-use sensors::{lidar::rolling, pictures::color};
+use sensors::{lidar::recorded, pictures::color};
 use viewport::{
     Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     headless_device, lidar_colors,
@@ -281,7 +281,7 @@ impl View3d {
         let scene = &*scene.with_rig_in_world();
         let frame = scene.frame();
         let sweep = match options.lidar {
-            true => rolling::exact(&of_sensors.for_sensors()),
+            true => recorded::sweep_or_exact(&of_sensors.for_sensors()),
             false => LidarSweep::default(),
         };
         let colors = lidar_colors(&sweep, LidarColorMode::Range);

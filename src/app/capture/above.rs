@@ -5,7 +5,7 @@ use image::imageops::{FilterType, resize};
 
 use scene::raster::box_cells;
 use scene::{BevLayer, BoxId, Class, Extent, Scene, SceneBox};
-use sensors::lidar::rolling;
+use sensors::lidar::recorded;
 
 use super::{BEHIND, Subject};
 use crate::picture::{self, RgbaPicture};
@@ -33,7 +33,7 @@ pub(super) fn picture(scene: &Scene, subject: Subject, size: [u32; 2]) -> anyhow
     let scale = wanted.ceil().max(1.0) as usize;
     let drawn = match subject {
         Subject::Occupancy => picture::occupancy_top(&frame.occupancy, scale),
-        Subject::Lidar => picture::lidar_top(extent, &rolling::exact(&scene.for_sensors()), scale),
+        Subject::Lidar => picture::lidar_top(extent, &recorded::sweep_or_exact(&scene.for_sensors()), scale),
         _ => map(scene, scale),
     };
     let [w, h] = [extent.ny(), extent.nx()].map(|n| ((n as f64 * wanted) as u32).max(1));

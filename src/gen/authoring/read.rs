@@ -16,28 +16,26 @@ pub fn file_with(path: &Path, options: ImportOptions) -> Result<(&'static Import
     Ok(match content {
         Content::Scene(loaded) => {
             let mut loaded = with_objects(*loaded).with_recording();
-            take_pattern(&mut loaded.scene);
+            if let Some([beams, columns]) = take_pattern(&mut loaded.scene) {
+                let note =
+                    format!("the LiDAR has {beams} beams and {columns} columns a turn, as the sweep shows");
+                loaded.notes.push(note);
+            }
             (importer, Content::Scene(Box::new(loaded)))
         }
         other => (importer, other),
     })
 }
 
-/// Gives the first LiDAR of a scene the beams of the sweep that it was imported from.
-fn take_pattern(scene: &mut Scene) {
-    let Some(recording) = scene.kept.sweep.clone() else {
-        return;
-    };
-    let Some(like) = scene.rig.lidars.first() else {
-        return;
-    };
-    let Some(pattern) = EditableSweep::new(recording.clone()).pattern(like) else {
-        return;
-    };
+/// Gives the first LiDAR of a scene the beams of the sweep that it was imported from; their number, and the columns of a turn.
+fn take_pattern(scene: &mut Scene) -> Option<[usize; 2]> {
+    let recording = scene.kept.sweep.clone()?;
+    let pattern = EditableSweep::new(recording.clone()).pattern(scene.rig.lidars.first()?)?;
+    let told = [pattern.elevations_deg.len(), pattern.columns as usize];
     let mut rig = SensorRig::clone(&scene.rig);
     rig.lidars[0] = pattern;
     if rig.problem().is_some() {
-        return;
+        return None;
     }
     scene.rig = Arc::new(rig);
     let mut before = Scene::clone(&recording.before);
@@ -46,6 +44,7 @@ fn take_pattern(scene: &mut Scene) {
         before: Arc::new(before),
         ..SweepRecording::clone(&recording)
     }));
+    Some(told)
 }
 
 /// The scene with the objects that the network finds in its sweep, if it has one.

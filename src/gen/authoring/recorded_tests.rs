@@ -199,6 +199,14 @@ fn a_corrected_label_changes_no_return() {
     };
     after.change_canvas(|canvas| canvas.boxes.insert(b.id, moved));
     assert!(!sweep.edits(&after).is_empty());
+    // Not even where as many other returns are: in the place of another object.
+    let other = scene.frame().boxes.values().nth(1).expect("another box");
+    let onto = SceneBox {
+        center_m: other.center_m,
+        ..b
+    };
+    after.change_canvas(|canvas| canvas.boxes.insert(b.id, onto));
+    assert!(!sweep.edits(&after).is_empty());
 }
 
 /// What is told behind a car that was never there, against what the sensor measured.

@@ -14,7 +14,7 @@ use app::open;
 use assist::render::{RenderProgress, Rendering, check_what};
 use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
 use sensors::cameras::{SourceId, learned};
-use sensors::lidar::rolling;
+use sensors::lidar::recorded;
 use sensors::splat::{self, GaussianCloud, SplatOptions};
 
 pub use arguments::{size, source};
@@ -66,7 +66,7 @@ const LONG_S: f64 = 20.0;
 pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, LidarSweep) {
     let scene = &*scene.for_sensors();
     let frame = scene.frame();
-    let sweep = rolling::exact(scene);
+    let sweep = recorded::sweep_or_exact(scene);
     let cloud = GaussianCloud::from_grid(&frame.occupancy, frame.layout.cells());
     let maps = splat::render_rig(&cloud, &scene.rig, width, height, &SplatOptions::default());
     (maps, sweep)

@@ -1,7 +1,7 @@
 //! Predictions of a small network for the LiDAR sweep of a scene, compared with its boxes: boxes that it misses, and
 //! boxes that it sees where there are none.
 
-use crate::lidar::rolling;
+use crate::lidar::{recorded, rolling};
 use crate::pictures::painter::PaintError;
 pub use nets::perceiver::against::LEAST_RETURNS;
 use nets::perceiver::against::{Beside, against};
@@ -121,7 +121,9 @@ impl PerceivedSweep {
     fn from_scene(scene: &Scene) -> Result<Self, PaintError> {
         let network = |e: &dyn std::fmt::Display| PaintError::Network(e.to_string());
         let net = LidarPerceiver::bundled().map_err(|e| network(&e))?;
-        let sweep = rolling::of_voxels(&scene.for_sensors());
+        let of_sensors = scene.for_sensors();
+        let recorded = recorded::sweep_of(&of_sensors);
+        let sweep = recorded.unwrap_or_else(|| rolling::of_voxels(&of_sensors));
         let map_from_vehicle = scene.frame().world_from_ego;
         let perceived = net.perceive_sweep(&sweep, &map_from_vehicle);
         let perceived = perceived.map_err(|e| network(&e))?;

@@ -18,6 +18,9 @@ const CORRECTED: f64 = 0.9;
 /// Distance beyond a corrected box within which returns count as held, m.
 const CORRECTED_BESIDE_M: f64 = 0.25;
 
+/// Most that a box grows by a correction along its length or width, m.
+const CORRECTED_GROWN_M: f64 = 2.0;
+
 /// What was edited.
 #[derive(Default)]
 pub struct SceneChanges {
@@ -38,12 +41,12 @@ pub struct SceneChanges {
 }
 
 impl SceneChanges {
-    /// The changes of a scene. `holds` counts the returns of an object in a box that is wider by a distance in m.
+    /// The changes of a scene. `places` are those of the returns of an object in its box, m.
     pub fn between(
         before: &Scene,
         now: &Scene,
         ground: &GroundMap,
-        holds: impl Fn(&SceneBox, f64) -> usize,
+        places: impl Fn(&SceneBox) -> Vec<DVec3>,
     ) -> Self {
         let (was, is) = (before.frame(), now.frame());
         let mut changes = Self {
@@ -57,7 +60,7 @@ impl SceneChanges {
                 continue;
             };
             let of_now = on_ground(new, is, ground);
-            if is_same_place(b, new) || is_correction(&old, &of_now, &holds) {
+            if is_same_place(b, new) || is_correction(&old, &of_now, &places) {
                 changes.kept.push(of_now);
             } else {
                 changes.gone.push(old);
@@ -159,13 +162,15 @@ fn is_same_place(a: &SceneBox, b: &SceneBox) -> bool {
 }
 
 /// True if a box was changed so that it still holds the returns of its object.
-fn is_correction(old: &SceneBox, new: &SceneBox, holds: &impl Fn(&SceneBox, f64) -> usize) -> bool {
-    let both = [old, new].map(|b| holds(b, CORRECTED_BESIDE_M));
-    both[0] > 0 && both[1] as f64 >= CORRECTED * both[0] as f64 && {
-        // A box that holds all because it is much larger is another one.
-        let grown = new.size_m.truncate() - old.size_m.truncate();
-        grown.max_element() <= 2.0
-    }
+fn is_correction(old: &SceneBox, new: &SceneBox, places: &impl Fn(&SceneBox) -> Vec<DVec3>) -> bool {
+    let of_object = places(old);
+    let held = of_object
+        .iter()
+        .filter(|p| new.contains(**p, CORRECTED_BESIDE_M))
+        .count();
+    // A box that holds all because it is much larger is another one.
+    let grown_m = (new.size_m.truncate() - old.size_m.truncate()).max_element();
+    held > 0 && held as f64 >= CORRECTED * of_object.len() as f64 && grown_m <= CORRECTED_GROWN_M
 }
 
 /// A box on the measured ground in place of that of the scene.

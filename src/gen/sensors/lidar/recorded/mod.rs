@@ -30,6 +30,7 @@ use scene::{
 };
 use world::objects;
 
+use crate::lidar::rolling;
 use crate::pictures::march::solids::SolidIndex;
 use crate::raycast::ColumnMasks;
 use beams::{Beams, BesideRay};
@@ -61,6 +62,11 @@ pub fn recording_of(scene: &Scene) -> Option<&Arc<SweepRecording>> {
 pub fn sweep_of(scene: &Scene) -> Option<LidarSweep> {
     let sweep = EditableSweep::new(recording_of(scene)?.clone());
     Some(sweep.sweep(&sweep.edits(scene), scene))
+}
+
+/// The recorded sweep of a scene after its edits; the exact one ([`rolling::exact`]) of a scene that has none.
+pub fn sweep_or_exact(scene: &Scene) -> LidarSweep {
+    sweep_of(scene).unwrap_or_else(|| rolling::exact(scene))
 }
 
 /// A recorded sweep, with what its returns tell of the ground and of surfaces.
@@ -163,8 +169,11 @@ impl EditableSweep {
     /// The changes that edits of its scene make to it, in the scene's moment that is shown. They do not depend on the number of
     /// threads.
     pub fn edits(&self, scene: &Scene) -> SweepEdits {
-        let holds = |b: &SceneBox, beside_m: f64| self.held(b, beside_m).count();
-        let changes = SceneChanges::between(&self.recording.before, scene, &self.ground, holds);
+        let places = |b: &SceneBox| {
+            let returns = self.held(b, BESIDE_M).filter_map(|i| self.recording.returns[i]);
+            returns.map(|r| r.place()).collect()
+        };
+        let changes = SceneChanges::between(&self.recording.before, scene, &self.ground, places);
         if changes.is_empty() {
             return SweepEdits::default();
         }
