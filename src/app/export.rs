@@ -279,11 +279,13 @@ impl Products for Making<'_> {
         Ok(sweep)
     }
 
-    fn sweep_edits(&mut self) -> Result<SweepEdits, FormatError> {
-        let recording = self.scene.kept.sweep.as_ref();
-        let recording =
-            recording.ok_or_else(|| FormatError::new("the scene was not imported from a sweep"))?;
-        Ok(EditableSweep::new(recording.clone()).edits(&self.scene))
+    fn sweep_edits(&mut self, sweep: usize) -> Result<SweepEdits, FormatError> {
+        let sweeps = &self.whole.kept.sweeps;
+        let recording = sweeps
+            .get(sweep)
+            .ok_or_else(|| FormatError::new("there is no such sweep"))?;
+        let then = self.whole.at(recording.time_s);
+        Ok(EditableSweep::new(recording.clone(), sweeps).edits(&then.for_sensors()))
     }
 
     fn radars(&mut self) -> Result<Vec<RadarScan>, FormatError> {

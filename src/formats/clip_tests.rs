@@ -190,7 +190,7 @@ impl Products for Plain {
         })
     }
 
-    fn sweep_edits(&mut self) -> Result<scene::SweepEdits, FormatError> {
+    fn sweep_edits(&mut self, _: usize) -> Result<scene::SweepEdits, FormatError> {
         Ok(scene::SweepEdits::default())
     }
 

@@ -30,7 +30,7 @@ impl Products for OneSweep {
         Ok(self.0.clone())
     }
 
-    fn sweep_edits(&mut self) -> Result<scene::SweepEdits, FormatError> {
+    fn sweep_edits(&mut self, _: usize) -> Result<scene::SweepEdits, FormatError> {
         absent()
     }
 

@@ -177,7 +177,7 @@ impl Products for Small {
         })
     }
 
-    fn sweep_edits(&mut self) -> Result<scene::SweepEdits, FormatError> {
+    fn sweep_edits(&mut self, _: usize) -> Result<scene::SweepEdits, FormatError> {
         Ok(scene::SweepEdits::default())
     }
 

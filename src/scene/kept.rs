@@ -1,4 +1,4 @@
-//! Parts of a project beside its scene: versions to return to, the texts that were typed, the log of its changes, and the sweep
+//! Parts of a project beside its scene: versions to return to, the texts that were typed, the log of its changes, and the sweeps
 //! that it was imported from.
 
 use std::sync::Arc;
@@ -16,8 +16,8 @@ pub struct ProjectHistory {
     pub log: Option<Arc<OpLog>>,
     /// Reason why the file's log cannot be used, in one line; the scene is whole all the same.
     pub log_problem: Option<Arc<str>>,
-    /// The recorded sweep that the scene was imported from.
-    pub sweep: Option<Arc<SweepRecording>>,
+    /// The recorded sweeps that the scene was imported from, by time.
+    pub sweeps: Vec<Arc<SweepRecording>>,
 }
 
 impl ProjectHistory {
@@ -29,7 +29,7 @@ impl ProjectHistory {
     /// True if there is nothing beside the scene.
     pub fn is_empty(&self) -> bool {
         let no_log = self.log.is_none() && self.log_problem.is_none();
-        self.versions.is_empty() && self.typed.is_empty() && no_log && self.sweep.is_none()
+        self.versions.is_empty() && self.typed.is_empty() && no_log && self.sweeps.is_empty()
     }
 }
 

@@ -215,6 +215,14 @@ impl Scene {
         self
     }
 
+    /// The same state with the recorded sweeps of another scene, unless it has its own: versions in a file have them of the file.
+    pub fn with_sweeps_of(mut self, other: &Self) -> Self {
+        if self.kept.sweeps.is_empty() && !other.kept.sweeps.is_empty() {
+            Arc::make_mut(&mut self.kept).sweeps = other.kept.sweeps.clone();
+        }
+        self
+    }
+
     /// Sets fresh revisions, after a change of its public fields.
     pub fn touch(&mut self) {
         self.rev = SceneRev::fresh();

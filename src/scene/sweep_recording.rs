@@ -1,4 +1,4 @@
-//! A recorded sweep that is kept with the scene that was imported from it, and what edits of the scene change in it.
+//! Recorded sweeps that are kept with the scene that was imported from them, and what edits of the scene change in one.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,6 +12,10 @@ use crate::{Class, Pose, Scene};
 pub struct SweepRecording {
     /// Name of the file, without folders.
     pub file: Arc<str>,
+    /// Id of its format in the table of importers.
+    pub format: Arc<str>,
+    /// Moment of the clip at which it was recorded, s.
+    pub time_s: f64,
     /// Bytes of the file.
     pub bytes: Arc<Vec<u8>>,
     /// Pose of the file's frame in the world frame.
@@ -25,13 +29,10 @@ pub struct SweepRecording {
 }
 
 impl SweepRecording {
-    /// Most bytes of a file that is kept.
-    pub const LARGEST: usize = 64 << 20;
-
-    /// Number of returns in the file.
-    pub fn count(&self) -> usize {
-        self.returns.iter().flatten().count()
-    }
+    /// Most bytes of the files of a scene that are kept.
+    pub const LARGEST: usize = 128 << 20;
+    /// Most sweeps of a scene.
+    pub const MOST: usize = 200;
 }
 
 /// A return of a recorded sweep.
@@ -61,27 +62,16 @@ impl RecordedReturn {
 pub enum Provenance {
     /// The sensor measured it.
     Recorded = 0,
+    /// Other sweeps of the drive measured it.
+    OtherSweep = 2,
     /// The ground around it was measured.
     Ground = 3,
     /// A ray was cast on an object, a thing or voxels that were added.
     Added = 4,
     /// A surface that was measured nearby is continued.
     Continued = 5,
-}
-
-impl Provenance {
-    /// All of them, by number.
-    pub const ALL: [Self; 4] = [Self::Recorded, Self::Ground, Self::Added, Self::Continued];
-
-    /// Meaning, for a person.
-    pub fn about(self) -> &'static str {
-        match self {
-            Self::Recorded => "recorded",
-            Self::Ground => "on ground that was measured around it",
-            Self::Added => "cast on what was added",
-            Self::Continued => "on a surface that was measured nearby",
-        }
-    }
+    /// A record whose return is not there any more.
+    Emptied = 6,
 }
 
 /// A return that was not measured.
@@ -117,16 +107,5 @@ impl SweepEdits {
     /// All returns that were not measured.
     pub fn synthetic(&self) -> impl Iterator<Item = &SyntheticReturn> {
         self.changed.values().flatten().chain(&self.added)
-    }
-
-    /// Number of measured returns that are not there any more.
-    pub fn dropped(&self, recording: &SweepRecording) -> usize {
-        let was_there = |record: &&u32| {
-            recording
-                .returns
-                .get(**record as usize)
-                .is_some_and(Option::is_some)
-        };
-        self.changed.keys().filter(was_there).count()
     }
 }

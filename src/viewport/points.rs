@@ -34,7 +34,8 @@ pub enum LidarColorMode {
     Intensity,
     /// How likely the echo is lost: pale is sure, red is lost more often than not.
     Drop,
-    /// Origin in a recorded sweep: grey is recorded, green was added, orange and violet are told from what was measured nearby.
+    /// Origin in a recorded sweep: grey is recorded, blue was measured by other sweeps, green was added,
+    /// orange and violet are told from what was measured nearby.
     Origin,
 }
 
@@ -48,7 +49,8 @@ pub fn lidar_colors(sweep: &LidarSweep, mode: LidarColorMode) -> Vec<[u8; 4]> {
         .chain(std::iter::repeat(Provenance::Added));
     let color = |(p, origin): (&LidarPoint, Provenance)| match mode {
         LidarColorMode::Origin => match origin {
-            Provenance::Recorded => [150, 158, 168, 255],
+            Provenance::Recorded | Provenance::Emptied => [150, 158, 168, 255],
+            Provenance::OtherSweep => [104, 196, 255, 255],
             Provenance::Ground => [255, 178, 66, 255],
             Provenance::Added => [92, 214, 130, 255],
             Provenance::Continued => [190, 124, 240, 255],

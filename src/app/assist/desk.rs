@@ -289,7 +289,9 @@ impl Desk {
     pub fn take_versions(&mut self, scene: &Scene) {
         for kept in scene.kept.versions.iter().filter(|v| !v.name.is_empty()) {
             if let Ok(version) = loom::from_bytes(&kept.loom)
-                && self.keep(kept.name.clone(), Arc::new(version)).is_err()
+                && self
+                    .keep(kept.name.clone(), Arc::new(version.with_sweeps_of(scene)))
+                    .is_err()
             {
                 return;
             }

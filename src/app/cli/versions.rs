@@ -46,7 +46,7 @@ impl VersionsCommand {
                     let version = find(&scene.kept, wanted).with_context(|| file.to_string())?;
                     let taken =
                         loom::from_bytes(&version.loom).with_context(|| format!("{file}: {wanted}"))?;
-                    loom::save(path, &taken)?
+                    loom::save(path, &taken.with_sweeps_of(&scene))?
                 }
             };
         }

@@ -139,7 +139,7 @@ impl SensorCache {
                 .recorded
                 .take()
                 .filter(|known| Arc::ptr_eq(known.recording(), recording));
-            let sweep = known.unwrap_or_else(|| EditableSweep::new(recording.clone()));
+            let sweep = known.unwrap_or_else(|| EditableSweep::new(recording.clone(), &scene.kept.sweeps));
             let made = sweep.sweep(&sweep.edits(scene), scene);
             self.recorded = Some(sweep);
             return made;

@@ -156,7 +156,12 @@ impl SceneloomApp {
         }
         let scene = self.document.settled_scene();
         let base = output.join(BASE);
-        let bytes = loom::alone_to_bytes(scene)?;
+        let mut alone = Scene::clone(scene);
+        alone.kept = Arc::new(ProjectHistory {
+            sweeps: scene.kept.sweeps.clone(),
+            ..ProjectHistory::default()
+        });
+        let bytes = loom::to_bytes(&alone)?;
         if base.exists() && formats::input::read(&base, loom::LARGEST_FILE)? != bytes {
             anyhow::bail!("{}: the folder holds variants of another scene", output.display());
         }

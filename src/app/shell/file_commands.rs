@@ -257,7 +257,7 @@ impl SceneloomApp {
             typed: self.views.prompt.typed().to_vec(),
             log: self.document.log(),
             log_problem: None,
-            sweep: scene.kept.sweep.clone(),
+            sweeps: scene.kept.sweeps.clone(),
         });
         scene
     }

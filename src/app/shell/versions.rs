@@ -126,7 +126,7 @@ impl VersionedScene {
             // The open state shares its memory with its version.
             let found = match own.as_ref() == Some(&kept.loom) {
                 true => scene.clone(),
-                false => loom::from_bytes(&kept.loom).ok()?,
+                false => loom::from_bytes(&kept.loom).ok()?.with_sweeps_of(&scene),
             };
             Some(Version {
                 name: kept.name.clone(),

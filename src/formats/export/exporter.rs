@@ -62,7 +62,7 @@ pub enum Product {
     Observed,
     /// A sweep of the first LiDAR.
     Sweep,
-    /// The edits of the sweep that the scene was imported from.
+    /// The edits of the sweeps that the scene was imported from.
     Recording,
     /// A scan of every radar.
     Radar,
@@ -90,8 +90,8 @@ pub trait Products {
     fn observed(&mut self) -> Result<ObservationMasks, FormatError>;
     /// A sweep of the rig's first LiDAR.
     fn sweep(&mut self) -> Result<LidarSweep, FormatError>;
-    /// What edits change in the sweep that the scene was imported from. Errors if it was imported from none.
-    fn sweep_edits(&mut self) -> Result<SweepEdits, FormatError>;
+    /// What edits change in one of the sweeps that the scene was imported from. Errors if there is none of that number.
+    fn sweep_edits(&mut self, sweep: usize) -> Result<SweepEdits, FormatError>;
     /// A scan of each of the rig's radars, in its order, in the ego frame; empty if it has none.
     fn radars(&mut self) -> Result<Vec<RadarScan>, FormatError>;
     /// Classes and depths of every camera, in the order of the rig; each is taken before the next is made.

@@ -100,7 +100,7 @@ pub fn keeps_lattice(format: &Exporter, scene: &Scene) -> bool {
 pub fn usual(scene: &Scene) -> Vec<&'static Exporter> {
     let lacks = |f: &&'static Exporter| match f.needs {
         [Product::Radar] => scene.rig.radars.is_empty(),
-        [Product::Recording] => scene.kept.sweep.is_none(),
+        [Product::Recording] => scene.kept.sweeps.is_empty(),
         _ => false,
     };
     let is_slow = |f: &&'static Exporter| f.needs.contains(&Product::Gaussians);

@@ -237,8 +237,8 @@ mod tests {
                     provenance: Vec::new(),
                 })
             }
-            fn sweep_edits(&mut self) -> Result<scene::SweepEdits, FormatError> {
-                Small.sweep_edits()
+            fn sweep_edits(&mut self, _: usize) -> Result<scene::SweepEdits, FormatError> {
+                Small.sweep_edits(0)
             }
 
             fn radars(&mut self) -> Result<Vec<scene::RadarScan>, FormatError> {

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec3;
-use scene::{BoxId, Class, Pose, SceneBox, SweepRecording, VoxelGrid};
+use scene::message::quoted;
+use scene::{BoxId, Class, Pose, Scene, SceneBox, SweepRecording, VoxelGrid};
 
 use super::importer::{ImportedScene, labelled, of_sensor};
 use crate::FormatError;
@@ -27,8 +28,24 @@ pub struct ImportedSweep {
     pub(super) ground_m: [f64; 3],
     /// Pose of the file's frame in the world frame.
     pub(super) world_from_file: Pose,
-    /// Name and bytes of the file.
-    pub(super) file: Option<(String, Arc<Vec<u8>>)>,
+    /// Files that stay with the scene.
+    pub(super) files: Vec<SweepSource>,
+}
+
+/// A file of returns.
+#[derive(Clone, Debug)]
+pub(super) struct SweepSource {
+    /// Name, without folders.
+    pub(super) name: String,
+    /// Id of its format.
+    pub(super) format: &'static str,
+    /// Its bytes.
+    pub(super) bytes: Arc<Vec<u8>>,
+    /// Moment of the clip, s.
+    pub(super) time_s: f64,
+    /// Pose of its frame in the world frame, and place of the sensor there, m.
+    pub(super) world_from_file: Pose,
+    pub(super) sensor_m: DVec3,
 }
 
 impl ImportedSweep {
@@ -40,32 +57,44 @@ impl ImportedSweep {
             mount_m: None,
             ground_m: [0.0; 3],
             world_from_file,
-            file: None,
+            files: Vec::new(),
         }
     }
 
-    /// The recording of a scene from this sweep. Errors in one line if the file cannot be kept.
-    fn recording(&self, scene: &scene::Scene) -> Result<Option<SweepRecording>, FormatError> {
-        let Some((name, bytes)) = &self.file else {
-            return Ok(None);
-        };
-        if bytes.len() > SweepRecording::LARGEST {
-            let line = format!(
-                "{} bytes, expected at most {}",
-                bytes.len(),
-                SweepRecording::LARGEST
-            );
-            return Err(FormatError::new(line));
-        }
-        let returns = SweepFile::open(name, bytes)?.returns(&self.world_from_file);
-        Ok(Some(SweepRecording {
-            file: name.as_str().into(),
-            bytes: bytes.clone(),
+    /// Keeps the file of a sweep by itself.
+    pub(super) fn keep(&mut self, name: String, format: &'static str, bytes: Arc<Vec<u8>>) {
+        self.files = vec![SweepSource {
+            name,
+            format,
+            bytes,
+            time_s: 0.0,
             world_from_file: self.world_from_file,
             sensor_m: self.mount_m.unwrap_or(self.sensor_m),
-            returns: Arc::new(returns),
-            before: Arc::new(scene.clone()),
-        }))
+        }];
+    }
+
+    /// The recordings of a scene from these files. Errors in one line if they cannot be kept.
+    fn recordings(&self, scene: &Scene) -> Result<Vec<Arc<SweepRecording>>, FormatError> {
+        let bytes: usize = self.files.iter().map(|file| file.bytes.len()).sum();
+        if bytes > SweepRecording::LARGEST {
+            let line = format!("{bytes} bytes, expected at most {}", SweepRecording::LARGEST);
+            return Err(FormatError::new(line));
+        }
+        let before = Arc::new(scene.clone());
+        let recording = |file: &SweepSource| {
+            let returns = SweepFile::open(file.format, &file.bytes)?.returns(&file.world_from_file);
+            Ok(Arc::new(SweepRecording {
+                file: quoted(&file.name, Scene::LONGEST_NAME).into(),
+                format: file.format.into(),
+                time_s: file.time_s,
+                bytes: file.bytes.clone(),
+                world_from_file: file.world_from_file,
+                sensor_m: file.sensor_m,
+                returns: Arc::new(returns),
+                before: before.clone(),
+            }))
+        };
+        self.files.iter().map(recording).collect()
     }
 }
 
@@ -94,6 +123,8 @@ impl ImportedScene {
         let recorded = self.scene.frame().inferred.recorded.clone();
         let mut scene = labelled(&self.scene.name, grid, None);
         scene.rig = self.scene.rig.clone();
+        let clip = self.scene.clip().clone();
+        scene.change_clip(|still| *still = Arc::unwrap_or_clone(clip));
         scene.change_canvas(|canvas| {
             // Boxes stand on the ground of the scene.
             for b in &mut objects {
@@ -114,11 +145,8 @@ impl ImportedScene {
         let Some(sweep) = self.sweep.take() else {
             return self;
         };
-        match sweep.recording(&self.scene) {
-            Ok(Some(recording)) => {
-                Arc::make_mut(&mut self.scene.kept).sweep = Some(Arc::new(recording));
-            }
-            Ok(None) => {}
+        match sweep.recordings(&self.scene) {
+            Ok(recordings) => Arc::make_mut(&mut self.scene.kept).sweeps = recordings,
             Err(why) => self
                 .notes
                 .push(format!("the sweep is not kept with the scene: {why}")),

@@ -7,6 +7,7 @@ pub mod commonroad;
 mod commonroad_obstacles;
 #[cfg(test)]
 mod commonroad_tests;
+mod drive;
 #[cfg(test)]
 mod far_tests;
 mod foreign;
@@ -37,7 +38,7 @@ use std::sync::Arc;
 
 use scene::message::quoted;
 
-use super::{FormatError, input};
+use super::{FormatError, input, sweep_file};
 pub use imported_sweep::ImportedSweep;
 pub use importer::{Content, ImportFile, ImportOptions, ImportedScene, Importer};
 use importer::{GUESSED, first_entry_ends, labelled, on_data_map};
@@ -162,7 +163,8 @@ const OWN_LATTICE: [&str; 3] = [
 ];
 
 /// Formats of point clouds.
-const CLOUDS: [&str; 5] = [
+const CLOUDS: [&str; 6] = [
+    drive::IMPORTER.id,
     pcd::IMPORTER.id,
     ply::IMPORTER.id,
     las::IMPORTER.id,
@@ -173,8 +175,15 @@ const CLOUDS: [&str; 5] = [
 /// The format of a folder of files, and the file that is read first.
 fn of_folder(folder: &Path) -> Result<(&'static Importer, PathBuf), FormatError> {
     let first = |i: &&'static Importer| Some((*i, (i.in_folder?)(folder)?));
-    let known = || all().iter().filter(|i| i.in_folder.is_some()).map(|i| i.title);
-    all().iter().find_map(first).ok_or_else(|| {
+    let of_folders = all().iter().filter(|i| i.in_folder.is_some()).map(|i| i.title);
+    let known = || of_folders.clone().chain([drive::IMPORTER.title]);
+    let known_first = all().iter().find_map(first);
+    let drive = || {
+        drive::is_drive(folder)
+            .then(|| first(&&drive::IMPORTER))
+            .flatten()
+    };
+    known_first.or_else(drive).ok_or_else(|| {
         let known = known().collect::<Vec<_>>().join(", ");
         let holds = match first_readable(folder) {
             Some(name) => format!(
@@ -229,9 +238,14 @@ fn read_file(importer: &Importer, path: &Path, options: ImportOptions) -> Result
     let mut content = (importer.read)(&source).map_err(|e| e.at(&path.display()))?;
     if let Content::Scene(loaded) = &mut content
         && let Some(sweep) = &mut loaded.sweep
-        && importer.id != las::IMPORTER.id
+        && ![las::IMPORTER.id, drive::IMPORTER.id].contains(&importer.id)
     {
-        sweep.file = Some((scan::file_name(Some(path)), Arc::new(bytes)));
+        let name = scan::file_name(Some(path));
+        let format = match importer.id {
+            sweep_file::KITTI if name.ends_with(".pcd.bin") => sweep_file::NUSCENES,
+            id => id,
+        };
+        sweep.keep(name, format, Arc::new(bytes));
     }
     Ok(content)
 }

@@ -58,9 +58,7 @@ pub(super) fn write(out: &mut Writer, kept: &ProjectHistory) -> Result<(), Proje
     if !kept.versions.is_empty() || !kept.typed.is_empty() {
         write_versions(out, kept)?;
     }
-    if let Some(sweep) = &kept.sweep {
-        recording::write(out, sweep)?;
-    }
+    recording::write(out, &kept.sweeps)?;
     log::write(out, kept)
 }
 
@@ -86,7 +84,7 @@ fn write_versions(out: &mut Writer, kept: &ProjectHistory) -> Result<(), Project
 /// Reads the kept versions, typed texts, the recording and the log; the versions are not opened.
 pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<ProjectHistory, ProjectError> {
     let mut kept = read_versions(file)?;
-    kept.sweep = recording::read(file)?.map(Arc::new);
+    kept.sweeps = recording::read(file)?;
     log::read(file, &mut kept);
     Ok(kept)
 }

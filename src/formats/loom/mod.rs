@@ -14,7 +14,7 @@
 //! | `tracks/0000000007.u8` | class labels of a moving object, where it was made, `[x][y][z]`, a byte per voxel |
 //! | `kept.json`, `versions/0007.loom` | versions with their names and stars, and what was typed; only if there are any |
 //! | `log.json`, `log/<hash>.loom`, `log/results.voxels` | every change since an origin, with its author and the change before it; states and generated voxels by the hash of their bytes; only if anything was changed |
-//! | `sweep.json`, `sweep/file`, `sweep/before.loom` | a recorded sweep: name and pose of its file, the file byte for byte, the scene before any edit; only of a scene that was imported from one |
+//! | `sweeps.json`, `sweeps/0007`, `sweeps/before.loom` | recorded sweeps: names, times and poses of their files, the files byte for byte, the scene before any edit; only of a scene that was imported from them |
 //!
 //! The canvas has 200 x 200 columns around the origin of the world frame, unless `scene.json` gives it another `extent`. Its voxels are
 //! those of Occ3D unless the extent names another `lattice`.
@@ -36,6 +36,8 @@ mod names;
 mod patch_bytes;
 mod read;
 mod recording;
+#[cfg(test)]
+mod recording_tests;
 #[cfg(test)]
 mod tests;
 mod write;

@@ -10,8 +10,8 @@ use scene::clip::ObjectVoxels;
 use scene::roads::{LaneKind, NodeId, NodeKind, RoadCrossing, RoadStop};
 use scene::{Arranged, Arrangement, BoxName, Members, Road, RoadId, RoadLane, RoadNetwork};
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Clip, Conditions, Extent, Frame, KeptVersion, Key, Motion, Pose,
-    ProjectHistory, Relief, Scene, SceneBox, SensorRig, SweepRecording, TimeOfDay, Track, VoxelGrid, Weather,
+    BevLayer, BevLayout, BoxId, Class, Clip, Conditions, Extent, Frame, KeptVersion, Key, Motion,
+    ProjectHistory, Relief, Scene, SceneBox, SensorRig, TimeOfDay, Track, VoxelGrid, Weather,
 };
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
@@ -95,40 +95,9 @@ pub(super) fn sample(version: u32) -> Scene {
     }
     if version >= 12 {
         let before = sample(8);
-        Arc::make_mut(&mut scene.kept).sweep = Some(Arc::new(recorded(before)));
+        Arc::make_mut(&mut scene.kept).sweeps = super::recording_tests::recorded(before);
     }
     scene
-}
-
-/// Two returns and an empty slot, as a scan of KITTI.
-fn recorded(mut before: Scene) -> SweepRecording {
-    before.kept = Arc::default();
-    let numbers = [
-        10.0f32,
-        1.0,
-        -1.5,
-        0.25,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -3.0,
-        1.0 / 3.0,
-        2.0,
-        1.0,
-    ];
-    let bytes: Vec<u8> = numbers.iter().flat_map(|v| v.to_le_bytes()).collect();
-    let world_from_file = Pose::planar(0.9, -0.1, 0.2);
-    let file = "000007.bin";
-    let records = crate::sweep_file::SweepFile::open(file, &bytes).expect("a scan");
-    SweepRecording {
-        returns: Arc::new(records.returns(&world_from_file)),
-        file: file.into(),
-        bytes: Arc::new(bytes),
-        world_from_file,
-        sensor_m: DVec3::new(0.9, -0.1, 1.73),
-        before: Arc::new(before),
-    }
 }
 
 /// All that there is in one group, its boxes hidden, its things locked.
@@ -307,15 +276,7 @@ pub(super) fn assert_same(a: &Scene, b: &Scene) {
     }
     assert_eq!(a.roads, b.roads);
     assert_eq!(a.arranged, b.arranged);
-    match (&a.kept.sweep, &b.kept.sweep) {
-        (Some(a), Some(b)) => {
-            let about = |s: &SweepRecording| (s.file.clone(), s.bytes.clone(), s.world_from_file, s.sensor_m);
-            assert_eq!(about(a), about(b));
-            assert_eq!(a.returns, b.returns);
-            assert_same(&a.before, &b.before);
-        }
-        (a, b) => assert!(a.is_none() && b.is_none(), "one has a sweep"),
-    }
+    super::recording_tests::assert_same_sweeps(a, b);
     match (&a.kept.log, &b.kept.log) {
         (Some(a), Some(b)) => super::log_tests::assert_same_log(a, b),
         (a, b) => assert!(a.is_none() && b.is_none(), "one has a log"),
@@ -607,41 +568,4 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
             "{line}"
         );
     }
-}
-
-/// A recording that is damaged is named in one line, and none makes a scene of it.
-#[test]
-fn a_damaged_recording_is_refused() {
-    let entries = unpack(&to_bytes(&sample(VERSION)).expect("sound"));
-    let with = |name: &str, change: &dyn Fn(&mut Vec<u8>)| {
-        let mut entries = entries.clone();
-        let entry = entries.iter_mut().find(|e| e.0 == name).expect("there");
-        change(&mut entry.1);
-        let refused = from_bytes(&pack(&entries)).map(drop).expect_err(name);
-        refused.to_string()
-    };
-    let text = |from: &'static str, to: &'static str| {
-        move |bytes: &mut Vec<u8>| {
-            let json = String::from_utf8(std::mem::take(bytes)).expect("text");
-            assert!(json.contains(from), "{json}");
-            *bytes = json.replace(from, to).into_bytes();
-        }
-    };
-    assert!(with("sweep/file", &|b| b.truncate(17)).contains("17 bytes, expected records of 16"));
-    assert_eq!(with("sweep/before.loom", &|b| b.truncate(100)).lines().count(), 1);
-    assert!(with("sweep.json", &text("1.73", "1e999")).contains("sweep.json"));
-    assert!(
-        with(
-            "sweep.json",
-            &text("\"translation_m\":[0.9", "\"translation_m\":[null")
-        )
-        .contains("sweep.json")
-    );
-    let mut without = entries.clone();
-    without.retain(|e| e.0 != "sweep/file");
-    let line = from_bytes(&pack(&without))
-        .map(drop)
-        .expect_err("missing")
-        .to_string();
-    assert!(line.contains("sweep/file"), "{line}");
 }

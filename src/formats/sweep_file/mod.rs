@@ -14,6 +14,7 @@ mod write;
 use std::borrow::Cow;
 
 use glam::DVec3;
+use scene::message::quoted;
 use scene::{Pose, RecordedReturn};
 
 use crate::{FormatError, lzf};
@@ -23,6 +24,12 @@ use ply::Encoding;
 pub(crate) use ply::{PlyBody, PlyError, PlyHeader, Property};
 use records::{RecordField, RecordOrder, Records, lines};
 use scalar::Scalar;
+
+/// Ids of formats, as importers have them.
+pub(crate) const KITTI: &str = "kitti";
+pub(crate) const NUSCENES: &str = "nuscenes-lidar";
+pub(crate) const PCD: &str = "pcd";
+pub(crate) const PLY: &str = "ply";
 
 /// Fields of points whose numbers are classes of Occ3D, in small letters.
 pub(crate) const LABELS: [&str; 6] = [
@@ -40,6 +47,10 @@ pub(crate) const STRENGTHS: [&str; 4] = ["reflectivity", "intensity", "scalar_in
 /// Fields whose numbers are rings, in small letters.
 const RINGS: [&str; 5] = ["ring", "channel", "laser_number", "laser_id", "scalar_ring"];
 
+/// Records of a file at most.
+const MOST_RECORDS: usize = 2_000_000;
+/// Farthest place of a return along an axis, m.
+const FARTHEST_M: f32 = 1e6;
 /// Nearest return to the sensor, m: nearer places, and those that are not finite, are slots without one.
 const NEAREST_M: f64 = 0.1;
 
@@ -54,7 +65,7 @@ pub struct SweepFile<'a> {
     label: Option<usize>,
 }
 
-/// How the number of records is told.
+/// Count of records, as a file tells it.
 #[derive(Clone, Copy, PartialEq)]
 enum SweepFileKind {
     /// By the length of the file.
@@ -62,20 +73,25 @@ enum SweepFileKind {
     /// By lines of a header; slots of an organized cloud stay.
     Pcd {
         is_packed: bool,
-        is_organized: bool,
+        /// Records of a row of an organized cloud.
+        row: Option<usize>,
     },
     Ply,
 }
 
 impl<'a> SweepFile<'a> {
-    /// The records of a file. Errors in one line if it is none of the formats above, or damaged.
-    pub fn open(file: &str, bytes: &'a [u8]) -> Result<Self, FormatError> {
-        let name = file.to_lowercase();
-        let (kind, records) = match bytes {
-            _ if name.ends_with(".pcd.bin") => scan(bytes, &["x", "y", "z", "intensity", "ring"])?,
-            _ if name.ends_with(".bin") => scan(bytes, &["x", "y", "z", "intensity"])?,
-            _ if bytes.starts_with(b"ply") => ply(bytes)?,
-            _ => pcd(bytes).map_err(FormatError::new)?,
+    /// The records of a file in the format of this id. Errors in one line if it is none of the formats above, damaged, or has
+    /// more than two million records.
+    pub fn open(format: &str, bytes: &'a [u8]) -> Result<Self, FormatError> {
+        let (kind, records) = match format {
+            NUSCENES => scan(bytes, &["x", "y", "z", "intensity", "ring"])?,
+            KITTI => scan(bytes, &["x", "y", "z", "intensity"])?,
+            PLY => ply(bytes)?,
+            PCD => pcd(bytes).map_err(FormatError::new)?,
+            other => {
+                let other = quoted(other, 40);
+                return Err(FormatError::new(format!("{other}, expected a format of sweeps")));
+            }
         };
         let axis = |name: &str| {
             let at = records.field(&[name]);
@@ -92,13 +108,14 @@ impl<'a> SweepFile<'a> {
         })
     }
 
-    /// One for each record, in its order; `None` where nothing came back.
+    /// Returns of all records in their order; `None` where nothing came back.
     pub fn returns(&self, world_from_file: &Pose) -> Vec<Option<RecordedReturn>> {
         let each = (0..self.records.count).map(|i| {
             let at = self.place(i);
-            let far = at.is_finite() && at.length_squared() >= NEAREST_M * NEAREST_M;
-            far.then(|| RecordedReturn {
-                at_m: world_from_file.apply(at).as_vec3().to_array(),
+            let at_m = world_from_file.apply(at).as_vec3().to_array();
+            let is_place = at_m.iter().all(|m| m.abs() <= FARTHEST_M);
+            (is_place && at.length_squared() >= NEAREST_M * NEAREST_M).then(|| RecordedReturn {
+                at_m,
                 strength: self
                     .strength
                     .map_or(f32::NAN, |f| self.records.value(i, f) as f32),
@@ -121,11 +138,29 @@ impl<'a> SweepFile<'a> {
     }
 }
 
+/// The format of a file by its name, for files of several formats in one folder.
+pub(crate) fn format_of(name: &str) -> &'static str {
+    let name = name.to_lowercase();
+    match name {
+        _ if name.ends_with(".pcd.bin") => NUSCENES,
+        _ if name.ends_with(".bin") => KITTI,
+        _ if name.ends_with(".ply") => PLY,
+        _ => PCD,
+    }
+}
+
+fn too_many(count: usize) -> FormatError {
+    FormatError::new(format!("{count} records, expected at most {MOST_RECORDS}"))
+}
+
 fn scan<'a>(bytes: &'a [u8], names: &[&str]) -> Result<(SweepFileKind, Records<'a>), FormatError> {
     let stride = 4 * names.len();
     if bytes.is_empty() || !bytes.len().is_multiple_of(stride) {
         let line = format!("{} bytes, expected records of {stride}", bytes.len());
         return Err(FormatError::new(line));
+    }
+    if bytes.len() / stride > MOST_RECORDS {
+        return Err(too_many(bytes.len() / stride));
     }
     let field = |(i, name): (usize, &&str)| RecordField {
         name: (*name).to_owned(),
@@ -147,6 +182,12 @@ fn scan<'a>(bytes: &'a [u8], names: &[&str]) -> Result<(SweepFileKind, Records<'
 
 fn pcd(bytes: &[u8]) -> Result<(SweepFileKind, Records<'_>), PcdError> {
     let header = PcdHeader::read(bytes)?;
+    if header.points > MOST_RECORDS {
+        return Err(PcdError::TooMany {
+            found: header.points,
+            most: MOST_RECORDS,
+        });
+    }
     let (before, body) = bytes.split_at(header.body);
     let stride: usize = header.fields.iter().map(pcd::PcdField::bytes).sum();
     let is_text = header.data == PcdData::Ascii;
@@ -192,7 +233,7 @@ fn pcd(bytes: &[u8]) -> Result<(SweepFileKind, Records<'_>), PcdError> {
     };
     let kind = SweepFileKind::Pcd {
         is_packed: header.data == PcdData::Compressed,
-        is_organized: header.rows > 1,
+        row: (header.rows > 1).then(|| header.points / header.rows),
     };
     Ok((kind, records))
 }
@@ -207,6 +248,9 @@ fn ply(bytes: &[u8]) -> Result<(SweepFileKind, Records<'_>), FormatError> {
     let stride = stride.ok_or_else(|| FormatError::new("lists, or elements behind the points"))?;
     let is_text = header.encoding == Encoding::Ascii;
     let (before, body) = bytes.split_at(header.body);
+    if vertex.count > MOST_RECORDS {
+        return Err(too_many(vertex.count));
+    }
     let short = || FormatError::new(format!("fewer than {} points", vertex.count));
     let (order, body, after) = match is_text {
         true => {

@@ -38,6 +38,14 @@ pub enum PcdError {
         /// Points promised.
         expected: usize,
     },
+    /// More points than a sweep has.
+    #[error("{found} points, expected at most {most}")]
+    TooMany {
+        /// Points in the header.
+        found: usize,
+        /// Most of a sweep.
+        most: usize,
+    },
     /// A value that is no number.
     #[error("point {point}: field {field} is {found:?}, expected a number")]
     Number {

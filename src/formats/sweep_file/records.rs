@@ -7,6 +7,8 @@ use super::scalar::Scalar;
 
 /// Decimals of a number in a text that has none to go by.
 const DECIMALS: usize = 4;
+/// Decimals that a number is written with at most.
+const MOST_DECIMALS: usize = 17;
 
 /// Records of a file, and the bytes around them.
 pub(super) struct Records<'a> {
@@ -121,7 +123,7 @@ impl Records<'_> {
         out
     }
 
-    /// Where the words of a line are in the body.
+    /// Ranges of the words of a line in the body.
     fn words(&self, line: &Range<usize>) -> impl Iterator<Item = Range<usize>> + '_ {
         let (text, from) = (&self.body[line.clone()], line.start);
         let mut at = 0;
@@ -140,7 +142,7 @@ impl Records<'_> {
             if let Some((field, value)) = values.iter().find(of_word) {
                 out.extend_from_slice(&self.body[from..word.start]);
                 let decimals = match self.fields[*field].number.is_float() {
-                    true => DECIMALS.max(decimals(&self.body[word.clone()])),
+                    true => decimals(&self.body[word.clone()]).clamp(DECIMALS, MOST_DECIMALS),
                     false => 0,
                 };
                 out.extend_from_slice(format!("{value:.decimals$}").as_bytes());
@@ -171,7 +173,7 @@ fn decimals(word: &[u8]) -> usize {
     })
 }
 
-/// Where lines that are not empty lie, with their ends: at most `count` of them.
+/// Ranges of lines that are not empty, with their ends: at most `count` of them.
 pub(super) fn lines(body: &[u8], count: usize) -> Vec<Range<usize>> {
     let mut at = 0;
     let each = body.split_inclusive(|b| *b == b'\n').filter_map(|line| {

@@ -102,7 +102,7 @@ fn new(x: f64, like: u32) -> SyntheticReturn {
 #[test]
 fn a_file_without_edits_is_the_same() {
     for (name, bytes) in files() {
-        let file = SweepFile::open(name, &bytes).expect(name);
+        let file = SweepFile::open(format_of(name), &bytes).expect(name);
         let (same, origins) = file.edited(&SweepEdits::default(), &Pose::IDENTITY);
         assert!(same == bytes, "{name}");
         assert_eq!(origins, [Provenance::Recorded; 5], "{name}");
@@ -128,11 +128,11 @@ fn only_records_that_edits_touch_change() {
         added: vec![new(30.25, 4)],
     };
     for (name, bytes) in files() {
-        let file = SweepFile::open(name, &bytes).expect(name);
+        let file = SweepFile::open(format_of(name), &bytes).expect(name);
         let (edited, origins) = file.edited(&edits, &Pose::IDENTITY);
         use Provenance::{Added, Recorded};
         assert_eq!(origins, [Recorded, Recorded, Added, Recorded, Added], "{name}");
-        let again = SweepFile::open(name, &edited).expect(name);
+        let again = SweepFile::open(format_of(name), &edited).expect(name);
         assert_eq!(again.records.count, 5, "{name}");
         let fields = again.records.fields.len();
         let record = |file: &SweepFile<'_>, i: usize| -> Vec<u64> {
@@ -160,7 +160,7 @@ fn only_records_that_edits_touch_change() {
 fn a_record_goes_where_others_are_empty_too() {
     let numbers = [5.0f32, 1.0, -1.7, 0.5, 0.0, 0.0, 0.0, 0.0, 6.0, 1.0, -1.7, 0.25];
     let bytes: Vec<u8> = numbers.iter().flat_map(|v| v.to_le_bytes()).collect();
-    let file = SweepFile::open("a.bin", &bytes).expect("a scan");
+    let file = SweepFile::open(KITTI, &bytes).expect("a scan");
     assert!(file.returns(&Pose::IDENTITY)[1].is_none());
     let edits = SweepEdits {
         changed: BTreeMap::from([(0, None)]),
@@ -175,11 +175,11 @@ fn a_record_goes_where_others_are_empty_too() {
 fn damaged_files_are_refused_in_one_line() {
     for (name, bytes) in files() {
         for cut in 0..bytes.len() {
-            if let Err(error) = SweepFile::open(name, &bytes[..cut]) {
+            if let Err(error) = SweepFile::open(format_of(name), &bytes[..cut]) {
                 assert!(!error.to_string().contains('\n'), "{name}");
             }
         }
     }
-    let refused = |name: &str, bytes: &[u8]| SweepFile::open(name, bytes).map(drop).is_err();
+    let refused = |name: &str, bytes: &[u8]| SweepFile::open(format_of(name), bytes).map(drop).is_err();
     assert!(refused("a.bin", b"") && refused("a.bin", &[0; 17]) && refused("a.pcd", b"ply"));
 }

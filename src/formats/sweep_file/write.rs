@@ -1,9 +1,15 @@
 //! The file of a sweep with some of its records changed.
 
+use std::collections::BTreeMap;
+
+use glam::DVec3;
 use scene::{Pose, Provenance, SweepEdits, SyntheticReturn};
 
 use super::records::NewRecord;
 use super::{SweepFile, SweepFileKind, packed};
+
+/// New returns by record.
+type NewInSlots = BTreeMap<u32, Option<SyntheticReturn>>;
 
 impl SweepFile<'_> {
     /// The bytes of the file after edits, and the origin of each of its records. Without edits the bytes are those of the file.
@@ -20,21 +26,23 @@ impl SweepFile<'_> {
             records.push(record);
             origins.push(provenance);
         };
+        let (in_slots, behind) = self.slots(edits);
         for record in 0..count {
-            match edits.changed.get(&(record as u32)) {
+            let changed = edits.changed.get(&(record as u32));
+            match changed.or(in_slots.get(&(record as u32))) {
                 None => put(NewRecord::Kept(record), Provenance::Recorded),
                 Some(Some(new)) => put(self.record(record, new, file_from_world), new.provenance),
                 Some(None) => {
-                    let emptied = |at: f64| self.axes.iter().map(move |axis| (*axis, at));
                     if let Some(at) = empty {
                         let strength = self.strength.map(|field| (field, 0.0));
-                        let values = emptied(at).chain(strength).collect();
-                        put(NewRecord::Like(record, values), Provenance::Recorded);
+                        let emptied = self.axes.iter().map(|axis| (*axis, at));
+                        let values = emptied.chain(strength).collect();
+                        put(NewRecord::Like(record, values), Provenance::Emptied);
                     }
                 }
             }
         }
-        for new in edits.added.iter().filter(|new| (new.like as usize) < count) {
+        for new in behind.into_iter().filter(|new| (new.like as usize) < count) {
             put(
                 self.record(new.like as usize, new, file_from_world),
                 new.provenance,
@@ -49,6 +57,29 @@ impl SweepFile<'_> {
         ([head, body, self.records.after.to_vec()].concat(), origins)
     }
 
+    /// New returns in empty slots of their row, by record, and those that come behind all records. Organized clouds have slots;
+    /// a return for which there is none is left out.
+    fn slots<'e>(&self, edits: &'e SweepEdits) -> (NewInSlots, Vec<&'e SyntheticReturn>) {
+        let SweepFileKind::Pcd { row: Some(row), .. } = self.kind else {
+            return (NewInSlots::new(), edits.added.iter().collect());
+        };
+        let (row, mut slots) = (row.max(1), NewInSlots::new());
+        for new in &edits.added {
+            let like = new.like as usize;
+            let first = like / row * row;
+            let is_free = |i: &usize| !slots.contains_key(&(*i as u32)) && self.is_empty(self.place(*i));
+            let free = (first..(first + row).min(self.records.count)).filter(is_free);
+            if let Some(slot) = free.min_by_key(|i| i.abs_diff(like)) {
+                slots.insert(slot as u32, Some(*new));
+            }
+        }
+        (slots, Vec::new())
+    }
+
+    fn is_empty(&self, at: DVec3) -> bool {
+        !at.is_finite() || at.length() < super::NEAREST_M
+    }
+
     fn record(&self, like: usize, new: &SyntheticReturn, file_from_world: &Pose) -> NewRecord {
         let at = file_from_world.apply(new.at_m).to_array();
         let place = self.axes.into_iter().zip(at);
@@ -61,15 +92,8 @@ impl SweepFile<'_> {
     /// Coordinate of records without a return; `None` if the file has none of these.
     fn empty_place(&self) -> Option<f64> {
         let of_first = (0..self.records.count).map(|i| self.place(i));
-        let is_empty = |at: &glam::DVec3| !at.is_finite() || at.length() < super::NEAREST_M;
-        let first = of_first.into_iter().find(is_empty);
-        let is_organized = matches!(
-            self.kind,
-            SweepFileKind::Pcd {
-                is_organized: true,
-                ..
-            }
-        );
+        let first = of_first.into_iter().find(|at| self.is_empty(*at));
+        let is_organized = matches!(self.kind, SweepFileKind::Pcd { row: Some(_), .. });
         match first {
             Some(at) if at.is_finite() => Some(0.0),
             Some(_) => Some(f64::NAN),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use formats::FormatError;
 use formats::import::{self, Content, ImportOptions, ImportedScene, Importer};
 use nets::perceiver::LidarPerceiver;
-use scene::{BoxId, Scene, SensorRig, SweepRecording};
+use scene::{BoxId, Scene, SensorRig};
 use sensors::lidar::recorded::EditableSweep;
 
 /// Reads a file as [`import::read_with`] does; in a sweep without labels objects are found, each a guess. The file of a
@@ -15,8 +15,10 @@ pub fn file_with(path: &Path, options: ImportOptions) -> Result<(&'static Import
     let (importer, content) = import::read_with(path, options)?;
     Ok(match content {
         Content::Scene(loaded) => {
+            let is_sweep = loaded.sweep.is_some();
             let mut loaded = with_objects(*loaded).with_recording();
-            if let Some([beams, columns]) = take_pattern(&mut loaded.scene) {
+            let pattern = is_sweep.then(|| take_pattern(&mut loaded.scene)).flatten();
+            if let Some([beams, columns]) = pattern {
                 let note =
                     format!("the LiDAR has {beams} beams and {columns} columns a turn, as the sweep shows");
                 loaded.notes.push(note);
@@ -29,8 +31,8 @@ pub fn file_with(path: &Path, options: ImportOptions) -> Result<(&'static Import
 
 /// Gives the first LiDAR of a scene the beams of the sweep that it was imported from; their number, and the columns of a turn.
 fn take_pattern(scene: &mut Scene) -> Option<[usize; 2]> {
-    let recording = scene.kept.sweep.clone()?;
-    let pattern = EditableSweep::new(recording.clone()).pattern(scene.rig.lidars.first()?)?;
+    let first = scene.kept.sweeps.first()?.clone();
+    let pattern = EditableSweep::new(first.clone(), &[]).pattern(scene.rig.lidars.first()?)?;
     let told = [pattern.elevations_deg.len(), pattern.columns as usize];
     let mut rig = SensorRig::clone(&scene.rig);
     rig.lidars[0] = pattern;
@@ -38,12 +40,12 @@ fn take_pattern(scene: &mut Scene) -> Option<[usize; 2]> {
         return None;
     }
     scene.rig = Arc::new(rig);
-    let mut before = Scene::clone(&recording.before);
+    let mut before = Scene::clone(&first.before);
     before.rig = scene.rig.clone();
-    Arc::make_mut(&mut scene.kept).sweep = Some(Arc::new(SweepRecording {
-        before: Arc::new(before),
-        ..SweepRecording::clone(&recording)
-    }));
+    let before = Arc::new(before);
+    for sweep in &mut Arc::make_mut(&mut scene.kept).sweeps {
+        Arc::make_mut(sweep).before = before.clone();
+    }
     Some(told)
 }
 

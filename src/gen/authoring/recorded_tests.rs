@@ -32,8 +32,8 @@ fn edited(scene: &Scene, edits: Vec<Edit>) -> Scene {
 
 /// The bytes of the file after edits, with the origin of each record.
 fn written(scene: &Scene, edits: &SweepEdits) -> (Vec<u8>, Vec<Provenance>) {
-    let recording = scene.kept.sweep.as_ref().expect("a recording");
-    let file = SweepFile::open(&recording.file, &recording.bytes).expect("its own file");
+    let recording = scene.kept.sweeps.first().expect("a recording");
+    let file = SweepFile::open(&recording.format, &recording.bytes).expect("its own file");
     file.edited(edits, &recording.world_from_file.inverse())
 }
 
@@ -56,13 +56,13 @@ fn a_sweep_that_nobody_edits_is_the_file_and_survives_a_project_file() {
     for name in SWEEPS {
         let scene = opened(&folder.join(name));
         let bytes = std::fs::read(folder.join(name)).expect("readable");
-        let recording = scene.kept.sweep.as_ref().expect(name);
+        let recording = scene.kept.sweeps.first().expect(name);
         assert!(*recording.bytes == bytes, "{name}");
-        let edits = EditableSweep::new(recording.clone()).edits(&scene);
+        let edits = EditableSweep::new(recording.clone(), &[]).edits(&scene);
         assert!(edits.is_empty(), "{name}");
         let saved = loom::to_bytes(&scene).expect("sound");
         let again = loom::from_bytes(&saved).expect("its own");
-        let kept = again.kept.sweep.as_ref().expect("kept");
+        let kept = again.kept.sweeps.first().expect("kept");
         let places = |r: &scene::SweepRecording| -> Vec<_> {
             r.returns
                 .iter()
@@ -73,7 +73,7 @@ fn a_sweep_that_nobody_edits_is_the_file_and_survives_a_project_file() {
             kept.bytes == recording.bytes && places(kept) == places(recording),
             "{name}"
         );
-        let edits = EditableSweep::new(kept.clone()).edits(&again);
+        let edits = EditableSweep::new(kept.clone(), &[]).edits(&again);
         assert!(written(&again, &edits).0 == bytes, "{name}");
         println!(
             "{name}: {} KB, as a project {} KB",
@@ -90,9 +90,9 @@ fn a_removed_object_takes_its_returns_and_no_others() {
     let (mut removed, mut left, mut slowest_s) = (0, 0, 0.0f64);
     for name in SWEEPS {
         let scene = opened(&folder.join(name));
-        let recording = scene.kept.sweep.clone().expect(name);
+        let recording = scene.kept.sweeps.first().cloned().expect(name);
         let since = Instant::now();
-        let sweep = EditableSweep::new(recording.clone());
+        let sweep = EditableSweep::new(recording.clone(), &[]);
         let ready = since.elapsed();
         let boxes: Vec<SceneBox> = scene.frame().boxes.values().copied().take(6).collect();
         for b in boxes {
@@ -118,7 +118,7 @@ fn a_removed_object_takes_its_returns_and_no_others() {
             left += inside.count();
             removed += edits.changed.len();
             let (bytes, origins) = written(&after, &edits);
-            let again = SweepFile::open(&recording.file, &bytes).expect("a sweep");
+            let again = SweepFile::open(&recording.format, &bytes).expect("a sweep");
             assert_eq!(
                 again.returns(&recording.world_from_file).len(),
                 origins.len(),
@@ -135,8 +135,8 @@ fn a_removed_object_takes_its_returns_and_no_others() {
 fn an_added_car_hides_what_is_behind_it() {
     let Some(folder) = real_sweeps() else { return };
     let scene = opened(&folder.join("os1_drive/000000.pcd"));
-    let recording = scene.kept.sweep.clone().expect("a recording");
-    let sweep = EditableSweep::new(recording.clone());
+    let recording = scene.kept.sweeps.first().cloned().expect("a recording");
+    let sweep = EditableSweep::new(recording.clone(), &[]);
     let added = car(900, [9.0, -0.5]);
     let add = Edit::AddBox {
         class: added.class,
@@ -183,7 +183,7 @@ fn an_added_car_hides_what_is_behind_it() {
 fn a_corrected_label_changes_no_return() {
     let Some(folder) = real_sweeps() else { return };
     let scene = opened(&folder.join("os1_drive/000000.pcd"));
-    let sweep = EditableSweep::new(scene.kept.sweep.clone().expect("a recording"));
+    let sweep = EditableSweep::new(scene.kept.sweeps.first().cloned().expect("a recording"), &[]);
     let b = *scene.frame().boxes.values().next().expect("a box");
     let fitted = SceneBox {
         size_m: b.size_m + DVec3::splat(0.1),
@@ -215,7 +215,7 @@ fn the_ground_behind_a_removed_car_is_where_it_was() {
     let Some(folder) = real_sweeps() else { return };
     for name in SWEEPS {
         let scene = opened(&folder.join(name));
-        let trials = trial::holes(scene.kept.sweep.as_ref().expect(name));
+        let trials = trial::holes(scene.kept.sweeps.first().expect(name), &[]);
         let mut off_m: Vec<f64> = trials.iter().flat_map(|t| &t.errors_m).map(|e| e.abs()).collect();
         off_m.sort_by(f64::total_cmp);
         let hidden: usize = trials.iter().map(|t| t.hidden).sum();
@@ -231,4 +231,47 @@ fn the_ground_behind_a_removed_car_is_where_it_was() {
         // Voxels of the same sweeps told 6 and 36 % of such rays within these distances.
         assert!(hidden < 1000 || within(0.1) > 0.25 && within(0.5) > 0.5, "{name}");
     }
+}
+
+/// Errors behind cars that were never there, with the other sweeps of a drive and without, over all of its sweeps.
+#[test]
+fn other_sweeps_of_a_drive_tell_what_a_removed_car_hid() {
+    let Some(folder) = real_sweeps() else { return };
+    let scene = opened(&folder.join("os1_drive"));
+    let sweeps = &scene.kept.sweeps;
+    assert_eq!(sweeps.len(), 3);
+    assert!((scene.clip().length_s - 0.199_959).abs() < 1e-6);
+    let end = scene.at(0.2).frame().world_from_ego.translation_m;
+    assert!(
+        end.truncate().distance(glam::DVec2::new(0.495, 0.0136)) < 0.01,
+        "{end}"
+    );
+    for (i, recording) in sweeps.iter().enumerate() {
+        let bytes = std::fs::read(folder.join(format!("os1_drive/{i:06}.pcd"))).expect("readable");
+        let then = scene.at(recording.time_s);
+        let edits = EditableSweep::new(recording.clone(), sweeps).edits(&then);
+        assert!(edits.is_empty() && *recording.bytes == bytes);
+    }
+    let mut medians_m = Vec::new();
+    for others in [&sweeps[..0], sweeps] {
+        let trials: Vec<_> = sweeps
+            .iter()
+            .flat_map(|sweep| trial::holes(sweep, others))
+            .collect();
+        let mut off_m: Vec<f64> = trials.iter().flat_map(|t| &t.errors_m).map(|e| e.abs()).collect();
+        off_m.sort_by(f64::total_cmp);
+        let hidden: usize = trials.iter().map(|t| t.hidden).sum();
+        let within = |m: f64| off_m.iter().filter(|e| **e <= m).count() as f64 / hidden as f64;
+        medians_m.push(off_m[hidden / 2]);
+        println!(
+            "{} other sweeps: {} holes, {hidden} rays, median {:.3} m, within .1 m {:.2}, .5 m {:.2}; none {:.2}",
+            others.len().saturating_sub(1),
+            trials.len(),
+            off_m[hidden / 2],
+            within(0.1),
+            within(0.5),
+            1.0 - off_m.len() as f64 / hidden as f64
+        );
+    }
+    assert!(medians_m[1] < 0.06 && medians_m[1] < medians_m[0]);
 }

@@ -151,6 +151,16 @@ impl Cloud {
         }
     }
 
+    /// An empty cloud of points that are moved so.
+    pub(super) fn at_level(level: Pose) -> Self {
+        let mut cloud = Self {
+            level: Some(level),
+            ..Self::default()
+        };
+        cloud.is_map();
+        cloud
+    }
+
     /// The same for a sensor whose place on the vehicle is a guess.
     pub(super) fn of_guessed_sensor(source: &ImportFile<'_>) -> Self {
         Self {
@@ -340,6 +350,7 @@ impl Cloud {
                 }
             }
         }
+        let added = self.added;
         let (mut sweep, level) = (std::mem::take(&mut self.sweep), self.level.unwrap_or_default());
         if !by_shape {
             sweep.ground = None;
@@ -350,7 +361,7 @@ impl Cloud {
         }
         Ok(ImportedScene {
             scene,
-            sweep: sweep.finished(&level),
+            sweep: sweep.finished(&level).filter(|_| added <= sweep::MOST),
             inferred: match by_shape {
                 true => &GUESSED_BY_SHAPE,
                 false => &GUESSED,
@@ -485,7 +496,7 @@ fn is_empty_return(at: DVec3) -> bool {
 }
 
 /// True for a place on the vehicle that carries the sensors, that of the default rig.
-fn is_own(at: DVec3) -> bool {
+pub(super) fn is_own(at: DVec3) -> bool {
     static OWN: LazyLock<(DVec3, DVec3)> = LazyLock::new(|| {
         let rig = SensorRig::default();
         let half = DVec3::from_array(rig.ego_size_m) / 2.0 + DVec3::splat(OWN_MARGIN_M);

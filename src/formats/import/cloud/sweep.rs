@@ -7,7 +7,7 @@ use super::level::{GroundPlane, HIGHEST_MOUNT_M};
 use crate::import::ImportedSweep;
 
 /// Returns of a sweep at most: a larger cloud is a map of many.
-const MOST: usize = 600_000;
+pub(super) const MOST: usize = 600_000;
 /// Greatest strength of an echo of sensors that tell it as a share, and of others.
 const SHARE: f32 = 1.0;
 const STRONGEST: f32 = 255.0;
@@ -37,10 +37,9 @@ impl SweepReturns {
     /// Finds the ground of returns that were lifted by hand; the sensor was at their origin if nothing else is known.
     pub(super) fn find_ground(&mut self, lift_m: f64) {
         self.ground = GroundPlane::from_points(self.returns.iter().map(|(at, _)| place(*at)));
-        if lift_m > 0.0 && lift_m <= HIGHEST_MOUNT_M {
-            let at = self.sensor_m.unwrap_or_default();
-            self.sensor_m = Some(at + DVec3::Z * lift_m);
-        }
+        let is_mount = lift_m > 0.0 && lift_m <= HIGHEST_MOUNT_M;
+        let at = self.sensor_m.or(is_mount.then_some(DVec3::ZERO));
+        self.sensor_m = at.map(|at| at + DVec3::Z * lift_m);
     }
 
     /// The sweep, of points that were moved by `level`; `None` for maps. Without returns if there are too many, or if their
@@ -78,7 +77,7 @@ impl SweepReturns {
             sensor_m: seen_from,
             mount_m: self.sensor_m,
             world_from_file,
-            file: None,
+            files: Vec::new(),
             ground_m: [ground.height_m, ground.slope.x, ground.slope.y],
         })
     }

@@ -1,5 +1,7 @@
 //! Beams of a recorded sweep: the returns beside one on its beam, and the rays from which nothing came back.
 
+use std::cmp::Ordering::Equal;
+use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
@@ -7,8 +9,20 @@ use scene::{LidarPattern, Pose, RecordedReturn, SweepRecording};
 
 /// Beams of a sweep at most.
 const MOST_BEAMS: usize = 256;
-/// Largest difference in elevation between neighbours of one beam where files tell no rings, rad.
-const SAME_RAD: f64 = 0.015 * PI / 180.0;
+/// Largest difference in elevation between neighbours of one beam where files tell no rings, degrees: the first that gives
+/// beams is taken.
+const SAME_DEG: [f64; 5] = [0.01, 0.015, 0.02, 0.03, 0.05];
+/// Returns by which the height of the beams' origin is looked for, heights that are tried, and width of the bins of elevations.
+const SAMPLED: usize = 20_000;
+const ORIGIN_STEPS: i32 = 15;
+const ORIGIN_STEP_M: f64 = 0.006;
+const BIN_DEG: f64 = 0.02;
+/// Largest spread of elevations of such a beam, degrees, such beams at most, and the least share of returns on them.
+const THICKEST_DEG: f64 = 0.4;
+const MOST_FOUND: usize = 130;
+const LEAST_HELD: f64 = 0.85;
+/// Rays without a return after which no more beams are looked at.
+const MOST_EMPTY: usize = 1_000_000;
 /// Columns of a turn, the least and the most.
 const MOST_APART: f64 = 90.0;
 const MOST_COLUMNS: f64 = 8192.0;
@@ -80,7 +94,9 @@ impl Beams {
             for (r, at) in beam.iter().zip(0u32..) {
                 all.places[r.record as usize] = Some([number, at]);
             }
-            fill_gaps(beam, &recording.world_from_file, &mut all.empty);
+            if all.empty.len() < MOST_EMPTY {
+                fill_gaps(beam, &recording.world_from_file, &mut all.empty);
+            }
         }
         all
     }
@@ -111,6 +127,8 @@ impl Beams {
             sector_deg,
             rotation_wxyz: [turn.w, turn.x, turn.y, turn.z],
             translation_m: recording.sensor_m.to_array(),
+            clockwise: false,
+            part: None,
             ..like.clone()
         })
     }
@@ -167,7 +185,8 @@ impl Beams {
 /// Returns of each beam by their direction.
 fn sorted_beams(recording: &SweepRecording) -> Vec<Vec<BeamReturn>> {
     let file_from_world = recording.world_from_file.inverse();
-    let sensor = file_from_world.apply(recording.sensor_m);
+    let mut sensor = file_from_world.apply(recording.sensor_m);
+    sensor.z += beam_origin_m(recording, &file_from_world, sensor);
     let places = recording.returns.iter().zip(0..).filter_map(|(r, record)| {
         let r = (*r)?;
         let way = file_from_world.apply(r.place()) - sensor;
@@ -185,6 +204,33 @@ fn sorted_beams(recording: &SweepRecording) -> Vec<Vec<BeamReturn>> {
     }
     beams.sort_by(|a, b| elevation(a).total_cmp(&elevation(b)));
     beams
+}
+
+/// Height of the point that the beams of a sweep without rings come from above its sensor's place, m: that from which
+/// elevations are least spread. A few centimetres blur the beams of near returns.
+fn beam_origin_m(recording: &SweepRecording, file_from_world: &Pose, sensor: DVec3) -> f64 {
+    let every = (recording.returns.len() / SAMPLED).max(1);
+    let sample = recording.returns.iter().flatten().step_by(every);
+    let ways: Vec<(f64, f64)> = sample
+        .filter(|r| r.ring == RecordedReturn::NO_RING)
+        .map(|r| {
+            let way = file_from_world.apply(r.place()) - sensor;
+            (way.truncate().length(), way.z)
+        })
+        .collect();
+    // Returns in one bin, squared and summed: the more, the fewer bins hold them.
+    let crisp = |up_m: f64| {
+        let mut bins: HashMap<i32, u64> = HashMap::new();
+        for (flat_m, z) in &ways {
+            let up_deg = (z - up_m).atan2(*flat_m).to_degrees();
+            // Edges of bins are no usual elevations.
+            *bins.entry((up_deg / BIN_DEG + 0.37).floor() as i32).or_default() += 1;
+        }
+        bins.values().map(|n| n * n).sum::<u64>()
+    };
+    let heights = (-ORIGIN_STEPS..=ORIGIN_STEPS).map(|i| f64::from(i) * ORIGIN_STEP_M);
+    let best = heights.max_by_key(|up_m| (crisp(*up_m), std::cmp::Reverse((up_m.abs() * 1e3) as u64)));
+    best.filter(|_| !ways.is_empty()).unwrap_or_default()
 }
 
 /// Mean elevation of a beam, rad.
@@ -221,25 +267,53 @@ fn sector<'a>(returns: impl Iterator<Item = &'a BeamReturn>) -> [f64; 2] {
 
 /// Returns by beam: by ring, or by elevation if there are no rings.
 fn beams(mut returns: Vec<(u16, BeamReturn)>) -> Vec<Vec<BeamReturn>> {
-    let has_rings = returns.iter().all(|(ring, _)| *ring != RecordedReturn::NO_RING);
-    let groups: Vec<Vec<BeamReturn>> = if has_rings {
-        returns.sort_by_key(|(ring, _)| *ring);
-        let by_ring = returns.chunk_by(|a, b| a.0 == b.0);
-        by_ring.map(|beam| beam.iter().map(|r| r.1).collect()).collect()
-    } else {
-        returns.sort_by(|a, b| a.1.elevation_rad.total_cmp(&b.1.elevation_rad));
-        let by_elevation = returns.chunk_by(|a, b| b.1.elevation_rad - a.1.elevation_rad < SAME_RAD);
-        by_elevation
-            .map(|beam| beam.iter().map(|r| r.1).collect())
-            .collect()
+    let grouped = |returns: &[(u16, BeamReturn)], same: &dyn Fn(&Numbered, &Numbered) -> bool| {
+        let groups = returns.chunk_by(|a, b| same(a, b));
+        let full = groups.filter(|beam| beam.len() >= LEAST);
+        full.map(|beam| beam.iter().map(|r| r.1).collect::<Vec<_>>())
+            .collect::<Vec<_>>()
     };
-    let full: Vec<Vec<BeamReturn>> = groups.into_iter().filter(|beam| beam.len() >= LEAST).collect();
-    // Elevations that run into each other tell no beams.
-    let are_thin = has_rings || full.iter().all(|beam| thickness(beam) < 20.0 * SAME_RAD);
-    match full.len() <= MOST_BEAMS && are_thin {
-        true => full,
-        false => Vec::new(),
+    if returns.iter().all(|(ring, _)| *ring != RecordedReturn::NO_RING) {
+        returns.sort_by(|a, b| {
+            (a.0, a.1.azimuth_rad)
+                .partial_cmp(&(b.0, b.1.azimuth_rad))
+                .unwrap_or(Equal)
+        });
+        let beams = grouped(&returns, &|a, b| a.0 == b.0);
+        if beams.len() <= MOST_BEAMS && beams.iter().all(|beam| is_smooth(beam)) {
+            return beams;
+        }
+        // The field is no number of a ring.
     }
+    returns.sort_by(|a, b| a.1.elevation_rad.total_cmp(&b.1.elevation_rad));
+    let by_elevation = SAME_DEG.iter().map(|same_deg| {
+        let same = |a: &Numbered, b: &Numbered| b.1.elevation_rad - a.1.elevation_rad < same_deg.to_radians();
+        grouped(&returns, &same)
+    });
+    // Elevations that run into each other tell no beams.
+    let are_thin = |beams: &Vec<Vec<BeamReturn>>| {
+        let held: usize = beams.iter().map(Vec::len).sum();
+        let thin = beams
+            .iter()
+            .all(|beam| thickness(beam) < THICKEST_DEG.to_radians());
+        thin && beams.len() <= MOST_FOUND && held as f64 >= LEAST_HELD * returns.len() as f64
+    };
+    by_elevation.into_iter().find(are_thin).unwrap_or_default()
+}
+
+/// A return and its ring.
+type Numbered = (u16, BeamReturn);
+
+/// True if neighbours on a beam have nearly one elevation.
+fn is_smooth(beam: &[BeamReturn]) -> bool {
+    let mut steps: Vec<f64> = beam
+        .windows(2)
+        .map(|two| (two[1].elevation_rad - two[0].elevation_rad).abs())
+        .collect();
+    steps.sort_by(f64::total_cmp);
+    steps
+        .get(steps.len() / 2)
+        .is_none_or(|step| *step <= THICKEST_DEG.to_radians())
 }
 
 fn thickness(beam: &[BeamReturn]) -> f64 {
@@ -248,7 +322,9 @@ fn thickness(beam: &[BeamReturn]) -> f64 {
 }
 
 fn fill_gaps(beam: &[BeamReturn], world_from_file: &Pose, rays: &mut Vec<EmptyRay>) {
-    let Some(step) = step(beam) else { return };
+    let Some(step) = step(beam).filter(|step| TAU / step <= MOST_COLUMNS) else {
+        return;
+    };
     let Some((first, last)) = beam.first().zip(beam.last()) else {
         return;
     };

@@ -21,7 +21,10 @@ const CORRECTED_BESIDE_M: f64 = 0.25;
 /// Most that a box grows by a correction along its length or width, m.
 const CORRECTED_GROWN_M: f64 = 2.0;
 
-/// What was edited.
+/// Returns of an object at least that a new box is a label of.
+const LABELLED: usize = 20;
+
+/// Edits of a scene since its import.
 #[derive(Default)]
 pub struct SceneChanges {
     /// Boxes of the recording that are not there any more, on the measured ground.
@@ -50,7 +53,7 @@ impl SceneChanges {
     ) -> Self {
         let (was, is) = (before.frame(), now.frame());
         let mut changes = Self {
-            extent: was.extent(),
+            extent: is.extent(),
             ..Self::default()
         };
         for (id, b) in &was.boxes {
@@ -68,8 +71,13 @@ impl SceneChanges {
             }
         }
         let is_new = |b: &&SceneBox| !was.boxes.contains_key(&b.id) && b.problem().is_none();
-        let new = is.boxes.values().filter(is_new);
-        changes.added.extend(new.map(|b| on_ground(b, is, ground)));
+        for b in is.boxes.values().filter(is_new) {
+            let b = on_ground(b, is, ground);
+            match is_label(&b, &places(&b), &changes.kept) {
+                true => changes.kept.push(b),
+                false => changes.added.push(b),
+            }
+        }
         let touched = changes.compare_things(before, now, ground);
         changes.compare_voxels(was, is, &touched);
         changes
@@ -110,27 +118,19 @@ impl SceneChanges {
     /// Notes voxels that were painted, or that differ in columns of which the layout or a thing was edited.
     fn compare_voxels(&mut self, was: &Frame, is: &Frame, touched: &HashSet<[usize; 2]>) {
         let extent = self.extent;
-        let (occupancy, painted) = (is.occupancy.crop(extent), is.painted.crop(extent));
-        let layout = is.layout.crop(extent);
-        let cells = was.layout.cells().iter().zip(layout.cells());
+        let (occupancy, painted) = (&is.occupancy, &is.painted);
+        let (before, layout) = (was.occupancy.crop(extent), was.layout.crop(extent));
+        let cells = layout.cells().iter().zip(is.layout.cells());
         let redrawn: Vec<bool> = cells.map(|(a, b)| a != b).collect();
         let mut new = VoxelGrid::over(extent);
         let mut any_new = false;
-        let columns = was
-            .occupancy
-            .changed_bricks(&occupancy)
-            .into_iter()
-            .flat_map(|brick| {
-                let ([x0, y0], [nx, ny]) = was.occupancy.brick_columns(brick);
-                (x0..x0 + nx).flat_map(move |x| (y0..y0 + ny).map(move |y| [x, y]))
-            });
+        let columns = before.changed_bricks(occupancy).into_iter().flat_map(|brick| {
+            let ([x0, y0], [nx, ny]) = before.brick_columns(brick);
+            (x0..x0 + nx).flat_map(move |x| (y0..y0 + ny).map(move |y| [x, y]))
+        });
         for [x, y] in columns {
             let is_touched = redrawn[extent.index(x, y)] || touched.contains(&[x, y]);
-            let (old, now, paint) = (
-                was.occupancy.column(x, y),
-                occupancy.column(x, y),
-                painted.column(x, y),
-            );
+            let (old, now, paint) = (before.column(x, y), occupancy.column(x, y), painted.column(x, y));
             for z in 0..extent.nz() {
                 let by_hand = paint[z] != NOT_PAINTED;
                 if !by_hand && !is_touched {
@@ -171,6 +171,18 @@ fn is_correction(old: &SceneBox, new: &SceneBox, places: &impl Fn(&SceneBox) -> 
     // A box that holds all because it is much larger is another one.
     let grown_m = (new.size_m.truncate() - old.size_m.truncate()).max_element();
     held > 0 && held as f64 >= CORRECTED * of_object.len() as f64 && grown_m <= CORRECTED_GROWN_M
+}
+
+/// True if a new box is drawn around an object that was measured and has no box of its own: returns reach through half of its
+/// height.
+fn is_label(b: &SceneBox, places: &[DVec3], others: &[SceneBox]) -> bool {
+    let free = places
+        .iter()
+        .filter(|p| !others.iter().any(|other| other.contains(**p, 0.0)));
+    let (count, low, high) = free.fold((0, f64::INFINITY, f64::NEG_INFINITY), |(n, low, high), p| {
+        (n + 1, p.z.min(low), p.z.max(high))
+    });
+    count >= LABELLED && high - low >= b.size_m.z / 2.0
 }
 
 /// A box on the measured ground in place of that of the scene.

@@ -8,34 +8,34 @@
 //! - Rays that meet what is **new** end on its solids.
 //! - What generation changed beside an edit changes no return.
 
+mod added;
 mod beams;
 mod changes;
 mod ground;
+mod others;
 mod surfaces;
 #[cfg(test)]
 mod tests;
 pub mod trial;
 
 use std::collections::BTreeMap;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use numeric::splitmix::{hash, scatter};
 use rayon::prelude::*;
-use scene::solid::Solid;
 use scene::{
-    Class, Lattice, LidarPattern, LidarPoint, LidarSweep, Provenance, RecordedReturn, Scene, SceneBox,
-    SweepEdits, SweepRecording, SyntheticReturn,
+    Class, LidarPattern, LidarPoint, LidarSweep, Pose, Provenance, RecordedReturn, Scene, SceneBox,
+    SensorRig, SweepEdits, SweepRecording, SyntheticReturn,
 };
-use world::objects;
 
 use crate::lidar::rolling;
-use crate::pictures::march::solids::SolidIndex;
-use crate::raycast::ColumnMasks;
+use added::{NewSolids, entered, is_in_windows, window};
 use beams::{Beams, BesideRay};
 use changes::{BESIDE_M, LOWEST_M, SceneChanges};
 use ground::GroundMap;
+use others::{OtherReturns, Told};
 use surfaces::StandingReturns;
 
 /// Range up to which rays are cast, m.
@@ -48,19 +48,32 @@ const BEFORE_M: f64 = 0.05;
 const NOISE_M: f64 = 0.02;
 /// Height above the ground from which returns stand on it, m.
 const STANDING_M: f64 = 0.3;
+/// Other sweeps that tell of what an edit opens, at most.
+const MOST_OTHERS: usize = 12;
 /// Rays that one thread works on in a row.
 const RAYS: usize = 2048;
 
-/// The recording of a scene, if its vehicle stands where it was recorded at the moment that is shown.
+/// The recording of a scene that is nearest in time to the moment shown, if the vehicle moves as it was recorded and its first
+/// LiDAR is the one that recorded it.
 pub fn recording_of(scene: &Scene) -> Option<&Arc<SweepRecording>> {
-    let recording = scene.kept.sweep.as_ref()?;
-    let there = recording.before.frame().world_from_ego;
-    (scene.frame().world_from_ego == there).then_some(recording)
+    let off_s = |sweep: &&Arc<SweepRecording>| (sweep.time_s - scene.time_s()).abs();
+    let sweeps = scene.kept.sweeps.iter();
+    let nearest = sweeps.min_by(|a, b| off_s(a).total_cmp(&off_s(b)))?;
+    let before = &nearest.before;
+    let is_there = scene.clip().ego == before.clip().ego
+        && scene.canvas().world_from_ego == before.canvas().world_from_ego;
+    let beams = |rig: &SensorRig| {
+        let rig = rig.standing_at(&Pose::IDENTITY);
+        let lidar = rig.lidars.first()?;
+        let place_mm = (DVec3::from_array(lidar.translation_m) * 1e3).round();
+        Some((lidar.elevations_deg.clone(), lidar.columns, place_mm.to_array()))
+    };
+    (is_there && beams(&scene.rig) == beams(&before.rig)).then_some(nearest)
 }
 
 /// The recorded sweep of a scene after its edits, in the world frame; `None` if it has none.
 pub fn sweep_of(scene: &Scene) -> Option<LidarSweep> {
-    let sweep = EditableSweep::new(recording_of(scene)?.clone());
+    let sweep = EditableSweep::new(recording_of(scene)?.clone(), &scene.kept.sweeps);
     Some(sweep.sweep(&sweep.edits(scene), scene))
 }
 
@@ -73,17 +86,19 @@ pub fn sweep_or_exact(scene: &Scene) -> LidarSweep {
 #[derive(Debug)]
 pub struct EditableSweep {
     recording: Arc<SweepRecording>,
+    /// Other sweeps of the drive, the nearest in time first.
+    others: Vec<Arc<SweepRecording>>,
     ground: GroundMap,
     standing: StandingReturns,
     beams: Beams,
     /// Median strength of returns by class, and of all.
     strengths: BTreeMap<Class, f32>,
     strength: f32,
-    /// Height of each return above the ground, m; 0 where it is not known.
+    /// Height of each return above the ground, m; NaN where it is not known.
     heights_m: Vec<f32>,
 }
 
-/// What a ray ends on.
+/// End of a ray.
 struct RayEnd {
     t_m: f64,
     class: Class,
@@ -91,19 +106,19 @@ struct RayEnd {
     provenance: Provenance,
 }
 
-/// What is new, as rays meet it.
-struct NewSolids {
-    solids: SolidIndex,
-    voxels: Option<(ColumnMasks, scene::VoxelGrid)>,
-    boxes: Vec<SceneBox>,
-    /// Directions and half widths of what is new, rad.
-    windows: Vec<[f64; 2]>,
-}
-
 impl EditableSweep {
-    /// Looks at a recording; this is needed once, however often its scene is edited.
-    pub fn new(recording: Arc<SweepRecording>) -> Self {
-        let before = recording.before.clone();
+    /// Looks at a recording; this is needed once, however often its scene is edited. `all` are the sweeps of the drive.
+    pub fn new(recording: Arc<SweepRecording>, all: &[Arc<SweepRecording>]) -> Self {
+        let before = recording.before.at(recording.time_s);
+        let mut others: Vec<_> = all
+            .iter()
+            .filter(|other| !Arc::ptr_eq(other, &recording))
+            .collect();
+        others.sort_by(|a, b| {
+            let off_s = |sweep: &SweepRecording| (sweep.time_s - recording.time_s).abs();
+            off_s(a).total_cmp(&off_s(b))
+        });
+        let others: Vec<_> = others.into_iter().take(MOST_OTHERS).cloned().collect();
         let boxes: Vec<SceneBox> = before.frame().boxes.values().copied().collect();
         let sensor = recording.sensor_m;
         let returns = || {
@@ -127,7 +142,7 @@ impl EditableSweep {
         let ground = GroundMap::new(sensor.truncate(), on_ground);
         let height = |r: &Option<RecordedReturn>| {
             r.and_then(|r| Some(r.place().z - ground.height_m(r.place().truncate())?))
-                .unwrap_or_default() as f32
+                .map_or(f32::NAN, |height_m| height_m as f32)
         };
         let heights_m: Vec<f32> = recording.returns.par_iter().map(height).collect();
         let standing = returns()
@@ -143,6 +158,7 @@ impl EditableSweep {
         }
         let mut all: Vec<f32> = by_class.values().flatten().copied().collect();
         Self {
+            others,
             beams: Beams::new(&recording),
             strength: median(&mut all),
             strengths: by_class
@@ -166,19 +182,26 @@ impl EditableSweep {
         self.beams.pattern(&self.recording, like)
     }
 
-    /// The changes that edits of its scene make to it, in the scene's moment that is shown. They do not depend on the number of
-    /// threads.
+    /// The changes that edits of its scene make to it: at its moment of a drive, else at the moment that is shown. They do not
+    /// depend on the number of threads.
     pub fn edits(&self, scene: &Scene) -> SweepEdits {
         let places = |b: &SceneBox| {
             let returns = self.held(b, BESIDE_M).filter_map(|i| self.recording.returns[i]);
             returns.map(|r| r.place()).collect()
         };
-        let changes = SceneChanges::between(&self.recording.before, scene, &self.ground, places);
+        let before = self.recording.before.at(self.recording.time_s);
+        let scene = &match self.others.is_empty() {
+            true => scene.clone(),
+            false => scene.at(self.recording.time_s),
+        };
+        let changes = SceneChanges::between(&before, scene, &self.ground, places);
         if changes.is_empty() {
             return SweepEdits::default();
         }
         let gone = self.gone(&changes);
+        let uncertain = self.uncertain(&gone, &changes.gone);
         let new = NewSolids::new(&changes, self.recording.sensor_m, scene.seed);
+        let others = self.told_by_others(&changes.gone);
         let returns = self.recording.returns.par_iter().enumerate().with_min_len(RAYS);
         let changed = returns.filter_map(|(i, r)| {
             let way = (*r)?.place() - self.recording.sensor_m;
@@ -186,8 +209,14 @@ impl EditableSweep {
             let direction = way.try_normalize()?;
             let end = match gone[i] {
                 true => {
-                    let beside = self.beams.beside(i as u32, |record| !gone[record as usize]);
-                    self.end(direction, range_m - STANDING_M, &new, &gone, beside)
+                    let beside = self.beams.beside(i as u32, |record| !uncertain[record as usize]);
+                    self.end(
+                        direction,
+                        range_m - STANDING_M,
+                        (&new, &others),
+                        &uncertain,
+                        beside,
+                    )
                 }
                 false => Some(new.met_by(self.recording.sensor_m, direction, range_m - BEFORE_M)?)
                     .map(|(t_m, class)| self.added(t_m, class)),
@@ -207,8 +236,8 @@ impl EditableSweep {
                 .min_by(f64::total_cmp);
             let end = match opened {
                 Some(from_m) => {
-                    let beside = self.beams.beside_empty(ray, |record| !gone[record as usize]);
-                    self.end(ray.direction, from_m, &new, &gone, beside)?
+                    let beside = self.beams.beside_empty(ray, |record| !uncertain[record as usize]);
+                    self.end(ray.direction, from_m, (&new, &others), &uncertain, beside)?
                 }
                 None => {
                     let (t_m, class) = new.met_by(self.recording.sensor_m, ray.direction, FARTHEST_M)?;
@@ -234,16 +263,18 @@ impl EditableSweep {
         };
         let sensor = self.recording.sensor_m;
         let file_from_world = self.recording.world_from_file.inverse().rotation;
-        let columns = scene.rig.lidars.first().map_or(1, |lidar| lidar.columns.max(1));
+        let lidar = scene.rig.lidars.first();
+        let columns = lidar.map_or(1, |lidar| lidar.columns.max(1));
+        let first_rad = lidar.map_or(0.0, |lidar| lidar.first_azimuth_deg.to_radians());
         let point = |at: DVec3, strength: f32, record: u32, class: Class| {
             let way = file_from_world * (at - sensor);
-            let turn = way.y.atan2(way.x).rem_euclid(TAU) / TAU;
+            let turn = (way.y.atan2(way.x) - first_rad).rem_euclid(TAU) / TAU;
             let up_rad = way.z.atan2(way.truncate().length());
             LidarPoint {
                 position_in_ego: at.as_vec3().to_array(),
                 range_m: (at - sensor).length() as f32,
                 ring: self.beams.ring(record, up_rad).unwrap_or_default(),
-                azimuth: (turn * f64::from(columns)) as u16,
+                azimuth: ((turn * f64::from(columns)) as u32).min(columns - 1) as u16,
                 class,
                 intensity: match strength.is_finite() {
                     true => (strength * strongest).clamp(0.0, 255.0),
@@ -298,7 +329,8 @@ impl EditableSweep {
         returns.filter_map(move |(i, r)| {
             let at = (*r)?.place();
             let is_near = at.truncate().distance_squared(middle) <= reach * reach;
-            let is_above = at.z > bottom_m + LOWEST_M && f64::from(self.heights_m[i]) > LOWEST_M;
+            let on_ground = f64::from(self.heights_m[i]) <= LOWEST_M;
+            let is_above = at.z > bottom_m + LOWEST_M && !on_ground;
             (is_near && is_above && b.contains(at, beside_m)).then_some(i)
         })
     }
@@ -324,21 +356,36 @@ impl EditableSweep {
         gone
     }
 
-    /// What a ray meets beyond a distance, where something was taken away. `beside` are the returns that stay on both sides of
+    /// Records that tell nothing of what is around objects that are gone: those that are gone too, and what lies low in their
+    /// place, one flag each.
+    fn uncertain(&self, gone: &[bool], boxes: &[SceneBox]) -> Vec<bool> {
+        let in_place = |(i, r): (usize, &Option<RecordedReturn>)| {
+            let at = r.map(|r| r.place());
+            gone[i] || at.is_some_and(|at| boxes.iter().any(|b| b.contains(at, BESIDE_M)))
+        };
+        let returns = self.recording.returns.par_iter().enumerate();
+        returns.with_min_len(RAYS).map(in_place).collect()
+    }
+
+    /// End of a ray beyond a distance, where something was taken away. `beside` are the returns that stay on both sides of
     /// it on its beam.
     fn end(
         &self,
         direction: DVec3,
         from_m: f64,
-        new: &NewSolids,
-        gone: &[bool],
+        (new, others): (&NewSolids, &OtherReturns),
+        uncertain: &[bool],
         beside: [Option<BesideRay>; 2],
     ) -> Option<RayEnd> {
         let sensor = self.recording.sensor_m;
-        let there = |record: u32| !gone[record as usize];
+        let there = |record: u32| !uncertain[record as usize];
         let added = new.met_by(sensor, direction, FARTHEST_M);
+        let told = others.told(direction, from_m);
         // The beam's own error of height, and relief finer than the map, go on between its returns.
-        let above_m = self.ground_offset_m(beside);
+        let above_m = match told {
+            Some(Told::Ground(above_m)) => above_m,
+            _ => self.ground_offset_m(beside),
+        };
         let from = sensor - DVec3::Z * above_m;
         let ground = self.ground.met_by(from, direction, FARTHEST_M).map(|t_m| {
             let at = sensor + direction * t_m;
@@ -346,22 +393,71 @@ impl EditableSweep {
                 t_m,
                 class: self.ground_class(at),
                 strength: self.ground.strength(at.truncate()).unwrap_or(self.strength),
-                provenance: Provenance::Ground,
+                provenance: match told {
+                    Some(Told::Ground(_)) => Provenance::OtherSweep,
+                    _ => Provenance::Ground,
+                },
             }
         });
-        let surface = self.standing.met_by(direction, from_m, there).map(|hit| {
-            let like = self.recording.returns[hit.record as usize];
-            RayEnd {
-                t_m: hit.t_m,
-                class: like.map_or(Class::Others, |r| class_of(&self.recording.before, &r)),
-                strength: hit.strength,
-                provenance: Provenance::Continued,
-            }
-        });
+        let seen = match told {
+            Some(Told::Standing(t_m, strength)) => Some(RayEnd {
+                t_m,
+                class: self.class_at(sensor + direction * t_m),
+                strength,
+                provenance: Provenance::OtherSweep,
+            }),
+            _ => None,
+        };
+        // What was seen need not be guessed.
+        let standing = told.is_none().then_some(&self.standing);
+        let surface = standing
+            .and_then(|standing| standing.met_by(direction, from_m, there))
+            .map(|hit| {
+                let like = self.recording.returns[hit.record as usize];
+                RayEnd {
+                    t_m: hit.t_m,
+                    class: like.map_or(Class::Others, |r| class_of(&self.recording.before, &r)),
+                    strength: hit.strength,
+                    provenance: Provenance::Continued,
+                }
+            });
         let added = added.map(|(t_m, class)| self.added(t_m, class));
-        let ends = [added, ground, surface].into_iter().flatten();
+        let ends = [added, ground, seen, surface].into_iter().flatten();
         ends.min_by(|a, b| a.t_m.total_cmp(&b.t_m))
             .filter(|end| end.t_m >= NEAREST_M)
+    }
+
+    /// Returns of the other sweeps where objects are gone.
+    fn told_by_others(&self, gone: &[SceneBox]) -> OtherReturns {
+        let sensor = self.recording.sensor_m;
+        let windows: Vec<[f64; 2]> = gone
+            .iter()
+            .map(|b| {
+                window(
+                    b.center_m.truncate(),
+                    b.size_m.truncate().length() / 2.0 + 1.0,
+                    sensor,
+                )
+            })
+            .collect();
+        let moving = |other: &SweepRecording| -> Vec<SceneBox> {
+            let then = other.before.at(other.time_s);
+            let is_meant =
+                |b: &&SceneBox| gone.iter().any(|g| g.id == b.id) || then.clip().tracks.contains_key(&b.id);
+            let boxes = then.frame().boxes.values().filter(is_meant).copied();
+            boxes.chain(gone.iter().copied()).collect()
+        };
+        OtherReturns::new(sensor, &self.others, &windows, moving, &self.ground)
+    }
+
+    /// Class of what stands at a place of the scene before any edit.
+    fn class_at(&self, at: DVec3) -> Class {
+        let r = RecordedReturn {
+            at_m: at.as_vec3().to_array(),
+            strength: f32::NAN,
+            ring: RecordedReturn::NO_RING,
+        };
+        class_of(&self.recording.before, &r)
     }
 
     /// Height of the ground above the map's, as returns of a beam on both sides of a ray have it, m.
@@ -411,98 +507,7 @@ impl EditableSweep {
     }
 }
 
-impl NewSolids {
-    fn new(changes: &SceneChanges, sensor: DVec3, seed: u64) -> Self {
-        let mut groups: Vec<Vec<Solid>> = changes.things.clone();
-        let mut boxes = Vec::new();
-        let mut windows = Vec::new();
-        for b in &changes.added {
-            let mut solids = Vec::new();
-            objects::object(b, seed, &mut solids);
-            windows.push(window(
-                b.center_m.truncate(),
-                b.size_m.truncate().length() / 2.0,
-                sensor,
-            ));
-            match solids.is_empty() {
-                true => boxes.push(*b),
-                false => groups.push(solids),
-            }
-        }
-        for solid in changes.things.iter().flatten() {
-            let reach = solid.reach().truncate().length();
-            windows.push(window(solid.center.truncate(), reach, sensor));
-        }
-        if changes.voxels.is_some() {
-            windows.push([0.0, PI]);
-        }
-        let voxels = changes.voxels.as_ref();
-        Self {
-            solids: SolidIndex::of_groups(changes.extent, groups.into_iter()),
-            voxels: voxels.map(|grid| (ColumnMasks::from_grid(grid), grid.clone())),
-            boxes,
-            windows,
-        }
-    }
-
-    /// Where a ray meets something new, nearer than `limit_m`.
-    fn met_by(&self, origin: DVec3, direction: DVec3, limit_m: f64) -> Option<(f64, Class)> {
-        let turn = direction.y.atan2(direction.x);
-        let is_in = |[middle, half]: &[f64; 2]| ((turn - middle + PI).rem_euclid(TAU) - PI).abs() <= *half;
-        if !self.windows.iter().any(is_in) {
-            return None;
-        }
-        let solid = self.solids.cast(origin, direction, limit_m);
-        let solid = solid.map(|hit| (hit.t_m, hit.solid.class));
-        let boxes = self.boxes.iter().filter_map(|b| {
-            let t_m = entered(b, origin, direction)?;
-            (t_m < limit_m).then_some((t_m, b.class))
-        });
-        let voxel = self.voxels.as_ref().and_then(|(masks, grid)| {
-            let voxel_m = Lattice::OCC3D.voxel_m();
-            let from = grid.extent().to_voxel_units(origin);
-            let (t, [x, y, z]) = masks.cast_in_voxels(from, direction, limit_m / voxel_m)?;
-            Some((
-                t * voxel_m,
-                Class::from_id(grid.get(x, y, z)).unwrap_or(Class::Others),
-            ))
-        });
-        let all = boxes.chain(solid).chain(voxel);
-        all.min_by(|a, b| a.0.total_cmp(&b.0))
-    }
-}
-
-/// Direction and half width of a circle as seen from above the sensor, rad.
-fn window(middle: DVec2, radius_m: f64, sensor: DVec3) -> [f64; 2] {
-    let way = middle - sensor.truncate();
-    match way.length() > radius_m {
-        true => [way.y.atan2(way.x), (radius_m / way.length()).asin() + 1e-6],
-        false => [0.0, PI],
-    }
-}
-
-/// Distance at which a ray enters a box, m.
-fn entered(b: &SceneBox, origin: DVec3, direction: DVec3) -> Option<f64> {
-    let (from, way) = (
-        b.to_local(origin),
-        b.to_local(origin + direction) - b.to_local(origin),
-    );
-    let half = b.size_m / 2.0;
-    let (mut near, mut far) = (0.0f64, f64::INFINITY);
-    for axis in 0..3 {
-        if way[axis].abs() < 1e-12 {
-            if from[axis].abs() > half[axis] {
-                return None;
-            }
-            continue;
-        }
-        let ends = [-half[axis], half[axis]].map(|side| (side - from[axis]) / way[axis]);
-        (near, far) = (near.max(ends[0].min(ends[1])), far.min(ends[0].max(ends[1])));
-    }
-    (near <= far).then_some(near)
-}
-
-/// Class of what a recorded return lies on: that of its box, else of its voxel, else of the ground below.
+/// Class of what a recorded return lies on: that of its voxel, else of the ground below.
 fn class_of(scene: &Scene, r: &RecordedReturn) -> Class {
     let (frame, at) = (scene.frame(), r.place());
     let extent = frame.extent();

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use scene::{BoxId, Class, Frame, RecordedReturn, Scene, SceneBox, SweepRecording};
 
+use super::EditableSweep;
+use super::added::entered;
 use super::changes::LOWEST_M;
-use super::{EditableSweep, entered};
 
 /// Size of the car, m.
 const CAR_M: DVec3 = DVec3::new(4.5, 1.9, 1.6);
@@ -32,9 +33,9 @@ pub struct HoleTrial {
     pub errors_m: Vec<f64>,
 }
 
-/// A trial for each place around the sensor where a car can stand.
-pub fn holes(recording: &Arc<SweepRecording>) -> Vec<HoleTrial> {
-    let whole = EditableSweep::new(recording.clone());
+/// A trial for each place around the sensor where a car can stand, with what other sweeps of the drive saw there.
+pub fn holes(recording: &Arc<SweepRecording>, others: &[Arc<SweepRecording>]) -> Vec<HoleTrial> {
+    let whole = EditableSweep::new(recording.clone(), &[]);
     let steps = (FARTHEST_M / STEP_M) as i32;
     let places = (-steps..=steps).flat_map(|x| (-steps..=steps).map(move |y| [x, y]));
     let cars = places.filter_map(|[x, y]| {
@@ -57,10 +58,16 @@ pub fn holes(recording: &Arc<SweepRecording>) -> Vec<HoleTrial> {
         ((NEAREST_M..=FARTHEST_M).contains(&far_m) && is_free()).then_some(car)
     });
     let cars: Vec<SceneBox> = cars.collect();
-    cars.iter().filter_map(|car| trial(recording, car)).collect()
+    cars.iter()
+        .filter_map(|car| trial(recording, others, car))
+        .collect()
 }
 
-fn trial(recording: &Arc<SweepRecording>, car: &SceneBox) -> Option<HoleTrial> {
+fn trial(
+    recording: &Arc<SweepRecording>,
+    others: &[Arc<SweepRecording>],
+    car: &SceneBox,
+) -> Option<HoleTrial> {
     let sensor = recording.sensor_m;
     let (mut returns, mut hidden) = (recording.returns.to_vec(), Vec::new());
     for (i, r) in returns.iter_mut().enumerate() {
@@ -88,11 +95,12 @@ fn trial(recording: &Arc<SweepRecording>, car: &SceneBox) -> Option<HoleTrial> {
     }
     let before = with_box(&recording.before, car);
     let after = recording.before.clone();
-    let sweep = EditableSweep::new(Arc::new(SweepRecording {
+    let hidden_by_car = SweepRecording {
         returns: Arc::new(returns),
         before: Arc::new(before),
         ..SweepRecording::clone(recording)
-    }));
+    };
+    let sweep = EditableSweep::new(Arc::new(hidden_by_car), others);
     let edits = sweep.edits(&after);
     let told = |(record, range_m): &(u32, f64)| {
         let new = edits.changed.get(record).copied().flatten()?;
