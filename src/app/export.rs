@@ -134,7 +134,31 @@ pub fn export_all(
         ready.push(files);
     }
     progress.go_on()?;
+    spare_recordings(formats, &ready, path)?;
     files::write(formats, &ready, path)
+}
+
+/// Errors if the sweeps that a scene was imported from would replace files that no export wrote: the recording itself.
+fn spare_recordings(
+    formats: &[Format],
+    ready: &[Vec<formats::export::OutFile>],
+    path: &Path,
+) -> anyhow::Result<()> {
+    let of_recordings = formats
+        .iter()
+        .zip(ready)
+        .filter(|(f, _)| f.id == formats::export::recording::EXPORTER.id);
+    for pair in of_recordings.flat_map(|(_, files)| files.chunks(2)) {
+        let [sweep, origins] = pair else { continue };
+        let there = path.join(&sweep.name);
+        if there.exists() && !path.join(&origins.name).exists() {
+            bail!(
+                "{}: is there and no export of a recording: name another folder",
+                there.display()
+            );
+        }
+    }
+    Ok(())
 }
 
 /// Makes the products of a scene for the formats that ask for them.

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::BoxId;
+use super::{BoxId, SceneBox};
 
 /// Marks of the contents of a recording. Empty for a scene that was made.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recorded {
     /// Hashes of boxes and tracks as they were recorded.
@@ -21,6 +21,9 @@ pub struct Recorded {
     /// True if the voxels, except painted ones, were measured by sensors, with gaps where these saw nothing.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(crate) voxels: bool,
+    /// Boxes as a person corrected them: what the recording has there, `None` where it has no object.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(crate) labels: BTreeMap<BoxId, Option<SceneBox>>,
 }
 
 impl Recorded {
@@ -29,6 +32,18 @@ impl Recorded {
         Self {
             voxels: true,
             ..Self::default()
+        }
+    }
+
+    /// Boxes of a recording as a person corrected them; `None` for those that are no objects.
+    pub fn labels(&self) -> &BTreeMap<BoxId, Option<SceneBox>> {
+        &self.labels
+    }
+
+    /// Takes a corrected box of a recording of voxels; none if there is no object. Of a scene that was made nothing is taken.
+    pub fn correct(&mut self, id: BoxId, corrected: Option<SceneBox>) {
+        if self.voxels {
+            self.labels.insert(id, corrected);
         }
     }
 

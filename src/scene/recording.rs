@@ -15,6 +15,7 @@ impl Recorded {
             boxes: boxes.chain(tracks).collect(),
             ego: scene.clip().ego.as_ref().map(of_motion),
             voxels: true,
+            labels: Default::default(),
         }
     }
 

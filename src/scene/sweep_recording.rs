@@ -87,6 +87,8 @@ pub struct SyntheticReturn {
     pub provenance: Provenance,
     /// Record of the file whose ring, time and other fields it has.
     pub like: u32,
+    /// Record of the file that lies where its ray belongs, if the file has a record for it.
+    pub slot: Option<u32>,
 }
 
 /// Changes that edits make to a recorded sweep. Records that it does not name stay as they are.

@@ -18,6 +18,7 @@ use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use metrics::agreement::layout_agreement;
 use scene::{Frame, Lattice};
+use sensors::lidar::recorded;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -100,6 +101,11 @@ impl EditCommand {
         let scene = document.scene();
         let r = &result.report;
         let agreement = layout_agreement(scene.frame());
+        let recorded = recorded::edits_of(scene).map(|edits| [edits.changed.len(), edits.added.len()]);
+        said.extend(recorded.map(|told| match told {
+            [0, 0] => "the recorded sweep stays as it is".to_owned(),
+            [changed, added] => format!("recorded sweep: {changed} returns gone or replaced, {added} new"),
+        }));
         let report = json!({
             "occupancy": {
                 "occupied_voxels": scene.frame().occupancy.count_set(),
@@ -126,6 +132,7 @@ impl EditCommand {
             "untouched_voxels_changed": r.untouched_voxels_changed,
             "seam_change_share": r.seam_change_share,
             "round_trip_error": round_trip,
+            "recorded_sweep": recorded.map(|[changed, added]| json!({ "changed": changed, "added": added })),
             "noise": { "std": r.noise_std, "max_abs": r.noise_max_abs },
             "notes": said.iter().chain(&r.notes).collect::<Vec<_>>(),
             "file": self.output,

@@ -1,6 +1,7 @@
 //! Batches in the window: the queue runs while the user works; variants are marked and opened.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use egui::Ui;
 
@@ -14,6 +15,7 @@ use crate::windows::batch_plan::BASE;
 use crate::windows::batches::{BatchAction, BatchesInput, BatchesWindow};
 use formats::loom;
 use language::tf;
+use scene::{ProjectHistory, Scene};
 
 /// The queue and its window.
 #[derive(Default)]

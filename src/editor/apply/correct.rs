@@ -66,10 +66,12 @@ fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
                 if before.boxes.get(id) != source.boxes.get(id) {
                     return Err(EditError::Unsettled(format!("box {}", id.0)));
                 }
-                match frame.boxes.get(id) {
-                    Some(b) => source.boxes.insert(*id, *b),
+                let corrected = frame.boxes.get(id).copied();
+                match corrected {
+                    Some(b) => source.boxes.insert(*id, b),
                     None => source.boxes.remove(id),
                 };
+                Arc::make_mut(&mut frame.inferred.recorded).correct(*id, corrected);
             }
         }
         Edit::PaintBev { layer, shape, value } => {

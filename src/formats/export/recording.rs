@@ -24,7 +24,9 @@ pub const EXPORTER: Exporter = Exporter {
 
 fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, FormatError> {
     if scene.kept.sweeps.is_empty() {
-        return Err(FormatError::new("the scene was not imported from a sweep"));
+        return Err(FormatError::new(
+            "the scene keeps no sweep: it was imported from none, or from a file that could not be kept",
+        ));
     }
     let mut files = Vec::new();
     for (i, recording) in scene.kept.sweeps.iter().enumerate() {

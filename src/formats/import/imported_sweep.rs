@@ -146,13 +146,27 @@ impl ImportedScene {
             return self;
         };
         match sweep.recordings(&self.scene) {
-            Ok(recordings) => Arc::make_mut(&mut self.scene.kept).sweeps = recordings,
+            Ok(recordings) => {
+                let told = match recordings.as_slice() {
+                    [one] => format!("{} stays with the scene, all its fields too", one.file),
+                    all => format!("{} sweeps stay with the scene", all.len()),
+                };
+                self.notes.push(told);
+                self.skipped.retain(|what, _| !is_kept(what));
+                Arc::make_mut(&mut self.scene.kept).sweeps = recordings;
+            }
             Err(why) => self
                 .notes
                 .push(format!("the sweep is not kept with the scene: {why}")),
         }
         self
     }
+}
+
+/// True for what voxels do not tell and a file that is kept does.
+fn is_kept(what: &str) -> bool {
+    let fields = ["intensity", "ring", "remission"];
+    fields.contains(&what) || what.starts_with("field ") || what.starts_with("property ")
 }
 
 fn lifted(b: &SceneBox, by_m: f64) -> SceneBox {

@@ -72,7 +72,11 @@ pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<Vec<Arc<Sweep
     let headers: Vec<SweepHeader> = parse(HEADER, &file.bytes(HEADER, MAX_JSON)?)?;
     check(headers.len(), 0)?;
     let before = file.bytes(BEFORE, LARGEST_FILE)?;
-    let before = Arc::new(read_alone(Cursor::new(&before[..]), &migrate::ALL)?);
+    let before = read_alone(Cursor::new(&before[..]), &migrate::ALL).map_err(|e| ProjectError::Damaged {
+        entry: BEFORE.into(),
+        detail: e.to_string(),
+    })?;
+    let before = Arc::new(before);
     let (mut sweeps, mut bytes) = (Vec::new(), 0);
     for (i, header) in headers.into_iter().enumerate() {
         let sweep = read_one(file, i, header, before.clone())?;

@@ -47,6 +47,9 @@ pub(crate) const STRENGTHS: [&str; 4] = ["reflectivity", "intensity", "scalar_in
 /// Fields whose numbers are rings, in small letters.
 const RINGS: [&str; 5] = ["ring", "channel", "laser_number", "laser_id", "scalar_ring"];
 
+/// Fields whose numbers are distances from the sensor, in small letters.
+const RANGES: [&str; 3] = ["range", "distance", "depth"];
+
 /// Records of a file at most.
 const MOST_RECORDS: usize = 2_000_000;
 /// Farthest place of a return along an axis, m.
@@ -63,6 +66,8 @@ pub struct SweepFile<'a> {
     strength: Option<usize>,
     ring: Option<usize>,
     label: Option<usize>,
+    /// Fields of the distance from the sensor.
+    ranges: Vec<usize>,
 }
 
 /// Count of records, as a file tells it.
@@ -104,6 +109,7 @@ impl<'a> SweepFile<'a> {
             strength: records.field(&STRENGTHS),
             ring: records.field(&RINGS),
             label: records.field(&LABELS),
+            ranges: RANGES.iter().filter_map(|name| records.field(&[name])).collect(),
             records,
         })
     }
@@ -130,7 +136,11 @@ impl<'a> SweepFile<'a> {
     }
 
     fn ring(&self, record: usize) -> u16 {
-        let number = self.ring.map_or(f64::NAN, |f| self.records.value(record, f));
+        let row = match self.kind {
+            SweepFileKind::Pcd { row: Some(row), .. } if self.ring.is_none() => record / row.max(1),
+            _ => usize::from(RecordedReturn::NO_RING),
+        };
+        let number = self.ring.map_or(row as f64, |f| self.records.value(record, f));
         match (0.0..f64::from(RecordedReturn::NO_RING)).contains(&number) {
             true => number as u16,
             false => RecordedReturn::NO_RING,

@@ -96,6 +96,7 @@ fn new(x: f64, like: u32) -> SyntheticReturn {
         class: Class::Car,
         provenance: Provenance::Added,
         like,
+        slot: None,
     }
 }
 

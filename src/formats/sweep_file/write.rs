@@ -57,23 +57,35 @@ impl SweepFile<'_> {
         ([head, body, self.records.after.to_vec()].concat(), origins)
     }
 
-    /// New returns in empty slots of their row, by record, and those that come behind all records. Organized clouds have slots;
-    /// a return for which there is none is left out.
+    /// New returns in the empty records where their rays belong, and those that come behind all records. In an organized cloud
+    /// a return for which there is no record takes an empty one of its row, or is left out.
     fn slots<'e>(&self, edits: &'e SweepEdits) -> (NewInSlots, Vec<&'e SyntheticReturn>) {
-        let SweepFileKind::Pcd { row: Some(row), .. } = self.kind else {
-            return (NewInSlots::new(), edits.added.iter().collect());
+        let row = match self.kind {
+            SweepFileKind::Pcd { row, .. } => row,
+            _ => None,
         };
-        let (row, mut slots) = (row.max(1), NewInSlots::new());
+        let (mut slots, mut behind) = (NewInSlots::new(), Vec::new());
         for new in &edits.added {
-            let like = new.like as usize;
-            let first = like / row * row;
-            let is_free = |i: &usize| !slots.contains_key(&(*i as u32)) && self.is_empty(self.place(*i));
-            let free = (first..(first + row).min(self.records.count)).filter(is_free);
-            if let Some(slot) = free.min_by_key(|i| i.abs_diff(like)) {
-                slots.insert(slot as u32, Some(*new));
+            let is_free = |slots: &NewInSlots, i: usize| {
+                let is_new = !slots.contains_key(&(i as u32)) && i < self.records.count;
+                is_new && self.is_empty(self.place(i))
+            };
+            let own = new.slot.filter(|slot| is_free(&slots, *slot as usize));
+            let of_row = row.filter(|_| own.is_none()).and_then(|row| {
+                let like = new.like as usize;
+                let first = like / row.max(1) * row;
+                let free = (first..first + row).filter(|i| is_free(&slots, *i));
+                free.min_by_key(|i| i.abs_diff(like)).map(|slot| slot as u32)
+            });
+            match (own.or(of_row), row) {
+                (Some(slot), _) => {
+                    slots.insert(slot, Some(*new));
+                }
+                (None, None) => behind.push(new),
+                (None, Some(_)) => {}
             }
         }
-        (slots, Vec::new())
+        (slots, behind)
     }
 
     fn is_empty(&self, at: DVec3) -> bool {
@@ -86,7 +98,13 @@ impl SweepFile<'_> {
         let strength = self.strength.filter(|_| new.strength.is_finite());
         let strength = strength.map(|field| (field, f64::from(new.strength)));
         let label = self.label.map(|field| (field, f64::from(new.class.id())));
-        NewRecord::Like(like, place.chain(strength).chain(label).collect())
+        let farther = DVec3::from_array(at).length() / self.place(like).length();
+        let ranges = self
+            .ranges
+            .iter()
+            .map(|field| (*field, self.records.value(like, *field) * farther));
+        let ranges = ranges.filter(|(_, range)| range.is_finite());
+        NewRecord::Like(like, place.chain(strength).chain(label).chain(ranges).collect())
     }
 
     /// Coordinate of records without a return; `None` if the file has none of these.

@@ -34,11 +34,16 @@ impl SweepReturns {
         }
     }
 
+    fn is_unlabelled(&self) -> bool {
+        !self.returns.is_empty()
+    }
+
     /// Finds the ground of returns that were lifted by hand; the sensor was at their origin if nothing else is known.
     pub(super) fn find_ground(&mut self, lift_m: f64) {
         self.ground = GroundPlane::from_points(self.returns.iter().map(|(at, _)| place(*at)));
         let is_mount = lift_m > 0.0 && lift_m <= HIGHEST_MOUNT_M;
-        let at = self.sensor_m.or(is_mount.then_some(DVec3::ZERO));
+        let is_below = self.ground.is_some_and(GroundPlane::is_below_a_sensor);
+        let at = self.sensor_m.or((is_mount || is_below).then_some(DVec3::ZERO));
         self.sensor_m = at.map(|at| at + DVec3::Z * lift_m);
     }
 
@@ -56,7 +61,11 @@ impl SweepReturns {
         let Some(ground) = self.ground.filter(|_| self.returns.len() <= MOST) else {
             return Some(ImportedSweep::without_returns(
                 world_from_file,
-                self.sensor_m.unwrap_or(DVec3::from_array(usual_m)),
+                match self.is_unlabelled() {
+                    // Nothing tells of a vehicle: the origin of the file is that of its sensor.
+                    true => self.sensor_m.unwrap_or(world_from_file.translation_m),
+                    false => self.sensor_m.unwrap_or(DVec3::from_array(usual_m)),
+                },
             ));
         };
         let scale = scale(self.returns.iter().map(|r| r.1));

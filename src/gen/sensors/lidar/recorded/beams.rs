@@ -41,6 +41,8 @@ pub struct EmptyRay {
     pub direction: DVec3,
     /// Record of a return beside it on its beam.
     pub like: u32,
+    /// Record between those of the returns on both sides, if there are records for the rays between them.
+    pub slot: Option<u32>,
     /// Its direction on the beam, rad.
     azimuth_rad: f64,
 }
@@ -337,6 +339,9 @@ fn fill_gaps(beam: &[BeamReturn], world_from_file: &Pose, rays: &mut Vec<EmptyRa
         let missing = (wide / step).round() as usize;
         for i in 1..missing {
             let share = i as f64 / missing as f64;
+            let between = i64::from(b.record) - i64::from(a.record);
+            let has_slots = between.unsigned_abs() % missing as u64 == 0;
+            let slot = i64::from(a.record) + between / missing as i64 * i as i64;
             let azimuth = a.azimuth_rad + wide * share;
             let elevation = a.elevation_rad + (b.elevation_rad - a.elevation_rad) * share;
             let (sin, cos) = elevation.sin_cos();
@@ -344,6 +349,7 @@ fn fill_gaps(beam: &[BeamReturn], world_from_file: &Pose, rays: &mut Vec<EmptyRa
             rays.push(EmptyRay {
                 direction: world_from_file.rotation * in_file,
                 like: if share < 0.5 { a.record } else { b.record },
+                slot: u32::try_from(slot).ok().filter(|_| has_slots),
                 azimuth_rad: azimuth,
             });
         }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashSet};
 use glam::{DVec2, DVec3};
 use scene::grid::NOT_PAINTED;
 use scene::solid::Solid;
-use scene::{Background, Class, Extent, Frame, Scene, SceneBox, Thing, VoxelGrid};
+use scene::{Background, BoxId, Class, Extent, Frame, Scene, SceneBox, Thing, VoxelGrid};
 
 use super::ground::GroundMap;
 
@@ -13,16 +13,6 @@ use super::ground::GroundMap;
 pub const BESIDE_M: f64 = 0.15;
 /// Height above the ground from which returns are of an object, m.
 pub const LOWEST_M: f64 = 0.12;
-/// Share of an object's returns that a box must hold to be a correction of its label.
-const CORRECTED: f64 = 0.9;
-/// Distance beyond a corrected box within which returns count as held, m.
-const CORRECTED_BESIDE_M: f64 = 0.25;
-
-/// Most that a box grows by a correction along its length or width, m.
-const CORRECTED_GROWN_M: f64 = 2.0;
-
-/// Returns of an object at least that a new box is a label of.
-const LABELLED: usize = 20;
 
 /// Edits of a scene since its import.
 #[derive(Default)]
@@ -44,40 +34,28 @@ pub struct SceneChanges {
 }
 
 impl SceneChanges {
-    /// The changes of a scene. `places` are those of the returns of an object in its box, m.
-    pub fn between(
-        before: &Scene,
-        now: &Scene,
-        ground: &GroundMap,
-        places: impl Fn(&SceneBox) -> Vec<DVec3>,
-    ) -> Self {
+    /// The changes of a scene.
+    pub fn between(before: &Scene, now: &Scene, ground: &GroundMap) -> Self {
         let (was, is) = (before.frame(), now.frame());
         let mut changes = Self {
             extent: is.extent(),
             ..Self::default()
         };
-        for (id, b) in &was.boxes {
+        let recorded = labelled(was, is);
+        for (id, b) in &recorded {
             let old = on_ground(b, was, ground);
-            let Some(new) = is.boxes.get(id) else {
-                changes.gone.push(old);
-                continue;
-            };
-            let of_now = on_ground(new, is, ground);
-            if is_same_place(b, new) || is_correction(&old, &of_now, &places) {
-                changes.kept.push(of_now);
-            } else {
-                changes.gone.push(old);
-                changes.added.push(of_now);
+            match is.boxes.get(id) {
+                None => changes.gone.push(old),
+                Some(new) if is_same_place(b, new) => changes.kept.push(old),
+                Some(new) => {
+                    changes.gone.push(old);
+                    changes.added.push(on_ground(new, is, ground));
+                }
             }
         }
-        let is_new = |b: &&SceneBox| !was.boxes.contains_key(&b.id) && b.problem().is_none();
-        for b in is.boxes.values().filter(is_new) {
-            let b = on_ground(b, is, ground);
-            match is_label(&b, &places(&b), &changes.kept) {
-                true => changes.kept.push(b),
-                false => changes.added.push(b),
-            }
-        }
+        let is_new = |b: &&SceneBox| !recorded.contains_key(&b.id) && b.problem().is_none();
+        let new = is.boxes.values().filter(is_new);
+        changes.added.extend(new.map(|b| on_ground(b, is, ground)));
         let touched = changes.compare_things(before, now, ground);
         changes.compare_voxels(was, is, &touched);
         changes
@@ -161,28 +139,26 @@ fn is_same_place(a: &SceneBox, b: &SceneBox) -> bool {
     (a.center_m, a.size_m, a.yaw_rad) == (b.center_m, b.size_m, b.yaw_rad)
 }
 
-/// True if a box was changed so that it still holds the returns of its object.
-fn is_correction(old: &SceneBox, new: &SceneBox, places: &impl Fn(&SceneBox) -> Vec<DVec3>) -> bool {
-    let of_object = places(old);
-    let held = of_object
-        .iter()
-        .filter(|p| new.contains(**p, CORRECTED_BESIDE_M))
-        .count();
-    // A box that holds all because it is much larger is another one.
-    let grown_m = (new.size_m.truncate() - old.size_m.truncate()).max_element();
-    held > 0 && held as f64 >= CORRECTED * of_object.len() as f64 && grown_m <= CORRECTED_GROWN_M
-}
-
-/// True if a new box is drawn around an object that was measured and has no box of its own: returns reach through half of its
-/// height.
-fn is_label(b: &SceneBox, places: &[DVec3], others: &[SceneBox]) -> bool {
-    let free = places
-        .iter()
-        .filter(|p| !others.iter().any(|other| other.contains(**p, 0.0)));
-    let (count, low, high) = free.fold((0, f64::INFINITY, f64::NEG_INFINITY), |(n, low, high), p| {
-        (n + 1, p.z.min(low), p.z.max(high))
-    });
-    count >= LABELLED && high - low >= b.size_m.z / 2.0
+/// Boxes of a recording: those that were found in it, as a person corrected them since. A correction of an object that was moved
+/// before says nothing of the recording.
+fn labelled(was: &Frame, is: &Frame) -> BTreeMap<BoxId, SceneBox> {
+    let mut boxes = was.boxes.clone();
+    for (id, label) in is.inferred.recorded.labels() {
+        let was_near = |b: &SceneBox| {
+            let known = was.boxes.get(id);
+            known.is_none_or(|k| k.center_m.distance(b.center_m) <= k.size_m.length() / 2.0)
+        };
+        match label {
+            Some(b) if was_near(b) => {
+                boxes.insert(*id, *b);
+            }
+            Some(_) => {}
+            None => {
+                boxes.remove(id);
+            }
+        }
+    }
+    boxes
 }
 
 /// A box on the measured ground in place of that of the scene.

@@ -13,12 +13,13 @@ mod beams;
 mod changes;
 mod ground;
 mod others;
+mod own_returns;
 mod surfaces;
 #[cfg(test)]
 mod tests;
 pub mod trial;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -71,9 +72,19 @@ pub fn recording_of(scene: &Scene) -> Option<&Arc<SweepRecording>> {
     (is_there && beams(&scene.rig) == beams(&before.rig)).then_some(nearest)
 }
 
+fn sweep_at(scene: &Scene) -> Option<EditableSweep> {
+    let recording = recording_of(scene)?.clone();
+    Some(EditableSweep::new(recording, &scene.kept.sweeps))
+}
+
+/// The changes that edits of a scene make to its recorded sweep of the moment shown; `None` if it has none.
+pub fn edits_of(scene: &Scene) -> Option<SweepEdits> {
+    Some(sweep_at(scene)?.edits(scene))
+}
+
 /// The recorded sweep of a scene after its edits, in the world frame; `None` if it has none.
 pub fn sweep_of(scene: &Scene) -> Option<LidarSweep> {
-    let sweep = EditableSweep::new(recording_of(scene)?.clone(), &scene.kept.sweeps);
+    let sweep = sweep_at(scene)?;
     Some(sweep.sweep(&sweep.edits(scene), scene))
 }
 
@@ -91,8 +102,8 @@ pub struct EditableSweep {
     ground: GroundMap,
     standing: StandingReturns,
     beams: Beams,
-    /// Median strength of returns by class, and of all.
-    strengths: BTreeMap<Class, f32>,
+    /// Strengths of returns by class, rising, and the median of all.
+    strengths: BTreeMap<Class, Vec<f32>>,
     strength: f32,
     /// Height of each return above the ground, m; NaN where it is not known.
     heights_m: Vec<f32>,
@@ -156,15 +167,13 @@ impl EditableSweep {
                 .or_default()
                 .push(r.strength);
         }
+        by_class.values_mut().for_each(|s| s.sort_by(f32::total_cmp));
         let mut all: Vec<f32> = by_class.values().flatten().copied().collect();
         Self {
             others,
             beams: Beams::new(&recording),
             strength: median(&mut all),
-            strengths: by_class
-                .into_iter()
-                .map(|(class, mut strengths)| (class, median(&mut strengths)))
-                .collect(),
+            strengths: by_class,
             recording,
             ground,
             standing,
@@ -185,16 +194,12 @@ impl EditableSweep {
     /// The changes that edits of its scene make to it: at its moment of a drive, else at the moment that is shown. They do not
     /// depend on the number of threads.
     pub fn edits(&self, scene: &Scene) -> SweepEdits {
-        let places = |b: &SceneBox| {
-            let returns = self.held(b, BESIDE_M).filter_map(|i| self.recording.returns[i]);
-            returns.map(|r| r.place()).collect()
-        };
         let before = self.recording.before.at(self.recording.time_s);
         let scene = &match self.others.is_empty() {
             true => scene.clone(),
             false => scene.at(self.recording.time_s),
         };
-        let changes = SceneChanges::between(&before, scene, &self.ground, places);
+        let changes = SceneChanges::between(&before, scene, &self.ground);
         if changes.is_empty() {
             return SweepEdits::default();
         }
@@ -223,7 +228,7 @@ impl EditableSweep {
             };
             Some((
                 i as u32,
-                end.map(|end| self.synthetic(&end, direction, i as u32, i as u64)),
+                end.map(|end| self.synthetic(&end, direction, (i as u32, None), i as u64)),
             ))
         });
         let changed: BTreeMap<u32, Option<SyntheticReturn>> = changed.collect();
@@ -245,7 +250,9 @@ impl EditableSweep {
                 }
             };
             let number = (i + self.heights_m.len()) as u64;
-            Some(self.synthetic(&end, ray.direction, ray.like, number))
+            let is_empty = |slot: &u32| matches!(self.recording.returns.get(*slot as usize), Some(None));
+            let slot = ray.slot.filter(is_empty);
+            Some(self.synthetic(&end, ray.direction, (ray.like, slot), number))
         });
         SweepEdits {
             changed,
@@ -338,14 +345,23 @@ impl EditableSweep {
     /// Records whose returns are not there any more, one flag each.
     fn gone(&self, changes: &SceneChanges) -> Vec<bool> {
         let mut gone = vec![false; self.recording.returns.len()];
-        let others: Vec<&SceneBox> = changes.kept.iter().collect();
         for b in &changes.gone {
-            for i in self.held(b, BESIDE_M) {
-                let Some(r) = self.recording.returns[i] else {
-                    continue;
-                };
-                gone[i] = !others.iter().any(|other| other.contains(r.place(), 0.0));
-            }
+            let of_others = |p: DVec3| changes.kept.iter().any(|other| other.contains(p, 0.0));
+            let placed = |i: usize| self.recording.returns[i].map(|r| (i, r.place()));
+            let inside: Vec<(usize, DVec3)> = self.held(b, BESIDE_M).filter_map(placed).collect();
+            let mut own = inside.clone();
+            own.retain(|(_, p)| !of_others(*p));
+            let is_inside: HashSet<usize> = inside.iter().map(|(i, _)| *i).collect();
+            let top_m = b.center_m.z + b.size_m.z / 2.0 + own_returns::ABOVE_M;
+            let near = self
+                .held(b, own_returns::AROUND_M)
+                .filter(|i| !is_inside.contains(i));
+            let near = near
+                .filter_map(placed)
+                .filter(|(_, p)| p.z <= top_m && !of_others(*p));
+            let beyond = own_returns::beyond_box(b, &own, &near.collect::<Vec<_>>());
+            let all = own.iter().map(|(i, _)| *i).chain(beyond);
+            all.for_each(|i| gone[i] = true);
         }
         if !changes.freed.is_empty() {
             for (i, r) in self.recording.returns.iter().enumerate() {
@@ -488,21 +504,34 @@ impl EditableSweep {
         RayEnd {
             t_m,
             class,
-            strength: self.strengths.get(&class).copied().unwrap_or(self.strength),
+            strength: self.strength,
             provenance: Provenance::Added,
         }
     }
 
-    fn synthetic(&self, end: &RayEnd, direction: DVec3, like: u32, number: u64) -> SyntheticReturn {
+    fn synthetic(
+        &self,
+        end: &RayEnd,
+        direction: DVec3,
+        (like, slot): (u32, Option<u32>),
+        number: u64,
+    ) -> SyntheticReturn {
         // The sum of three even draws is nearly normal.
-        let draw = |k: u64| scatter(hash(number * 3 + k)) - 0.5;
+        let draw = |k: u64| scatter(hash(number * 4 + k)) - 0.5;
+        // What is new is as strong as some return of its class.
+        let alike = self
+            .strengths
+            .get(&end.class)
+            .filter(|_| end.provenance == Provenance::Added);
+        let drawn = alike.and_then(|all| all.get(((draw(3) + 0.5) * all.len() as f64) as usize));
         let noise_m = (draw(0) + draw(1) + draw(2)) * 2.0 * NOISE_M;
         SyntheticReturn {
             at_m: self.recording.sensor_m + direction * (end.t_m + noise_m),
-            strength: end.strength,
+            strength: drawn.copied().unwrap_or(end.strength),
             class: end.class,
             provenance: end.provenance,
             like,
+            slot,
         }
     }
 }

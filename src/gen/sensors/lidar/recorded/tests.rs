@@ -143,21 +143,74 @@ fn a_new_car_hides_what_is_behind_and_nothing_else() {
 }
 
 #[test]
-fn labels_change_no_return() {
+fn corrected_labels_change_no_return_and_say_what_is_removed() {
     let recording = recording(&[car(1, 10.0, 1.0)], true);
     let sweep = EditableSweep::new(recording.clone(), &[]);
-    let edits = |boxes: &[SceneBox]| sweep.edits(&with_boxes(&recording, boxes));
-    // Fitted better, drawn anew under another number.
+    let corrected = |boxes: &[SceneBox], labels: &[(u32, Option<SceneBox>)]| {
+        let mut scene = with_boxes(&recording, boxes);
+        scene.change_canvas(|canvas| {
+            let recorded = Arc::make_mut(&mut canvas.inferred.recorded);
+            *recorded = scene::Recorded::of_voxels();
+            labels
+                .iter()
+                .for_each(|(id, label)| recorded.correct(BoxId(*id), *label));
+        });
+        sweep.edits(&scene)
+    };
     let fitted = SceneBox {
         size_m: DVec3::new(4.6, 1.9, 1.7),
         ..car(1, 10.0, 1.05)
     };
-    assert!(edits(&[fitted]).is_empty());
-    assert!(edits(&[car(7, 10.0, 1.0)]).is_empty());
-    // Moved away, it goes and comes.
-    let moved = edits(&[car(1, 10.0, -8.0)]);
+    assert!(
+        !corrected(&[fitted], &[]).is_empty(),
+        "moved, it takes its returns along"
+    );
+    assert!(corrected(&[fitted], &[(1, Some(fitted))]).is_empty());
+    assert!(corrected(&[], &[(1, None)]).is_empty(), "it was no object");
+    // A car without a box is labelled, then removed.
+    let missed = car(7, WALL_M, 4.0);
+    assert!(corrected(&[car(1, 10.0, 1.0), missed], &[(7, Some(missed))]).is_empty());
+    assert!(
+        corrected(&[car(1, 10.0, 1.0)], &[(7, Some(missed))])
+            .changed
+            .len()
+            > 20
+    );
+    // A label of where it was moved to says nothing of the recording.
+    let away = car(1, 10.0, -8.0);
+    assert!(corrected(&[away], &[(1, Some(away))]).changed.len() > 100);
+    let moved = corrected(&[away], &[]);
     let is_there = |what: Provenance| moved.changed.values().flatten().any(|new| new.provenance == what);
     assert!(is_there(Provenance::Ground) && is_there(Provenance::Added));
+}
+
+/// A car that is longer than its box goes as a whole; a wall that a box touches stays.
+#[test]
+fn bumpers_go_with_the_car_and_walls_do_not() {
+    let whole = recording(&[car(1, 6.0, 6.0)], true);
+    let short = SceneBox {
+        size_m: DVec3::new(3.8, 1.8, 1.6),
+        ..car(1, 6.2, 6.0)
+    };
+    let with = |b: SceneBox| {
+        let mut before = Scene::clone(&whole.before);
+        before.change_canvas(|canvas| canvas.boxes = [(b.id, b)].into());
+        let recording = SweepRecording {
+            before: Arc::new(before),
+            ..SweepRecording::clone(&whole)
+        };
+        EditableSweep::new(Arc::new(recording), &[]).edits(&with_boxes(&whole, &[]))
+    };
+    let all = with(car(1, 6.0, 6.0)).changed.len();
+    let of_short = with(short).changed.len();
+    println!("{of_short} of {all} returns go with a short box");
+    assert!(of_short * 100 >= all * 97);
+    let at_wall = with(car(1, WALL_M - 1.0, 8.0));
+    let near = car(1, WALL_M - 1.0, 8.0);
+    for record in at_wall.changed.keys() {
+        let was = whole.returns[*record as usize].expect("a return").place();
+        assert!(near.contains(was, BESIDE_M + 1e-6), "{was}");
+    }
 }
 
 #[test]
