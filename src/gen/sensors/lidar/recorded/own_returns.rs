@@ -11,7 +11,7 @@ pub const AROUND_M: f64 = 0.8;
 /// Largest distance between neighbouring returns of one object along an axis, m.
 const APART_M: f64 = 0.2;
 /// Distance from the outer edge within which returns show that something goes on, m, and how many of them.
-const EDGE_M: f64 = 0.15;
+const EDGE_M: f64 = 0.25;
 const EDGE_RETURNS: usize = 3;
 /// Times as many returns as are in a box that may be its object's beyond it.
 const MOST_BEYOND: usize = 3;
