@@ -359,7 +359,7 @@ impl EditableSweep {
             let near = near
                 .filter_map(placed)
                 .filter(|(_, p)| p.z <= top_m && !of_others(*p));
-            let beyond = own_returns::beyond_box(b, &own, &near.collect::<Vec<_>>());
+            let beyond = own_returns::beyond_box(b, self.recording.sensor_m, &own, &near.collect::<Vec<_>>());
             let all = own.iter().map(|(i, _)| *i).chain(beyond);
             all.for_each(|i| gone[i] = true);
         }

@@ -8,8 +8,9 @@ use scene::SceneBox;
 
 /// Distance beyond a box within which returns may be of its object, m.
 pub const AROUND_M: f64 = 0.8;
-/// Largest distance between neighbouring returns of one object along an axis, m.
+/// Distance between neighbouring returns of one object along an axis, m, and its part of the range where that is more.
 const APART_M: f64 = 0.2;
+const APART: f64 = 0.015;
 /// Distance from the outer edge within which returns show that something goes on, m, and how many of them.
 const EDGE_M: f64 = 0.25;
 const EDGE_RETURNS: usize = 3;
@@ -20,8 +21,14 @@ pub const ABOVE_M: f64 = 0.3;
 
 /// Records near a box that hang together with those in it, of objects that end near it; none if what hangs together goes on, as a
 /// wall or a hedge does. `inside` and `near` are records with their places, m.
-pub fn beyond_box(b: &SceneBox, inside: &[(usize, DVec3)], near: &[(usize, DVec3)]) -> Vec<usize> {
-    let cell = |p: DVec3| (p / APART_M).floor().as_i64vec3();
+pub fn beyond_box(
+    b: &SceneBox,
+    sensor: DVec3,
+    inside: &[(usize, DVec3)],
+    near: &[(usize, DVec3)],
+) -> Vec<usize> {
+    let apart_m = APART_M.max(APART * b.center_m.distance(sensor));
+    let cell = |p: DVec3| (p / apart_m).floor().as_i64vec3();
     let mut by_cell: HashMap<_, Vec<usize>> = HashMap::new();
     for (i, (_, p)) in near.iter().enumerate() {
         by_cell.entry(cell(*p)).or_default().push(i);
