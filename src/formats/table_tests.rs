@@ -9,8 +9,8 @@ use std::sync::{Arc, LazyLock};
 use glam::{DVec2, DVec3};
 use scene::message::LONGEST;
 use scene::{
-    Baking, BevLayer, BevLayout, BoxId, CameraMaps, CameraTruth, Class, Frame, GaussianScene, LidarPoint,
-    LidarSweep, Pose, Scene, SceneBox, SceneGaussian, SensorRig, TruthPixel, VoxelGrid,
+    Baking, BevLayer, BevLayout, BoxId, CameraMaps, CameraTruth, Class, Frame, GaussianScene, LidarSweep,
+    Pose, Scene, SceneBox, SceneGaussian, SensorRig, TruthPixel, VoxelGrid,
 };
 
 use tempfile::TempDir;
@@ -18,7 +18,7 @@ use tempfile::TempDir;
 use crate::export::{self, BoxVisibility, ExportPicture, Exporter, ObservationMasks, OutFile, Products};
 use crate::import::{self, Content, ImportFile, Importer};
 use crate::recipe::Recipe;
-use crate::{FormatError, Holds, box_list, loom, occ3d};
+use crate::{FormatError, Holds, box_list, loom, occ3d, points_tests};
 
 /// A small scene: a road, a car and its voxels, some paint.
 pub(crate) fn scene() -> Scene {
@@ -158,23 +158,8 @@ impl Products for Small {
     }
 
     fn sweep(&mut self) -> Result<LidarSweep, FormatError> {
-        let point = LidarPoint {
-            position_in_ego: [1.0, 2.0, 3.0],
-            range_m: 4.0,
-            ring: 5,
-            azimuth: 1,
-            class: Class::Car,
-            intensity: 20.0,
-            drop_probability: 0.0,
-            time_s: 0.0,
-            velocity_mps: [0.0; 2],
-        };
-        Ok(LidarSweep {
-            points: vec![point],
-            rays: 2,
-            physical: true,
-            provenance: Vec::new(),
-        })
+        let point = points_tests::point(DVec3::new(1.0, 2.0, 3.0), Class::Car);
+        Ok(points_tests::sweep(vec![point]))
     }
 
     fn sweep_edits(&mut self, _: usize) -> Result<scene::SweepEdits, FormatError> {
