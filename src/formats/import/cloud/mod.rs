@@ -251,7 +251,9 @@ impl Cloud {
         };
         self.level = Some(level);
         self.sweep.ground = ground.map(|ground| ground.moved(&level));
-        if ground.is_some_and(GroundPlane::is_below_a_sensor) {
+        // A cloud that does not stand on its ground is in the frame of its sensor.
+        let is_lifted = !is_labelled && lift_m > 0.0;
+        if is_lifted || ground.is_some_and(GroundPlane::is_below_a_sensor) {
             self.sweep.sensor_m.get_or_insert(DVec3::ZERO);
         }
         self.sweep.sensor_m = self.sweep.sensor_m.map(|at| level.apply(at));

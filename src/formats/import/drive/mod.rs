@@ -66,7 +66,7 @@ fn clouds(folder: &Path) -> Vec<PathBuf> {
         let path = file.ok()?.path();
         let name = path.file_name()?.to_string_lossy().into_owned();
         let (stem, ending) = name.split_once('.')?;
-        let is_cloud = ENDINGS.iter().any(|e| ending == *e) || ending == "pcd.bin";
+        let is_cloud = ENDINGS.contains(&ending) || ending == "pcd.bin";
         let number: u64 = stem.parse().ok().filter(|_| is_cloud)?;
         Some((number, path))
     });

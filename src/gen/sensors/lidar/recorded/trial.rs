@@ -16,8 +16,7 @@ const CAR_M: DVec3 = DVec3::new(4.5, 1.9, 1.6);
 const NEAREST_M: f64 = 6.0;
 const FARTHEST_M: f64 = 25.0;
 const STEP_M: f64 = 5.0;
-/// Returns in the place of a car at most, and returns that it hides at least.
-const MOST_IN: usize = 0;
+/// Returns that a car hides at least.
 const LEAST_HIDDEN: usize = 100;
 /// Height above the ground from which a return stands in the way of a car, m.
 const CLEAR_M: f32 = 0.3;
@@ -53,7 +52,7 @@ pub fn holes(recording: &Arc<SweepRecording>, others: &[Arc<SweepRecording>]) ->
         };
         let is_free = || {
             let standing = whole.held(&car, 0.2).filter(|i| whole.heights_m[*i] > CLEAR_M);
-            standing.count() <= MOST_IN
+            standing.count() == 0
         };
         ((NEAREST_M..=FARTHEST_M).contains(&far_m) && is_free()).then_some(car)
     });
