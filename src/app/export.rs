@@ -428,7 +428,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("out");
         let scene = open::from_template("straight", 3).expect("a template");
-        let needs_no_device = |f: &Format| !f.needs.contains(&Product::View);
+        let needs = |f: &Format, what| f.needs.contains(&what);
+        let needs_no_device = |f: &Format| !needs(f, Product::View) && !needs(f, Product::Recording);
         let formats: Vec<Format> = formats::export::all()
             .iter()
             .copied()

@@ -301,7 +301,8 @@ fn a_sweep_is_lifted_onto_the_map_and_says_so() {
     std::fs::write(path("sweep.pcd"), format!("{header}{points}")).expect("written");
     let report = import(&path("sweep.pcd"), &path("sweep.loom"));
     let told = "the sweep lies in its sensor's frame: lifted by 1.84 m";
-    assert_eq!(report["notes"], serde_json::json!([told]));
+    let kept = "sweep.pcd stays with the scene, all its fields too";
+    assert_eq!(report["notes"], serde_json::json!([told, kept]));
     let args = |lift: &str| {
         [
             "import",

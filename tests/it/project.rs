@@ -418,16 +418,16 @@ fn what_is_missing_or_unknown_is_named() {
     assert!(key.contains("unknown field `colour`"), "{key}");
     let key = json_refusal(
         "manifest.json",
-        "\"version\":11",
-        "\"version\":11,\"made_by\":\"me\"",
+        "\"version\":12",
+        "\"version\":12,\"made_by\":\"me\"",
     );
     assert!(key.contains("unknown field `made_by`"), "{key}");
     let missing = json_refusal("scene.json", "\"seed\":18446744073709551615,", "");
     assert!(missing.contains("missing field `seed`"), "{missing}");
-    let version = json_refusal("manifest.json", "\"version\":11", "\"version\":12,\"new_key\":0");
+    let version = json_refusal("manifest.json", "\"version\":12", "\"version\":13,\"new_key\":0");
     assert_eq!(
         version,
-        "manifest.json: version is 12, expected 11; open it with the sceneloom that wrote it"
+        "manifest.json: version is 13, expected 12; open it with the sceneloom that wrote it"
     );
     let format = json_refusal("manifest.json", "\"sceneloom\"", "\"krita\"");
     assert_eq!(

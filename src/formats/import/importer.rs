@@ -109,6 +109,21 @@ pub struct ImportedScene {
     pub sweep: Option<ImportedSweep>,
 }
 
+/// Name of a scene from this file: that of the file, or of its folder where data sets name the folder after the frame
+/// and the file `labels`. `import` for a path without a name.
+pub fn scene_name(path: &Path) -> String {
+    let stem = path.file_stem().map(|s| s.to_string_lossy());
+    let folder = path
+        .parent()
+        .and_then(Path::file_name)
+        .map(|s| s.to_string_lossy());
+    match (stem, folder) {
+        (Some(stem), Some(folder)) if stem == "labels" => folder.into_owned(),
+        (Some(stem), _) => stem.into_owned(),
+        (None, _) => "import".to_owned(),
+    }
+}
+
 /// A scene from labels: the voxels are kept, layout, boxes and background are inferred. Things beside the road, and all on a
 /// larger map of Occ3D's voxels, are inferred in the networks' window only.
 pub(crate) fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobserved>) -> Scene {

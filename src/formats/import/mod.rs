@@ -40,7 +40,7 @@ use scene::message::quoted;
 
 use super::{FormatError, input, sweep_file};
 pub use imported_sweep::ImportedSweep;
-pub use importer::{Content, ImportFile, ImportOptions, ImportedScene, Importer};
+pub use importer::{Content, ImportFile, ImportOptions, ImportedScene, Importer, scene_name};
 use importer::{GUESSED, first_entry_ends, labelled, on_data_map};
 
 /// Every format that can be read.
@@ -238,7 +238,7 @@ fn read_file(importer: &Importer, path: &Path, options: ImportOptions) -> Result
     let mut content = (importer.read)(&source).map_err(|e| e.at(&path.display()))?;
     if let Content::Scene(loaded) = &mut content
         && let Some(sweep) = &mut loaded.sweep
-        && ![las::IMPORTER.id, drive::IMPORTER.id].contains(&importer.id)
+        && ![las::IMPORTER.id, drive::IMPORTER.id, nuscenes::IMPORTER.id].contains(&importer.id)
     {
         let name = scan::file_name(Some(path));
         let format = match importer.id {
@@ -248,21 +248,6 @@ fn read_file(importer: &Importer, path: &Path, options: ImportOptions) -> Result
         sweep.keep(name, format, Arc::new(bytes));
     }
     Ok(content)
-}
-
-/// Name of a scene from this file: that of the file, or of its folder where data sets name the folder after the frame
-/// and the file `labels`. `import` for a path without a name.
-pub fn scene_name(path: &Path) -> String {
-    let stem = path.file_stem().map(|s| s.to_string_lossy());
-    let folder = path
-        .parent()
-        .and_then(Path::file_name)
-        .map(|s| s.to_string_lossy());
-    match (stem, folder) {
-        (Some(stem), Some(folder)) if stem == "labels" => folder.into_owned(),
-        (Some(stem), _) => stem.into_owned(),
-        (None, _) => "import".to_owned(),
-    }
 }
 
 #[cfg(test)]

@@ -15,7 +15,8 @@ use scene::{Clip, Key, Motion, Pose, Recorded, SweepRecording};
 
 use super::cloud::{Cloud, Label, is_own};
 use super::imported_sweep::SweepSource;
-use super::{Content, ImportFile, ImportOptions, ImportedScene, Importer};
+use super::scan::file_name;
+use super::{Content, ImportFile, ImportOptions, ImportedScene, Importer, scene_name};
 use crate::sweep_file::{self, SweepFile};
 use crate::{FormatError, Holds, input};
 
@@ -81,7 +82,7 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
     let poses = poses::read(folder, clouds.len(), &mut notes)?;
     let sweeps = chosen(clouds, poses, &mut notes)?;
     let first = opened(&sweeps[0].path)?;
-    let name = super::scene_name(folder);
+    let name = scene_name(folder);
     let source = ImportFile {
         bytes: &[],
         name: &name,
@@ -114,8 +115,8 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
         }
         let world_from_file = level * one.first_from_sensor;
         sweep.files.push(SweepSource {
-            format: sweep_file::format_of(&super::scan::file_name(Some(&one.path))),
-            name: super::scan::file_name(Some(&one.path)),
+            format: sweep_file::format_of(&file_name(Some(&one.path))),
+            name: file_name(Some(&one.path)),
             bytes: Arc::new(bytes),
             time_s: one.time_s,
             world_from_file,
@@ -207,7 +208,7 @@ fn opened(path: &Path) -> Result<Vec<u8>, FormatError> {
 
 /// Places of the returns of a file in its frame, m, and their strengths.
 fn returns(path: &Path, bytes: &[u8]) -> Result<Vec<(DVec3, f32)>, FormatError> {
-    let name = super::scan::file_name(Some(path));
+    let name = file_name(Some(path));
     let file = SweepFile::open(sweep_file::format_of(&name), bytes).map_err(|e| e.at(&path.display()))?;
     let all = file.returns(&Pose::IDENTITY).into_iter().flatten();
     Ok(all.map(|r| (r.place(), r.strength)).collect())

@@ -151,7 +151,9 @@ fn read_drive(
         scene.change_canvas(|canvas| canvas.inferred.recorded = recorded);
     }
     let loaded = ImportedScene {
-        sweep: None,
+        sweep: (!recording.is_own)
+            .then(|| occupancy::kept_sweeps(source, &recording))
+            .flatten(),
         scene,
         inferred,
         skipped,

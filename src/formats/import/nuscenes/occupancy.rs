@@ -1,17 +1,21 @@
 //! Voxels from measurements: Occ3D labels or LiDAR sweeps of the key frames, put together in the world frame. Moving
 //! objects are taken out; tracks have voxels of their own.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Extent, SceneBox, SensorRig, Unobserved, VoxelGrid, Window, draft,
-    infer,
+    BevLayer, BevLayout, BoxId, Class, Extent, SceneBox, SensorRig, SweepRecording, Unobserved, VoxelGrid,
+    Window, draft, infer,
 };
 
 use super::objects::{RecordedObjects, holds};
 use super::read::{KeyFrame, RecordedSweep, Recording};
 use super::{Skipped, count};
 use crate::import::ImportFile;
+use crate::import::imported_sweep::{ImportedSweep, SweepSource};
 use crate::occ3d;
+use crate::sweep_file;
 
 /// Largest file of a sweep or of its labels, bytes: a hundred times those of the data set.
 const LARGEST_SWEEP: u64 = 64 << 20;
@@ -51,6 +55,37 @@ pub(super) fn observed(
         voxels,
         unobserved,
     })
+}
+
+/// The sweeps of the key frames, to be kept with the scene; `None` if there are none. Those that cannot be read are left out: their
+/// points are counted where voxels are made.
+pub(super) fn kept_sweeps(source: &ImportFile<'_>, recording: &Recording) -> Option<ImportedSweep> {
+    let sweep = |frame: &KeyFrame| {
+        let sweep = frame.sweep.as_ref()?;
+        let bytes = source
+            .beside(&in_data_set(&sweep.filename)?, LARGEST_SWEEP)
+            .ok()?;
+        let is_whole = !bytes.is_empty() && bytes.len().is_multiple_of(POINT);
+        let world_from_file = frame.world_from_ego * sweep.ego_from_lidar;
+        is_whole.then(|| SweepSource {
+            name: sweep.filename.rsplit('/').next().unwrap_or_default().to_owned(),
+            format: sweep_file::NUSCENES,
+            bytes: Arc::new(bytes),
+            time_s: frame.time_s,
+            world_from_file,
+            sensor_m: world_from_file.translation_m,
+        })
+    };
+    let files: Vec<SweepSource> = recording
+        .frames
+        .iter()
+        .filter_map(sweep)
+        .take(SweepRecording::MOST)
+        .collect();
+    let first = files.first()?;
+    let mut all = ImportedSweep::without_returns(first.world_from_file, first.sensor_m);
+    all.files = files;
+    Some(all)
 }
 
 /// Adds ground voxels where the layout has ground and the voxels have none: between the rings of a LiDAR, and where

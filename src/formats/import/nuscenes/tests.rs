@@ -365,6 +365,32 @@ fn a_truck_ahead_and_to_the_left_is_there() {
     assert_eq!(skipped, expected);
 }
 
+/// The sweeps of key frames stay, each where the vehicle was; those that are damaged do not.
+#[test]
+fn sweeps_of_key_frames_stay_with_the_scene() {
+    let folder = foreign();
+    let kept = read(folder.path()).expect("as the data set is").with_recording();
+    let [sweep] = kept.scene.kept.sweeps.as_slice() else {
+        panic!("{:?}", kept.notes);
+    };
+    assert_eq!(&*sweep.file, "a2.bin");
+    let bytes = std::fs::read(folder.path().join("samples/LIDAR_TOP/a2.bin")).expect("there");
+    assert!(*sweep.bytes == bytes);
+    let then = kept.scene.at(sweep.time_s).frame().world_from_ego;
+    let lidar = DVec3::from_array(kept.scene.rig.lidars[0].translation_m);
+    assert!(
+        then.apply(lidar).distance(sweep.sensor_m) < 1e-9,
+        "{}",
+        sweep.sensor_m
+    );
+    let wall = sweep
+        .returns
+        .iter()
+        .flatten()
+        .filter(|r| r.place().distance(DVec3::new(6.1, -7.1, 2.7)) < 0.5);
+    assert!(wall.count() > 0);
+}
+
 #[test]
 fn occ3d_labels_beside_go_before_sweeps() {
     let folder = foreign();

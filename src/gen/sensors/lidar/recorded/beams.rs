@@ -116,7 +116,13 @@ impl Beams {
 
     /// The pattern of the sensor, with what its beams do not tell from another one. `None` without beams.
     pub fn pattern(&self, recording: &SweepRecording, like: &LidarPattern) -> Option<LidarPattern> {
-        let turn = recording.world_from_file.rotation;
+        let ego_from_world = recording
+            .before
+            .at(recording.time_s)
+            .frame()
+            .world_from_ego
+            .inverse();
+        let turn = (ego_from_world * recording.world_from_file).rotation;
         let columns = (TAU / self.step_rad).round();
         if self.elevations_rad.is_empty() || !(MOST_APART..=MOST_COLUMNS).contains(&columns) {
             return None;
@@ -128,7 +134,7 @@ impl Beams {
             first_azimuth_deg: first_deg,
             sector_deg,
             rotation_wxyz: [turn.w, turn.x, turn.y, turn.z],
-            translation_m: recording.sensor_m.to_array(),
+            translation_m: ego_from_world.apply(recording.sensor_m).to_array(),
             clockwise: false,
             part: None,
             ..like.clone()
