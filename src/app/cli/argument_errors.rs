@@ -209,7 +209,7 @@ mod tests {
         );
         let lidar = text("sceneloom render a.loom -o b --lidar exakt");
         assert!(
-            lidar.contains("found \"exakt\", expected one of exact, learned"),
+            lidar.contains("found \"exakt\", expected one of recorded, exact, learned"),
             "{lidar}"
         );
         assert!(lidar.contains("(did you mean exact?)"), "{lidar}");
