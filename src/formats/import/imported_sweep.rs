@@ -29,12 +29,12 @@ pub struct ImportedSweep {
     /// Pose of the file's frame in the world frame.
     pub(super) world_from_file: Pose,
     /// Files that stay with the scene.
-    pub(in crate::import) files: Vec<SweepSource>,
+    pub(crate) files: Vec<SweepSource>,
 }
 
 /// A file of returns.
 #[derive(Clone, Debug)]
-pub(in crate::import) struct SweepSource {
+pub(crate) struct SweepSource {
     /// Name, without folders.
     pub(super) name: String,
     /// Id of its format.
@@ -50,7 +50,7 @@ pub(in crate::import) struct SweepSource {
 
 impl ImportedSweep {
     /// A sweep in whose returns no objects are looked for.
-    pub(in crate::import) fn without_returns(world_from_file: Pose, sensor_m: DVec3) -> Self {
+    pub(crate) fn without_returns(world_from_file: Pose, sensor_m: DVec3) -> Self {
         Self {
             returns: Vec::new(),
             sensor_m,
