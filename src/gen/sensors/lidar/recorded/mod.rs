@@ -2,9 +2,9 @@
 //!
 //! - Returns of an object whose box was removed or moved go, those of voxels that were painted free too, and those hidden by
 //!   what is new.
-//! - A ray that is free again goes on to the measured **ground** ([`ground`]), or to an upright **surface** that is seen above
-//!   the object ([`surfaces`]); voxels of 0.4 m tell too little. So do rays between these from which nothing came back before
-//!   ([`beams`]).
+//! - A ray that is free again goes on to the measured **ground** (`ground.rs`), or to an upright **surface** that is seen above
+//!   the object (`surfaces.rs`); voxels of 0.4 m tell too little. So do rays between these from which nothing came back before
+//!   (`beams.rs`).
 //! - Rays that meet what is **new** end on its solids.
 //! - What generation changed beside an edit changes no return.
 
