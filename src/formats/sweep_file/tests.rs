@@ -172,6 +172,36 @@ fn a_record_goes_where_others_are_empty_too() {
     assert!(edited[..16].iter().all(|b| *b == 0) && edited[16..] == bytes[16..]);
 }
 
+/// A new return takes the empty record where its ray belongs; without one it comes last, but in an organized cloud it takes one of
+/// its row.
+#[test]
+fn new_returns_take_their_slots() {
+    let empty = [0.0f32; 4];
+    let full = |x: f32| [x, 1.0, -1.7, 0.5];
+    let rows = [full(5.0), empty, full(6.0), full(7.0), empty, full(8.0)];
+    let body: Vec<u8> = rows.iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
+    let edits = |slot| SweepEdits {
+        changed: BTreeMap::new(),
+        added: vec![SyntheticReturn { slot, ..new(20.5, 2) }],
+    };
+    let places = |file: &SweepFile<'_>, edits: &SweepEdits| {
+        let (bytes, origins) = file.edited(edits, &Pose::IDENTITY);
+        let added = origins.iter().position(|origin| *origin == Provenance::Added);
+        (bytes.len(), origins.len(), added)
+    };
+    let scan = SweepFile::open(KITTI, &body).expect("a scan");
+    assert_eq!(places(&scan, &edits(Some(4))), (body.len(), 6, Some(4)));
+    assert_eq!(places(&scan, &edits(None)), (body.len() + 16, 7, Some(6)));
+    // A slot that is taken, or is none, is not written over.
+    assert_eq!(places(&scan, &edits(Some(3))), (body.len() + 16, 7, Some(6)));
+    assert_eq!(places(&scan, &edits(Some(99))), (body.len() + 16, 7, Some(6)));
+    let head = "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 3\nHEIGHT 2\n\
+                VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 6\nDATA binary\n";
+    let organized = [head.as_bytes(), &body].concat();
+    let cloud = SweepFile::open(format_of("a.pcd"), &organized).expect("a cloud");
+    assert_eq!(places(&cloud, &edits(None)), (organized.len(), 6, Some(1)));
+}
+
 #[test]
 fn damaged_files_are_refused_in_one_line() {
     for (name, bytes) in files() {

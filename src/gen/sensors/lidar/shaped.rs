@@ -326,8 +326,13 @@ impl<'a> ShapedBoxes<'a> {
 /// Distances between which a ray is in a box, at least [`WITHIN_M`] from its faces, m; `None` if it passes the box, or
 /// if the box is thinner than that.
 fn through(b: &SceneBox, ray: &ReturnRay) -> Option<[f64; 2]> {
-    let (from, to) = (b.to_local(ray.origin), b.to_local(ray.origin + ray.direction));
-    let (way, half) = (to - from, b.size_m / 2.0 - DVec3::splat(WITHIN_M));
+    within(b, ray.origin, ray.direction, WITHIN_M)
+}
+
+/// Distances between which a ray is in a box, at least `inside_m` from its faces, m; `None` as in [`through`].
+pub(super) fn within(b: &SceneBox, origin: DVec3, direction: DVec3, inside_m: f64) -> Option<[f64; 2]> {
+    let (from, to) = (b.to_local(origin), b.to_local(origin + direction));
+    let (way, half) = (to - from, b.size_m / 2.0 - DVec3::splat(inside_m));
     let (mut near, mut far) = (0.0f64, f64::INFINITY);
     for axis in 0..3 {
         if way[axis].abs() < 1e-12 {

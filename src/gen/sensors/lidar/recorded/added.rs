@@ -9,6 +9,7 @@ use world::objects;
 
 use super::NEAREST_M;
 use super::changes::SceneChanges;
+use crate::lidar::shaped::within;
 use crate::pictures::march::solids::SolidIndex;
 use crate::raycast::ColumnMasks;
 
@@ -106,21 +107,5 @@ pub fn is_in_windows(windows: &[[f64; 2]], way: DVec3) -> bool {
 
 /// Distance at which a ray enters a box, m.
 pub fn entered(b: &SceneBox, origin: DVec3, direction: DVec3) -> Option<f64> {
-    let (from, way) = (
-        b.to_local(origin),
-        b.to_local(origin + direction) - b.to_local(origin),
-    );
-    let half = b.size_m / 2.0;
-    let (mut near, mut far) = (0.0f64, f64::INFINITY);
-    for axis in 0..3 {
-        if way[axis].abs() < 1e-12 {
-            if from[axis].abs() > half[axis] {
-                return None;
-            }
-            continue;
-        }
-        let ends = [-half[axis], half[axis]].map(|side| (side - from[axis]) / way[axis]);
-        (near, far) = (near.max(ends[0].min(ends[1])), far.min(ends[0].max(ends[1])));
-    }
-    (near <= far).then_some(near)
+    within(b, origin, direction, 0.0).map(|[near_m, _]| near_m)
 }
