@@ -329,6 +329,40 @@ fn odd_sweeps_are_taken_as_they_are() {
     }
 }
 
+/// Other sweeps tell what a removed car hid: a block behind it that no other return shows.
+#[test]
+fn other_sweeps_tell_what_was_hidden() {
+    let block = car(9, 15.0, 1.0);
+    let hidden_by_car = recording(&[car(1, 10.0, 1.0), block], true);
+    let beside = recording(&[block], true);
+    let scene = with_boxes(&hidden_by_car, &[block]);
+    let truth = |direction: DVec3| entered(&block, SENSOR, direction);
+    let right = |others: &[Arc<SweepRecording>]| {
+        let edits = EditableSweep::new(hidden_by_car.clone(), others).edits(&scene);
+        let of_block = edits.changed.iter().filter_map(|(record, new)| {
+            let was = hidden_by_car.returns[*record as usize]?.place();
+            Some((truth((was - SENSOR).normalize())?, *new))
+        });
+        let (mut right, mut all) = (0, 0);
+        for (free_m, new) in of_block {
+            let is_right = |new: SyntheticReturn| {
+                new.provenance == Provenance::OtherSweep && (new.at_m.distance(SENSOR) - free_m).abs() < 0.15
+            };
+            (right, all) = (right + usize::from(new.is_some_and(is_right)), all + 1);
+        }
+        [right, all]
+    };
+    let drive = [
+        &hidden_by_car,
+        &beside,
+        &recording(&[block], true),
+        &recording(&[block], true),
+    ];
+    let [told, all] = right(&drive.map(Arc::clone));
+    assert!(all > 20 && told * 10 >= all * 9, "{told} of {all}");
+    assert_eq!(right(&[])[0], 0, "nobody else saw it");
+}
+
 /// The same on any number of threads.
 #[test]
 fn threads_do_not_change_edits() {
