@@ -7,6 +7,7 @@ use glam::DVec3;
 use scene::message::quoted;
 use scene::{BoxId, Class, Pose, Scene, SceneBox, SweepRecording, VoxelGrid};
 
+use super::drive::survey::SurveyedDrive;
 use super::importer::{ImportedScene, labelled, of_sensor};
 use crate::FormatError;
 use crate::sweep_file::SweepFile;
@@ -30,6 +31,8 @@ pub struct ImportedSweep {
     pub(super) world_from_file: Pose,
     /// Files that stay with the scene.
     pub(crate) files: Vec<SweepSource>,
+    /// All sweeps of a drive without labels.
+    pub(super) drive: Option<Arc<SurveyedDrive>>,
 }
 
 /// A file of returns.
@@ -58,6 +61,7 @@ impl ImportedSweep {
             ground_m: [0.0; 3],
             world_from_file,
             files: Vec::new(),
+            drive: None,
         }
     }
 
@@ -177,7 +181,7 @@ fn lifted(b: &SceneBox, by_m: f64) -> SceneBox {
 }
 
 /// Gives the voxels of an object its class.
-fn relabel(grid: &mut VoxelGrid, b: &SceneBox) {
+pub(super) fn relabel(grid: &mut VoxelGrid, b: &SceneBox) {
     let extent = grid.extent();
     let grown = SceneBox {
         size_m: b.size_m + DVec3::new(2.0 * BESIDE_M, 2.0 * BESIDE_M, 0.0),

@@ -12,6 +12,7 @@ mod drive;
 mod far_tests;
 mod foreign;
 pub mod glb;
+mod imported_drive;
 mod imported_sweep;
 mod importer;
 pub mod kitti;
@@ -39,6 +40,7 @@ use std::sync::Arc;
 use scene::message::quoted;
 
 use super::{FormatError, input, sweep_file};
+pub use imported_drive::{MomentGround, SweepMoment, TrackedObject};
 pub use imported_sweep::ImportedSweep;
 pub use importer::{Content, ImportFile, ImportOptions, ImportedScene, Importer, scene_name};
 use importer::{GUESSED, first_entry_ends, labelled, on_data_map};

@@ -16,6 +16,7 @@ pub mod roads;
 pub mod scenery;
 pub mod scenery_around;
 pub mod text;
+mod tracks;
 pub mod whole;
 pub mod wildcards;
 

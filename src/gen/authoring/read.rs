@@ -4,10 +4,17 @@ use std::path::Path;
 use std::sync::Arc;
 
 use formats::FormatError;
-use formats::import::{self, Content, ImportOptions, ImportedScene, Importer};
+use formats::import::{self, Content, ImportOptions, ImportedScene, Importer, MomentGround};
+use glam::DVec3;
+use nets::ModelError;
 use nets::perceiver::LidarPerceiver;
-use scene::{BoxId, Scene, SensorRig};
+use nets::perceiver::detection::Detection;
+use nets::perceiver::stands::Stands;
+use rayon::prelude::*;
+use scene::{BoxId, Scene, SensorRig, Window};
 use sensors::lidar::recorded::EditableSweep;
+
+use super::tracks::{self, Find};
 
 /// Reads a file as [`import::read_with`] does; in a sweep without labels objects are found, each a guess. The file of a
 /// sweep is kept with the scene, whose LiDAR gets the beams of the sweep.
@@ -16,7 +23,11 @@ pub fn file_with(path: &Path, options: ImportOptions) -> Result<(&'static Import
     Ok(match content {
         Content::Scene(loaded) => {
             let is_sweep = loaded.sweep.is_some();
-            let mut loaded = with_objects(*loaded).with_recording();
+            let loaded = match loaded.moments() {
+                0 => with_objects(*loaded),
+                _ => with_tracked(*loaded),
+            };
+            let mut loaded = loaded.with_recording();
             let pattern = is_sweep.then(|| take_pattern(&mut loaded.scene)).flatten();
             if let Some([beams, columns]) = pattern {
                 let note =
@@ -49,6 +60,95 @@ fn take_pattern(scene: &mut Scene) -> Option<[usize; 2]> {
     Some(told)
 }
 
+/// What the network sees at a moment of a drive.
+struct SeenMoment {
+    time_s: f64,
+    /// Objects, in the world frame.
+    finds: Vec<Find>,
+    ground: MomentGround,
+}
+
+/// The scene of a drive with the objects that the network finds in its sweeps and that are followed through them, and with the ground as
+/// it sees it.
+fn with_tracked(mut loaded: ImportedScene) -> ImportedScene {
+    let net = LidarPerceiver::bundled().map_err(|e| e.to_string());
+    let seen = net.and_then(|net| {
+        let moments = (0..loaded.moments()).into_par_iter();
+        let seen = moments.filter_map(|number| seen(&loaded, &net, number).transpose());
+        seen.collect::<Result<Vec<SeenMoment>, ModelError>>()
+            .map_err(|e| e.to_string())
+    });
+    let seen = match seen {
+        Ok(seen) => seen,
+        Err(problem) => {
+            loaded
+                .notes
+                .push(format!("no objects were looked for: {problem}"));
+            return loaded;
+        }
+    };
+    let times_s: Vec<f64> = seen.iter().map(|moment| moment.time_s).collect();
+    let (finds, ground): (Vec<Vec<Find>>, Vec<MomentGround>) = seen
+        .into_iter()
+        .map(|moment| (moment.finds, moment.ground))
+        .unzip();
+    let objects = tracks::objects(&finds, &times_s);
+    let moving = objects.iter().filter(|object| object.places.len() > 1).count();
+    loaded.notes.push(format!(
+        "{} objects found that stand and {moving} that move, each a guess",
+        objects.len() - moving
+    ));
+    loaded.with_tracked(&objects, &ground)
+}
+
+/// What the network sees at a moment; `None` beyond the last.
+fn seen(
+    loaded: &ImportedScene,
+    net: &LidarPerceiver,
+    number: usize,
+) -> Result<Option<SeenMoment>, ModelError> {
+    let Some(moment) = loaded.moment(number) else {
+        return Ok(None);
+    };
+    let seen = net.glance(&moment.returns, number)?;
+    let ahead = (moment.world_from_vehicle.rotation * DVec3::X).truncate();
+    let find = |d: &Detection| {
+        let object = d.to_box(BoxId(0));
+        Find {
+            group: d.group,
+            score: f64::from(d.score),
+            at_m: moment.world_from_vehicle.apply(object.center_m).truncate(),
+            size_m: object.size_m,
+            yaw_rad: object.yaw_rad + ahead.to_angle(),
+        }
+    };
+    let near = near(&moment.returns);
+    let class = |(stands, near): (&Stands, bool)| {
+        let class = stands.class();
+        (near && class.is_ground()).then_some(class)
+    };
+    Ok(Some(SeenMoment {
+        time_s: moment.time_s,
+        finds: seen.detections.iter().map(find).collect(),
+        ground: seen.stands.iter().zip(near).map(class).collect(),
+    }))
+}
+
+/// Columns of the window, `[x][y]`, that have a return within 1.2 m: the network guesses the others.
+fn near(returns: &[[f32; 4]]) -> Vec<bool> {
+    const REACH: usize = 3;
+    let mut near = vec![false; Window::COLUMNS];
+    for [x, y, ..] in returns {
+        if let Some([x, y]) = Window::column_at(f64::from(*x), f64::from(*y)) {
+            for x in x.saturating_sub(REACH)..(x + REACH + 1).min(Window::NX) {
+                let ys = y.saturating_sub(REACH)..(y + REACH + 1).min(Window::NY);
+                near[x * Window::NY..][ys].fill(true);
+            }
+        }
+    }
+    near
+}
+
 /// The scene with the objects that the network finds in its sweep, if it has one.
 fn with_objects(mut loaded: ImportedScene) -> ImportedScene {
     let Some(sweep) = loaded.sweep.as_ref().filter(|sweep| !sweep.returns.is_empty()) else {
@@ -74,6 +174,9 @@ fn with_objects(mut loaded: ImportedScene) -> ImportedScene {
     }
 }
 
+#[cfg(test)]
+#[path = "drive_tests.rs"]
+mod drive_tests;
 #[cfg(test)]
 #[path = "recorded_tests.rs"]
 mod recorded_tests;

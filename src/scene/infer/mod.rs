@@ -9,4 +9,4 @@ mod relief;
 pub use background::background;
 pub use boxes::{boxes, boxes_around};
 pub use ground::layout;
-pub use relief::relief;
+pub use relief::{relief, smooth_relief};

@@ -39,7 +39,13 @@ pub fn relief(labels: &VoxelGrid) -> Relief {
     if (uneven as f64) < UNEVEN_SHARE * f64::from(ground.max(1)) {
         return Relief::FLAT;
     }
-    let mut heights = filled(&known, extent.nx(), extent.ny());
+    smooth_relief(extent, &known)
+}
+
+/// A relief of heights that are known in some of the columns, `[x][y]`, m, NaN elsewhere: continued from the nearest and smoothed
+/// over 3 m.
+pub fn smooth_relief(extent: Extent, known_m: &[f32]) -> Relief {
+    let mut heights = filled(known_m, extent.nx(), extent.ny());
     for _ in 0..PASSES {
         heights = blurred(extent, &heights);
     }

@@ -13,7 +13,7 @@
 use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3};
-use scene::{Class, Window};
+use scene::{Class, Extent};
 
 /// Points up to this far above the ground belong to it, m.
 const GROUND_BAND_M: f64 = 0.15;
@@ -46,19 +46,45 @@ const LEAST_POINTS: f64 = 5.0;
 /// Radius in which thickness is averaged, columns.
 const SMOOTH: usize = 4;
 
-/// A class for each point on the map, of m in the ego frame: driveable surface, other flat, manmade, vegetation or others.
-pub(super) fn classes(points: &[DVec3]) -> Vec<Class> {
-    let columns: Vec<usize> = points.iter().map(|p| column(*p)).collect();
-    let ground = CloudGround::grow(points, &columns);
+/// A place that the vehicle was at.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::import) struct Passed {
+    /// Seen from above, m.
+    pub(in crate::import) at_m: DVec2,
+    /// Height of the ground there, m, if it is known.
+    pub(in crate::import) ground_m: Option<f64>,
+}
+
+impl Passed {
+    /// The vehicle of a single sweep.
+    pub(in crate::import) const HERE: Self = Self {
+        at_m: DVec2::ZERO,
+        ground_m: None,
+    };
+}
+
+/// What the shape of points tells.
+pub(in crate::import) struct Shapes {
+    /// A class for each point: driveable surface, other flat, manmade, vegetation or others.
+    pub(in crate::import) classes: Vec<Class>,
+    /// Height of each point above the ground found there or near, m.
+    pub(in crate::import) above_m: Vec<f64>,
+}
+
+/// Classes of points on a map, in m in its frame, by the places that the vehicle was at, one at least.
+pub(in crate::import) fn shapes(points: &[DVec3], extent: Extent, passed: &[Passed]) -> Shapes {
+    let map = Columns(extent);
+    let columns: Vec<usize> = points.iter().map(|p| map.column(*p)).collect();
+    let ground = CloudGround::grow(map, points, &columns, passed);
     let stands = |i: usize| points[i].z - ground.height_m[columns[i]] >= GROUND_BAND_M;
     let standing: Vec<usize> = (0..points.len()).filter(|i| stands(*i)).collect();
-    let mut above = vec![Above::default(); Window::COLUMNS];
+    let mut above = vec![Above::default(); extent.columns()];
     for &i in &standing {
         let height_m = points[i].z - ground.height_m[columns[i]];
         above[columns[i]].add(points[i].truncate(), height_m);
     }
-    let things = things(&above);
-    let thickness_m = thickness(&above);
+    let things = things(map, &above);
+    let thickness_m = thickness(map, &above);
     let class = |i: usize| {
         let c = columns[i];
         match (stands(i), things[c]) {
@@ -69,30 +95,45 @@ pub(super) fn classes(points: &[DVec3]) -> Vec<Class> {
             (true, false) => Class::Manmade,
         }
     };
-    (0..points.len()).map(class).collect()
+    Shapes {
+        classes: (0..points.len()).map(class).collect(),
+        above_m: (0..points.len())
+            .map(|i| points[i].z - ground.height_m[columns[i]])
+            .collect(),
+    }
 }
 
-fn column(p: DVec3) -> usize {
-    let u = Window::to_voxel_units(p);
-    (u.x as usize).min(Window::NX - 1) * Window::NY + (u.y as usize).min(Window::NY - 1)
-}
+/// The columns of a map, by number.
+#[derive(Clone, Copy)]
+struct Columns(Extent);
 
-/// The columns within a radius.
-fn around(c: usize, reach: usize) -> impl Iterator<Item = usize> {
-    let (x, y) = (c / Window::NY, c % Window::NY);
-    let xs = x.saturating_sub(reach)..=(x + reach).min(Window::NX - 1);
-    xs.flat_map(move |x| {
-        let ys = y.saturating_sub(reach)..=(y + reach).min(Window::NY - 1);
-        ys.map(move |y| x * Window::NY + y)
-    })
-}
+impl Columns {
+    fn column(self, p: DVec3) -> usize {
+        let u = self.0.to_voxel_units(p);
+        (u.x as usize).min(self.0.nx() - 1) * self.0.ny() + (u.y as usize).min(self.0.ny() - 1)
+    }
 
-fn distance_m(a: usize, b: usize) -> f64 {
-    let d = [
-        (a / Window::NY).abs_diff(b / Window::NY),
-        (a % Window::NY).abs_diff(b % Window::NY),
-    ];
-    DVec2::from_array(d.map(|n| n as f64)).length() * Window::VOXEL_M
+    fn center_m(self, c: usize) -> DVec2 {
+        let [x, y] = self.0.column(c);
+        self.0.center(x, y, 0).truncate()
+    }
+
+    /// The columns within a radius.
+    fn around(self, c: usize, reach: usize) -> impl Iterator<Item = usize> {
+        let (nx, ny) = (self.0.nx(), self.0.ny());
+        let (x, y) = (c / ny, c % ny);
+        let xs = x.saturating_sub(reach)..=(x + reach).min(nx - 1);
+        xs.flat_map(move |x| {
+            let ys = y.saturating_sub(reach)..=(y + reach).min(ny - 1);
+            ys.map(move |y| x * ny + y)
+        })
+    }
+
+    fn distance_m(self, a: usize, b: usize) -> f64 {
+        let ny = self.0.ny();
+        let d = [(a / ny).abs_diff(b / ny), (a % ny).abs_diff(b % ny)];
+        DVec2::from_array(d.map(|n| n as f64)).length() * self.0.voxel_m()
+    }
 }
 
 /// Heights of the ground per column.
@@ -104,30 +145,37 @@ struct CloudGround {
 }
 
 impl CloudGround {
-    fn grow(points: &[DVec3], columns: &[usize]) -> Self {
-        let mut lowest = vec![f64::INFINITY; Window::COLUMNS];
+    fn grow(map: Columns, points: &[DVec3], columns: &[usize], passed: &[Passed]) -> Self {
+        let all = map.0.columns();
+        let mut lowest = vec![f64::INFINITY; all];
         for (p, c) in points.iter().zip(columns) {
             lowest[*c] = lowest[*c].min(p.z);
         }
-        let from_vehicle_m = |c: usize| {
-            Window::center(c / Window::NY, c % Window::NY, 0)
-                .truncate()
-                .length()
+        // Distance from the vehicle, m, and where it was then.
+        let nearest = |c: usize| {
+            let at_m = map.center_m(c);
+            let away = passed.iter().map(|p| (p.at_m - at_m).length()).enumerate();
+            away.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
         };
-        let mut order: Vec<usize> = (0..Window::COLUMNS).filter(|c| lowest[*c].is_finite()).collect();
-        order.sort_by(|a, b| from_vehicle_m(*a).total_cmp(&from_vehicle_m(*b)));
-        let near: Vec<f64> = order
-            .iter()
-            .take_while(|c| from_vehicle_m(**c) < LEVEL_REACH_M)
-            .map(|c| lowest[*c])
+        let seen = (0..all).filter(|c| lowest[*c].is_finite());
+        let mut order: Vec<(f64, usize, usize)> = seen
+            .map(|c| {
+                let (place, away_m) = nearest(c);
+                (away_m, c, place)
+            })
             .collect();
-        let all = || order.iter().map(|c| lowest[*c]).collect();
-        let level_m = quantile(if near.is_empty() { all() } else { near });
-        let mut found = vec![f64::NAN; Window::COLUMNS];
-        let mut driven = vec![f64::NAN; Window::COLUMNS];
-        let mut height_m = vec![level_m; Window::COLUMNS];
-        for c in order {
-            let (around_m, gap_m) = mean_around(&found, c).unwrap_or((level_m, from_vehicle_m(c)));
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let near = order.iter().take_while(|(away_m, ..)| *away_m < LEVEL_REACH_M);
+        let near: Vec<f64> = near.map(|(_, c, _)| lowest[*c]).collect();
+        let every = || order.iter().map(|(_, c, _)| lowest[*c]).collect();
+        let usual_m = quantile(if near.is_empty() { every() } else { near });
+        let level_at = |place: usize| passed.get(place).and_then(|p| p.ground_m).unwrap_or(usual_m);
+        let mut found = vec![f64::NAN; all];
+        let mut driven = vec![f64::NAN; all];
+        let mut height_m = vec![usual_m; all];
+        for (away_m, c, place) in order {
+            let level_m = level_at(place);
+            let (around_m, gap_m) = mean_around(map, &found, c).unwrap_or((level_m, away_m));
             let gap_m = gap_m.min(FARTHEST_M);
             let rise_m = lowest[c] - around_m;
             let more_m = RISE_PER_M * gap_m;
@@ -136,7 +184,7 @@ impl CloudGround {
                 continue;
             }
             (found[c], height_m[c]) = (lowest[c], lowest[c]);
-            let (road_m, gap_m) = mean_around(&driven, c).unwrap_or((level_m, 0.0));
+            let (road_m, gap_m) = mean_around(map, &driven, c).unwrap_or((level_m, 0.0));
             if (lowest[c] - road_m).abs() < STEP_M + STEP_PER_M * gap_m.min(FARTHEST_M) {
                 driven[c] = lowest[c];
             }
@@ -156,11 +204,11 @@ fn quantile(mut values: Vec<f64>) -> f64 {
 
 /// The mean of the known values around a column, near ones counting more, and the distance to the nearest, m. `None` if
 /// too few are known.
-fn mean_around(values: &[f64], c: usize) -> Option<(f64, f64)> {
+fn mean_around(map: Columns, values: &[f64], c: usize) -> Option<(f64, f64)> {
     REACH.into_iter().find_map(|reach| {
         let (mut known, mut sum, mut weights, mut nearest_m) = (0, 0.0, 0.0, f64::INFINITY);
-        for other in around(c, reach).filter(|o| !values[*o].is_nan()) {
-            let d = distance_m(c, other);
+        for other in map.around(c, reach).filter(|o| !values[*o].is_nan()) {
+            let d = map.distance_m(c, other);
             let weight = (d + 0.2).powi(-2);
             known += 1;
             sum += weight * values[other];
@@ -222,7 +270,7 @@ impl Above {
 }
 
 /// Tells for each column whether its points above the ground belong to a low and short thing that stands alone.
-fn things(above: &[Above]) -> Vec<bool> {
+fn things(map: Columns, above: &[Above]) -> Vec<bool> {
     let mut out = vec![false; above.len()];
     let mut seen: Vec<bool> = above.iter().map(|a| a.count == 0.0).collect();
     for start in 0..above.len() {
@@ -232,19 +280,20 @@ fn things(above: &[Above]) -> Vec<bool> {
         let (mut part, mut open) = (Vec::new(), VecDeque::from([start]));
         while let Some(c) = open.pop_front() {
             part.push(c);
-            for near in around(c, TOUCH) {
+            for near in map.around(c, TOUCH) {
                 if !std::mem::replace(&mut seen[near], true) {
                     open.push_back(near);
                 }
             }
         }
         let top_m = part.iter().map(|c| above[*c].top_m).fold(0.0, f64::max);
-        let length = |place: fn(usize) -> usize| {
+        let length = |place: &dyn Fn(usize) -> usize| {
             let places = part.iter().map(|c| place(*c));
             let (low, high) = (places.clone().min(), places.max());
-            high.zip(low).map_or(0, |(high, low)| high - low + 1) as f64 * Window::VOXEL_M
+            high.zip(low).map_or(0, |(high, low)| high - low + 1) as f64 * map.0.voxel_m()
         };
-        let length_m = length(|c| c / Window::NY).max(length(|c| c % Window::NY));
+        let ny = map.0.ny();
+        let length_m = length(&|c| c / ny).max(length(&|c| c % ny));
         if top_m < THING_TOP_M && length_m < THING_LENGTH_M {
             part.into_iter().for_each(|c| out[c] = true);
         }
@@ -254,10 +303,11 @@ fn things(above: &[Above]) -> Vec<bool> {
 
 /// Thickness of the things in each column, seen from above, m: the mean over the columns around. 0 where too few points
 /// stand.
-fn thickness(above: &[Above]) -> Vec<f64> {
+fn thickness(map: Columns, above: &[Above]) -> Vec<f64> {
     let of_column = |c: usize| {
         let here = above[c];
-        let joined = around(c, 1)
+        let joined = map
+            .around(c, 1)
             .filter(|o| *o != c && above[*o].count > 0.0)
             .fold(here, |sum, o| sum.joined(&above[o]));
         let is_known = here.count > 0.0 && joined.count >= LEAST_POINTS;
@@ -269,7 +319,7 @@ fn thickness(above: &[Above]) -> Vec<f64> {
             return 0.0;
         }
         let (mut sum, mut weights) = (0.0, 0.0);
-        for (thickness_m, count) in around(c, SMOOTH).map(|o| known[o]) {
+        for (thickness_m, count) in map.around(c, SMOOTH).map(|o| known[o]) {
             if let Some(thickness_m) = thickness_m {
                 sum += thickness_m * count;
                 weights += count;

@@ -9,7 +9,7 @@
 //! A cloud whose ground lies beside the map, as a sweep in its sensor's frame, is lifted as a whole before that ([`level`]), or
 //! by as much as the user says.
 
-mod geometry;
+pub(super) mod geometry;
 mod level;
 mod sweep;
 
@@ -17,11 +17,12 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
 use glam::DVec3;
-use scene::{Class, Pose, Recorded, SensorRig, VoxelGrid, Window};
+use scene::{Class, Extent, Pose, Recorded, SensorRig, VoxelGrid, Window};
 
 use super::{GUESSED, ImportFile, ImportedScene, labelled};
 use level::GroundPlane;
 use sweep::SweepReturns;
+pub(super) use sweep::strength_scale;
 
 /// Layers per voxel in which heights are counted: 0.05 m each.
 const FINE: usize = 8;
@@ -151,16 +152,6 @@ impl Cloud {
         }
     }
 
-    /// An empty cloud of points that are moved so.
-    pub(super) fn at_level(level: Pose) -> Self {
-        let mut cloud = Self {
-            level: Some(level),
-            ..Self::default()
-        };
-        cloud.is_map();
-        cloud
-    }
-
     /// The same for a sensor whose place on the vehicle is a guess.
     pub(super) fn of_guessed_sensor(source: &ImportFile<'_>) -> Self {
         Self {
@@ -270,6 +261,14 @@ impl Cloud {
         }
     }
 
+    /// How points are moved so that they stand on the ground, and notes on that for a person.
+    pub(super) fn leveled(mut self) -> (Pose, Vec<String>) {
+        if self.level.is_none() {
+            self.find_level();
+        }
+        (self.level.unwrap_or_default(), self.notes)
+    }
+
     /// One point, in m in the ego frame.
     fn place(&mut self, at: DVec3, label: Label, strength: f32) {
         let Some([x, y, z]) = Window::voxel_at(at) else {
@@ -346,7 +345,8 @@ impl Cloud {
             let loose = std::mem::take(&mut self.loose);
             self.held = Vec::new();
             let at: Vec<DVec3> = loose.iter().map(Loose::position_m).collect();
-            for ((point, at), class) in loose.iter().zip(&at).zip(geometry::classes(&at)) {
+            let shapes = geometry::shapes(&at, Extent::WINDOW, &[geometry::Passed::HERE]);
+            for ((point, at), class) in loose.iter().zip(&at).zip(shapes.classes) {
                 if !point.labelled {
                     self.count(*at, class);
                 }

@@ -68,7 +68,7 @@ impl SweepReturns {
                 },
             ));
         };
-        let scale = scale(self.returns.iter().map(|r| r.1));
+        let scale = strength_scale(self.returns.iter().map(|r| r.1));
         let above = |(at, strength): ([f32; 3], f32)| {
             let strength = if strength.is_finite() {
                 strength * scale
@@ -87,6 +87,7 @@ impl SweepReturns {
             mount_m: self.sensor_m,
             world_from_file,
             files: Vec::new(),
+            drive: None,
             ground_m: [ground.height_m, ground.slope.x, ground.slope.y],
         })
     }
@@ -97,7 +98,7 @@ fn place(at: [f32; 3]) -> DVec3 {
 }
 
 /// Factor that takes strengths of any sensor to 0 to 255: by a high quantile, as single ones are wild.
-fn scale(strengths: impl Iterator<Item = f32>) -> f32 {
+pub(in crate::import) fn strength_scale(strengths: impl Iterator<Item = f32>) -> f32 {
     let mut known: Vec<f32> = strengths.filter(|s| s.is_finite() && *s > 0.0).collect();
     known.sort_unstable_by(f32::total_cmp);
     match known.get(known.len() * 99 / 100).copied() {

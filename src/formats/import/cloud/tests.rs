@@ -198,7 +198,10 @@ fn shares_of_points_with_the_right_group() {
             }
         }
         let mut right = 0;
-        for (truth, found) in truth.iter().zip(geometry::classes(&points)) {
+        for (truth, found) in truth
+            .iter()
+            .zip(geometry::shapes(&points, scene::Extent::WINDOW, &[geometry::Passed::HERE]).classes)
+        {
             counts[group(*truth)][group(found)] += 1;
             right += usize::from(group(*truth) == group(found));
             if truth.is_ground() && found.is_ground() {

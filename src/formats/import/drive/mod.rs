@@ -2,9 +2,12 @@
 //! each sweep stays with the scene at its moment.
 //!
 //! Clouds are files named by numbers (PCD, PLY, `.bin`) in the frame of their sensor; `poses.txt` ([`poses`]) has the pose of the
-//! sensor at each of them. The world frame is that of the first sweep on its ground.
+//! sensor at each of them. Poses are aligned by the sweeps ([`align`]), which then show ground, its relief, and what stands on it
+//! ([`survey`]). The world frame is that of the first sweep on its ground.
 
+mod align;
 mod poses;
+pub(super) mod survey;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,11 +17,13 @@ use glam::{DVec2, DVec3};
 use scene::{Clip, Key, Motion, Pose, Recorded, SweepRecording};
 
 use super::cloud::{Cloud, Label, is_own};
-use super::imported_sweep::SweepSource;
+use super::imported_sweep::{ImportedSweep, SweepSource};
 use super::scan::file_name;
 use super::{Content, ImportFile, ImportOptions, ImportedScene, Importer, scene_name};
 use crate::sweep_file::{self, SweepFile};
 use crate::{FormatError, Holds, input};
+use align::align;
+use survey::{PlacedSurvey, Survey, SurveyedDrive};
 
 /// See the module. It is told by the folder alone, so it is no line of the table.
 pub const IMPORTER: Importer = Importer {
@@ -40,8 +45,8 @@ pub const IMPORTER: Importer = Importer {
 
 /// Endings of clouds.
 const ENDINGS: [&str; 3] = ["pcd", "ply", "bin"];
-/// Distance from the first sweep up to which sweeps are taken, m: the map ends 40 m from it.
-const REACH_M: f64 = 30.0;
+/// Distance from the first sweep up to which sweeps are taken, m.
+const REACH_M: f64 = 250.0;
 /// Distance between two sweeps that no vehicle drives, m.
 const JUMP_M: f64 = 50.0;
 /// Farthest place of a pose from the first, m.
@@ -81,69 +86,78 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
     let (clouds, mut notes) = (clouds(folder), Vec::new());
     let poses = poses::read(folder, clouds.len(), &mut notes)?;
     let sweeps = chosen(clouds, poses, &mut notes)?;
-    let first = opened(&sweeps[0].path)?;
     let name = scene_name(folder);
-    let source = ImportFile {
+    let files = opened(&sweeps)?;
+    // The first sweep tells where the ground is.
+    let mut first = Cloud::from_source(&ImportFile {
         bytes: &[],
         name: &name,
         path: None,
         options,
-    };
-    // The first sweep tells where the ground is and has the objects.
-    let mut alone = Cloud::from_source(&source);
-    for r in returns(&sweeps[0].path, &first)? {
-        alone.add_return(r.0, &Pose::IDENTITY, Label::None, r.1);
+    });
+    for (at, strength) in returns(&files[0])? {
+        first.add_return(at, &Pose::IDENTITY, Label::None, strength);
     }
-    let ImportedScene {
-        sweep,
-        notes: of_ground,
-        ..
-    } = alone.scene(&name, BTreeMap::new()).map_err(FormatError::new)?;
-    let mut sweep = sweep.ok_or_else(|| FormatError::new("the first cloud is no sweep"))?;
-    let level = sweep.world_from_file;
-    let mut all = Cloud::at_level(level);
-    let mut bytes = Some(first);
-    for one in &sweeps {
-        let bytes = match bytes.take() {
-            Some(first) => first,
-            None => opened(&one.path)?,
-        };
-        for (at, strength) in returns(&one.path, &bytes)? {
-            if !is_own(level.apply(at)) {
-                all.add_point(one.first_from_sensor.apply(at), Label::None, strength);
-            }
-        }
-        let world_from_file = level * one.first_from_sensor;
-        sweep.files.push(SweepSource {
-            format: sweep_file::format_of(&file_name(Some(&one.path))),
-            name: file_name(Some(&one.path)),
-            bytes: Arc::new(bytes),
-            time_s: one.time_s,
-            world_from_file,
-            sensor_m: world_from_file.translation_m,
-        });
-    }
-    let mut loaded = all.scene(&name, BTreeMap::new()).map_err(FormatError::new)?;
-    let clip = clip(&sweeps, &level);
+    let (level, of_ground) = first.leveled();
+    let surveys: Result<Vec<Survey>, FormatError> = files
+        .iter()
+        .map(|file| {
+            let at = returns(file)?.into_iter().map(|r| r.0);
+            Ok(Survey::new(at.filter(|at| !is_own(level.apply(*at)))))
+        })
+        .collect();
+    let surveys = surveys?;
+    let given: Vec<Pose> = sweeps.iter().map(|s| s.first_from_sensor).collect();
+    let points: Vec<&[DVec3]> = surveys.iter().map(Survey::points).collect();
+    let aligned = align(&points, &given);
+    let last_m = aligned
+        .poses
+        .last()
+        .map_or(0.0, |pose| pose.translation_m.length());
+    notes.push(format!(
+        "{} sweeps of {:.1} s, the sensor moves {last_m:.1} m",
+        sweeps.len(),
+        sweeps.last().map_or(0.0, |s| s.time_s),
+    ));
+    notes.push(aligned.note());
+    let placed = surveys
+        .into_iter()
+        .zip(&aligned.poses)
+        .map(|(survey, pose)| PlacedSurvey::of_sensor(survey, level * *pose, &level));
+    let drive = SurveyedDrive::new(placed.collect());
+    let world = drive
+        .world(&[], &[])
+        .ok_or_else(|| FormatError::new("no return of the sweeps lies on the map"))?;
+    notes.extend(world.notes());
+    let mut scene = world.scene(&name, BTreeMap::new());
+    let times_s = sweeps.iter().map(|s| s.time_s);
+    let clip = clip(times_s.clone().zip(&aligned.poses), &level);
     if let Some(problem) = clip.problem() {
         return Err(FormatError::new(problem));
     }
-    let last = &sweeps[sweeps.len() - 1];
-    notes.push(format!(
-        "{} sweeps of {:.1} s, the sensor moves {:.1} m; what moves is smeared in the voxels",
-        sweeps.len(),
-        last.time_s,
-        last.first_from_sensor.translation_m.length()
-    ));
-    loaded.scene.change_clip(|still| *still = clip);
-    let recorded = Arc::new(Recorded::all_of(&loaded.scene));
-    loaded
-        .scene
-        .change_canvas(|canvas| canvas.inferred.recorded = recorded);
-    loaded.notes.splice(0..0, of_ground.into_iter().chain(notes));
-    loaded.sweep = Some(sweep);
-    Ok(Content::Scene(Box::new(loaded)))
+    scene.change_clip(|still| *still = clip);
+    let recorded = Arc::new(Recorded::all_of(&scene));
+    scene.change_canvas(|canvas| canvas.inferred.recorded = recorded);
+    let mut sweep = ImportedSweep::without_returns(level, level.translation_m);
+    sweep.mount_m = Some(level.translation_m);
+    for ((mut file, pose), time_s) in files.into_iter().zip(&aligned.poses).zip(times_s) {
+        file.time_s = time_s;
+        file.world_from_file = level * *pose;
+        file.sensor_m = file.world_from_file.translation_m;
+        sweep.files.push(file);
+    }
+    sweep.drive = Some(Arc::new(drive));
+    Ok(Content::Scene(Box::new(ImportedScene {
+        scene,
+        sweep: Some(sweep),
+        inferred: &GUESSED_OF_DRIVE,
+        skipped: BTreeMap::new(),
+        notes: of_ground.into_iter().chain(notes).collect(),
+    })))
 }
+
+/// Guessed parts of the scene of a drive without labels.
+const GUESSED_OF_DRIVE: [&str; 3] = ["classes", "layout", "background"];
 
 /// The sweeps that are read: near the first, without jumps, as many as can be kept.
 fn chosen(
@@ -202,34 +216,46 @@ fn chosen(
     Ok(sweeps)
 }
 
-fn opened(path: &Path) -> Result<Vec<u8>, FormatError> {
-    input::read(path, SweepRecording::LARGEST as u64).map_err(FormatError::new)
+/// The files of sweeps, not yet placed.
+fn opened(sweeps: &[DriveSweep]) -> Result<Vec<SweepSource>, FormatError> {
+    let open = |sweep: &DriveSweep| {
+        let bytes = input::read(&sweep.path, SweepRecording::LARGEST as u64).map_err(FormatError::new)?;
+        let name = file_name(Some(&sweep.path));
+        Ok(SweepSource {
+            format: sweep_file::format_of(&name),
+            name,
+            bytes: Arc::new(bytes),
+            time_s: 0.0,
+            world_from_file: Pose::IDENTITY,
+            sensor_m: DVec3::ZERO,
+        })
+    };
+    sweeps.iter().map(open).collect()
 }
 
 /// Places of the returns of a file in its frame, m, and their strengths.
-fn returns(path: &Path, bytes: &[u8]) -> Result<Vec<(DVec3, f32)>, FormatError> {
-    let name = file_name(Some(path));
-    let file = SweepFile::open(sweep_file::format_of(&name), bytes).map_err(|e| e.at(&path.display()))?;
-    let all = file.returns(&Pose::IDENTITY).into_iter().flatten();
+fn returns(file: &SweepSource) -> Result<Vec<(DVec3, f32)>, FormatError> {
+    let read = SweepFile::open(file.format, &file.bytes).map_err(|e| e.at(&file.name))?;
+    let all = read.returns(&Pose::IDENTITY).into_iter().flatten();
     Ok(all.map(|r| (r.place(), r.strength)).collect())
 }
 
-/// How the vehicle drives below its sensor.
-fn clip(sweeps: &[DriveSweep], level: &Pose) -> Clip {
+/// How the vehicle drives below its sensor, from times in s and poses in the frame of the first sensor.
+fn clip<'a>(poses: impl Iterator<Item = (f64, &'a Pose)>, level: &Pose) -> Clip {
     let mount = level.translation_m.truncate();
     let turn_rad = |pose: &Pose| {
         let x = (level.rotation * pose.rotation * level.rotation.inverse()) * DVec3::X;
         x.y.atan2(x.x)
     };
     let mut turned_rad = 0.0;
-    let keys = sweeps.iter().map(|sweep| {
-        let yaw_rad = turn_rad(&sweep.first_from_sensor);
+    let keys = poses.map(|(time_s, pose)| {
+        let yaw_rad = turn_rad(pose);
         // Headings go on beyond half a turn.
         turned_rad += (yaw_rad - turned_rad + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
             - std::f64::consts::PI;
-        let sensor = (*level * sweep.first_from_sensor).translation_m.truncate();
+        let sensor = (*level * *pose).translation_m.truncate();
         Key {
-            time_s: sweep.time_s,
+            time_s,
             at_m: sensor - DVec2::from_angle(yaw_rad).rotate(mount),
             yaw_deg: f64::to_degrees(turned_rad),
         }
@@ -239,7 +265,7 @@ fn clip(sweeps: &[DriveSweep], level: &Pose) -> Clip {
         .iter()
         .any(|key| key.at_m.length() > 1e-6 || key.yaw_deg.abs() > 1e-6);
     Clip {
-        length_s: sweeps.last().map_or(0.0, |sweep| sweep.time_s),
+        length_s: keys.last().map_or(0.0, |key| key.time_s),
         ego: moves.then_some(Motion::Keys(keys)),
         ..Clip::default()
     }

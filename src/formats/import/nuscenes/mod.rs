@@ -108,7 +108,7 @@ fn read_drive(
             (layout, voxels, None, &[][..])
         }
     };
-    let background = match extent == Extent::WINDOW && !inferred.is_empty() {
+    let background = match !inferred.is_empty() {
         true => infer::background(&voxels, &layout),
         false => Default::default(),
     };

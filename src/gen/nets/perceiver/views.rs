@@ -6,9 +6,11 @@
 
 use glam::{DVec3, Vec2};
 use rayon::prelude::*;
+use scene::Window;
 
-use super::LidarPerceiver;
 use super::detection::{Detection, DetectionGroup};
+use super::stands::Stands;
+use super::{LidarPerceiver, Perceived};
 use crate::ModelError;
 
 /// Of how many rows one is kept, and how many rows there are.
@@ -56,6 +58,19 @@ struct Found {
 }
 
 impl LidarPerceiver {
+    /// What one look at a real sweep finds, boxes from a low score on, to be followed through a drive. Returns as for
+    /// [`objects_of_sweep`](Self::objects_of_sweep); `number` is that of the sweep: each next one is looked at turned by a quarter.
+    pub fn glance(&self, returns: &[[f32; 4]], number: usize) -> Result<Perceived, ModelError> {
+        let turn = number % TURNS;
+        let seen = self.perceive(returns.iter().map(|r| turned(*r, turn)), LEAST)?;
+        let stands = |d: &Detection| d.center_m[2] - d.size_m[2] / 2.0 < FLOATS_M;
+        let detections = seen.detections.into_iter().map(|d| back(d, turn));
+        Ok(Perceived {
+            detections: detections.filter(stands).collect(),
+            stands: columns_back(&seen.stands, turn),
+        })
+    }
+
     /// Objects of a real sweep: x and y in the frame of the vehicle, height above the ground (m) and strength (0 to 255) of each
     /// return; `sensor_m` is where it was taken. The score of an object is the mean over the looks. The same on any number of
     /// threads.
@@ -129,6 +144,22 @@ fn back(detection: Detection, turn: usize) -> Detection {
         yaw_rad: detection.yaw_rad - turn as f32 * std::f32::consts::FRAC_PI_2,
         ..detection
     }
+}
+
+/// Columns of the window, `[x][y]`, turned back.
+fn columns_back(columns: &[Stands], turn: usize) -> Vec<Stands> {
+    let (side, last) = (Window::NX, Window::NX - 1);
+    let at = |c: usize| {
+        let (x, y) = (c / side, c % side);
+        let (x, y) = match turn % TURNS {
+            0 => (x, y),
+            1 => (last - y, x),
+            2 => (last - x, last - y),
+            _ => (y, last - x),
+        };
+        columns[x * side + y]
+    };
+    (0..columns.len()).map(at).collect()
 }
 
 /// Finds that belong to one object each, the surest first.

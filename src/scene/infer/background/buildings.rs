@@ -6,7 +6,7 @@ use super::columns::{ClassColumns, closed, middle_m, parts};
 use super::rectangle::{SceneryRectangle, split};
 use crate::background::{Building, Facade, Roof};
 use crate::raster::polygon_cells;
-use crate::{VoxelGrid, Window};
+use crate::{Extent, VoxelGrid};
 
 /// Columns lower than this are walls and fences, m.
 const LOWEST_M: f64 = 2.2;
@@ -29,28 +29,23 @@ const STEP_M: f64 = 1.0;
 
 /// Buildings of the labels; their columns are marked in `taken`.
 pub(super) fn buildings(labels: &VoxelGrid, manmade: &ClassColumns, taken: &mut [bool]) -> Vec<Building> {
-    let tall: Vec<bool> = (0..Window::COLUMNS)
+    let map = labels.extent();
+    let tall: Vec<bool> = (0..map.columns())
         .map(|c| manmade.top_m[c] >= LOWEST_M && manmade.count(c) >= 4)
         .collect();
     // Columns where nothing was seen: inside or behind something, or out of reach.
-    let hidden: Vec<bool> = (0..Window::COLUMNS)
-        .map(|c| {
-            labels
-                .column(c / Window::NY, c % Window::NY)
-                .iter()
-                .all(|l| *l == crate::Class::FREE)
-        })
-        .collect();
+    let is_hidden = |[x, y]: [usize; 2]| labels.column(x, y).iter().all(|l| *l == crate::Class::FREE);
+    let hidden: Vec<bool> = map.all_columns().map(is_hidden).collect();
     let mut pieces: Vec<(SceneryRectangle, Vec<usize>)> = Vec::new();
-    for part in parts(&closed(&tall, 1)) {
+    for part in parts(map, &closed(map, &tall, 1)) {
         let part: Vec<usize> = part.into_iter().filter(|c| tall[*c]).collect();
         if part.len() < FEWEST {
             continue;
         }
         let fits = |r: &SceneryRectangle, columns: &[usize]| {
             let (mut open, mut all) = (0, 0);
-            polygon_cells(crate::Extent::WINDOW, &r.corners_m(), |x, y| {
-                let c = x * Window::NY + y;
+            polygon_cells(map, &r.corners_m(), |x, y| {
+                let c = map.index(x, y);
                 all += 1;
                 open += usize::from(!tall[c] && !hidden[c] && manmade.top_m[c] == 0.0);
             });
@@ -59,29 +54,25 @@ pub(super) fn buildings(labels: &VoxelGrid, manmade: &ClassColumns, taken: &mut 
                 size.x <= LONGEST_M && size.y <= DEEPEST_M && f64::from(open as u32) <= OPEN * f64::from(all);
             sound && height_step(r, columns, manmade).is_none()
         };
-        for (rectangle, columns) in split(part, &fits) {
+        for (rectangle, columns) in split(map, part, &fits) {
             pieces.extend(by_height(rectangle, columns, manmade));
         }
     }
     pieces.retain(|(r, columns)| columns.len() >= FEWEST / 2 && 2.0 * r.half_m.x >= SHORTEST_M);
     pieces.sort_by_key(|(_, columns)| std::cmp::Reverse(columns.len()));
     for (rectangle, _) in &pieces {
-        polygon_cells(crate::Extent::WINDOW, &rectangle.corners_m(), |x, y| {
-            taken[x * Window::NY + y] = true
-        });
+        polygon_cells(map, &rectangle.corners_m(), |x, y| taken[map.index(x, y)] = true);
     }
     let mut out = Vec::new();
     for (rectangle, columns) in pieces {
         let may = |p: DVec2| {
-            Window::column_at(p.x, p.y).is_some_and(|[x, y]| {
-                let c = x * Window::NY + y;
+            map.column_at(p.x, p.y).is_some_and(|[x, y]| {
+                let c = map.index(x, y);
                 !taken[c] && (hidden[c] || manmade.top_m[c] > 0.0)
             })
         };
-        let deep = deepened(rectangle, &may);
-        polygon_cells(crate::Extent::WINDOW, &deep.corners_m(), |x, y| {
-            taken[x * Window::NY + y] = true
-        });
+        let deep = deepened(map, rectangle, &may);
+        polygon_cells(map, &deep.corners_m(), |x, y| taken[map.index(x, y)] = true);
         columns.iter().for_each(|c| taken[*c] = true);
         let top = top_m(&columns, manmade);
         out.push(Building {
@@ -103,11 +94,11 @@ fn top_m(columns: &[usize], manmade: &ClassColumns) -> f64 {
 
 /// Place along a rectangle, from its middle, where the height changes and stays changed, m.
 fn height_step(r: &SceneryRectangle, columns: &[usize], manmade: &ClassColumns) -> Option<f64> {
-    let slot_m = 2.0 * Window::VOXEL_M;
+    let slot_m = 2.0 * manmade.map.voxel_m();
     let slots = (2.0 * r.half_m.x / slot_m) as usize;
     let mut tops = vec![0.0_f64; slots + 1];
     for c in columns {
-        let at = ((r.local(middle_m(*c)).x + r.half_m.x) / slot_m).max(0.0) as usize;
+        let at = ((r.local(middle_m(manmade.map, *c)).x + r.half_m.x) / slot_m).max(0.0) as usize;
         let slot = &mut tops[at.min(slots)];
         *slot = slot.max(manmade.top_m[*c]);
     }
@@ -136,23 +127,25 @@ fn by_height(
     while let Some((r, columns)) = open.pop() {
         let cut = height_step(&r, &columns, manmade);
         let (a, b): (Vec<usize>, Vec<usize>) = match cut {
-            Some(at) => columns.iter().partition(|c| r.local(middle_m(**c)).x < at),
+            Some(at) => columns
+                .iter()
+                .partition(|c| r.local(middle_m(manmade.map, **c)).x < at),
             None => (Vec::new(), Vec::new()),
         };
         if a.is_empty() || b.is_empty() {
             out.push((r, columns));
             continue;
         }
-        open.extend([b, a].map(|part| (SceneryRectangle::around(&part), part)));
+        open.extend([b, a].map(|part| (SceneryRectangle::around(manmade.map, &part), part)));
     }
     out
 }
 
 /// A shallow rectangle reaches back where nothing was seen: away from the ego vehicle first, up to the usual depth.
-fn deepened(r: SceneryRectangle, may: &dyn Fn(DVec2) -> bool) -> SceneryRectangle {
+fn deepened(map: Extent, r: SceneryRectangle, may: &dyn Fn(DVec2) -> bool) -> SceneryRectangle {
     let (mut low, mut high) = (-r.half_m.y, r.half_m.y);
     let away_is_high = r.middle_m.dot(r.along.perp()) >= 0.0;
-    let step = Window::VOXEL_M;
+    let step = map.voxel_m();
     for is_high in [away_is_high, !away_is_high] {
         while high - low < USUAL_DEPTH_M {
             let next = if is_high { high + step } else { low - step };

@@ -9,27 +9,28 @@ mod trees;
 
 use columns::{ClassColumns, around};
 
-use crate::{Background, BevLayout, Class, Form, VoxelGrid, Window};
+use crate::{Background, BevLayout, Class, Form, VoxelGrid};
 
 /// Things of the labels, in the ego frame; ids count from 1, the largest kinds first. `layout` tells the height of the
 /// ground.
 pub fn background(labels: &VoxelGrid, layout: &BevLayout) -> Background {
     let manmade = ClassColumns::from_labels(Class::Manmade, labels, layout);
     let vegetation = ClassColumns::from_labels(Class::Vegetation, labels, layout);
+    let map = labels.extent();
     let mut forms = Vec::new();
 
-    let mut taken = vec![false; Window::COLUMNS];
+    let mut taken = vec![false; map.columns()];
     let buildings = buildings::buildings(labels, &manmade, &mut taken);
     forms.extend(buildings.into_iter().map(Form::Building));
     // Columns right beside a facade belong to the building.
-    let left: Vec<bool> = (0..Window::COLUMNS)
-        .map(|c| manmade.top_m[c] > 0.0 && !around(c, 1).any(|n| taken[n]))
+    let left: Vec<bool> = (0..map.columns())
+        .map(|c| manmade.top_m[c] > 0.0 && !around(map, c, 1).any(|n| taken[n]))
         .collect();
     forms.extend(lines::walls_and_poles(&manmade, &left));
 
-    let mut crowns = vec![false; Window::COLUMNS];
+    let mut crowns = vec![false; map.columns()];
     forms.extend(trees::trees(&vegetation, &mut crowns).into_iter().map(Form::Tree));
-    let left: Vec<bool> = (0..Window::COLUMNS)
+    let left: Vec<bool> = (0..map.columns())
         .map(|c| vegetation.top_m[c] > 0.0 && !crowns[c])
         .collect();
     forms.extend(lines::hedges_and_shrubs(&vegetation, &left));

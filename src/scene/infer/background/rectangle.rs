@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::columns::middle_m;
-use crate::Window;
+use crate::Extent;
 
 /// Parts are cut at most this often, one within another.
 const DEEPEST: u32 = 6;
@@ -24,10 +24,11 @@ pub(super) struct SceneryRectangle {
 
 impl SceneryRectangle {
     /// The one of least area, by trying headings a degree apart; half a column more on every side than the middles.
-    pub fn around(columns: &[usize]) -> Self {
-        let points: Vec<DVec2> = columns.iter().map(|c| middle_m(*c)).collect();
-        let all = (0..90)
-            .map(|degree| Self::in_direction(&points, DVec2::from_angle(f64::from(degree).to_radians())));
+    pub fn around(map: Extent, columns: &[usize]) -> Self {
+        let points: Vec<DVec2> = columns.iter().map(|c| middle_m(map, *c)).collect();
+        let all = (0..90).map(|degree| {
+            Self::in_direction(map, &points, DVec2::from_angle(f64::from(degree).to_radians()))
+        });
         let least = all.min_by(|a, b| a.area_m2().total_cmp(&b.area_m2()));
         let found = least.unwrap_or(Self {
             middle_m: DVec2::ZERO,
@@ -45,7 +46,7 @@ impl SceneryRectangle {
     }
 
     /// The one of that heading.
-    fn in_direction(points: &[DVec2], along: DVec2) -> Self {
+    fn in_direction(map: Extent, points: &[DVec2], along: DVec2) -> Self {
         let local = points
             .iter()
             .map(|p| DVec2::new(p.dot(along), p.dot(along.perp())));
@@ -55,7 +56,7 @@ impl SceneryRectangle {
         let middle = (low + high) / 2.0;
         Self {
             middle_m: along * middle.x + along.perp() * middle.y,
-            half_m: (high - low + DVec2::splat(Window::VOXEL_M)) / 2.0,
+            half_m: (high - low + DVec2::splat(map.voxel_m())) / 2.0,
             along,
         }
     }
@@ -85,6 +86,7 @@ impl SceneryRectangle {
 
 /// Cuts columns until `fits` takes each part with its rectangle, or no cut saves area.
 pub(super) fn split(
+    map: Extent,
     columns: Vec<usize>,
     fits: &dyn Fn(&SceneryRectangle, &[usize]) -> bool,
 ) -> Vec<(SceneryRectangle, Vec<usize>)> {
@@ -94,10 +96,10 @@ pub(super) fn split(
         if columns.is_empty() {
             continue;
         }
-        let rectangle = SceneryRectangle::around(&columns);
+        let rectangle = SceneryRectangle::around(map, &columns);
         let halves = match depth == DEEPEST || fits(&rectangle, &columns) {
             true => None,
-            false => best_cut(&rectangle, &columns),
+            false => best_cut(map, &rectangle, &columns),
         };
         match halves {
             Some((a, b)) => open.extend([(a, depth + 1), (b, depth + 1)]),
@@ -108,8 +110,15 @@ pub(super) fn split(
 }
 
 /// The cut across or along the rectangle whose two parts have least area.
-fn best_cut(rectangle: &SceneryRectangle, columns: &[usize]) -> Option<(Vec<usize>, Vec<usize>)> {
-    let own: Vec<DVec2> = columns.iter().map(|c| rectangle.local(middle_m(*c))).collect();
+fn best_cut(
+    map: Extent,
+    rectangle: &SceneryRectangle,
+    columns: &[usize],
+) -> Option<(Vec<usize>, Vec<usize>)> {
+    let own: Vec<DVec2> = columns
+        .iter()
+        .map(|c| rectangle.local(middle_m(map, *c)))
+        .collect();
     let mut best = (rectangle.area_m2() * WORTH, None);
     for axis in 0..2 {
         let half = rectangle.half_m[axis];
@@ -120,7 +129,7 @@ fn best_cut(rectangle: &SceneryRectangle, columns: &[usize]) -> Option<(Vec<usiz
                 let (min, max) = side.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(min, max), p| {
                     (min.min(*p), max.max(*p))
                 });
-                let size = max - min + DVec2::splat(Window::VOXEL_M);
+                let size = max - min + DVec2::splat(map.voxel_m());
                 if size.x > 0.0 { size.x * size.y } else { 0.0 }
             };
             let both = area(true) + area(false);

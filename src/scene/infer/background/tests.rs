@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::*;
 use crate::VoxelGrid;
+use crate::Window;
 use crate::background::LineKind;
 use crate::raster::{disc_cells, line_cells, polygon_cells};
 

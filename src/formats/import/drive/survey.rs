@@ -1,0 +1,367 @@
+//! What the sweeps of a drive see together: the ground with its height, what stands on it, and what moved.
+//!
+//! A return that others saw through, at other moments, is of something that moves: it is left out of the voxels. Classes of
+//! returns without labels are told by their shapes, once for all sweeps ([`super::super::cloud::geometry`]).
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use scene::{
+    BevLayer, BevLayout, BoxId, Class, Extent, Frame, Inferred, Lattice, Pose, Relief, Scene, SceneBox,
+    SensorRig, VoxelGrid, draft, infer,
+};
+
+use super::align::surveyed;
+use crate::import::cloud::geometry::{Passed, shapes};
+use crate::import::imported_sweep::relabel;
+
+/// A return this far outside of a box still comes from what is in it, m.
+const BESIDE_M: f64 = 0.15;
+/// Returns lower above the ground than this are of the ground: whether they move is not asked, m.
+const STANDS_M: f64 = 0.3;
+/// Width of the cells of a panorama, degrees, and how far up and down it reaches.
+const CELL_DEG: f64 = 1.0;
+const REACH_DEG: f64 = 45.0;
+/// A ray that passes a place ends this much farther than it, m; one that ends this near to it meets it.
+const PASSED_M: f64 = 1.0;
+const MET_M: f64 = 0.4;
+/// Sweeps before and after that are asked whether they saw through a return.
+const ASKED: [usize; 5] = [1, 2, 3, 5, 8];
+/// Fewest sweeps that saw through it.
+const LEAST_THROUGH: usize = 2;
+/// Ground within this of z = 0, m, in this share of the columns is level.
+const LEVEL_M: f32 = 0.15;
+const LEVEL_SHARE: f64 = 0.97;
+
+/// A sweep of a drive: its returns thinned to 0.25 m ([`surveyed`]), in m in the frame of the sensor.
+#[derive(Debug)]
+pub(in crate::import) struct Survey {
+    points: Vec<DVec3>,
+}
+
+impl Survey {
+    /// Thins returns, in m in the frame of the sensor, without those of the own vehicle.
+    pub(in crate::import) fn new(returns: impl Iterator<Item = DVec3>) -> Self {
+        Self {
+            points: surveyed(returns),
+        }
+    }
+
+    /// The points that are left, m.
+    pub(super) fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+}
+
+/// A sweep at its place.
+#[derive(Debug)]
+pub(in crate::import) struct PlacedSurvey {
+    survey: Survey,
+    world_from_sensor: Pose,
+    /// Place on the ground below the sensor, m, in the world frame.
+    foot_m: DVec3,
+}
+
+impl PlacedSurvey {
+    /// A sweep of a sensor that stands over the ground like the first one, which this pose puts above the origin of the world.
+    pub(in crate::import) fn of_sensor(
+        survey: Survey,
+        world_from_sensor: Pose,
+        world_from_first: &Pose,
+    ) -> Self {
+        let foot = world_from_first.inverse().apply(DVec3::ZERO);
+        Self {
+            survey,
+            foot_m: world_from_sensor.apply(foot),
+            world_from_sensor,
+        }
+    }
+}
+
+/// The sweeps of a drive, put together.
+#[derive(Debug)]
+pub(in crate::import) struct SurveyedDrive {
+    sweeps: Vec<PlacedSurvey>,
+}
+
+impl SurveyedDrive {
+    pub(in crate::import) fn new(sweeps: Vec<PlacedSurvey>) -> Self {
+        Self { sweeps }
+    }
+
+    /// What stands still, within 40 m of the vehicle; `moving` are objects that are known to move, by sweep, `told` classes of the
+    /// ground that are known, by column of [`extent`](Self::extent). `None` if no point lies on the map, or the map would be too
+    /// large.
+    pub(in crate::import) fn world(
+        &self,
+        moving: &[Vec<SceneBox>],
+        told: &[Option<Class>],
+    ) -> Option<SurveyedWorld> {
+        together(&self.sweeps, self.extent()?, moving, told)
+    }
+
+    /// The map; `None` if it would be too large.
+    pub(in crate::import) fn extent(&self) -> Option<Extent> {
+        let feet: Vec<DVec3> = self.sweeps.iter().map(|s| s.foot_m).collect();
+        extent_around(&feet).ok()
+    }
+}
+
+/// Ground within 40 m of places along x and y. Errors in one line if it is too large.
+pub(in crate::import) fn extent_around(places: &[DVec3]) -> Result<Extent, String> {
+    let low = places.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = places.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let reach = Extent::WINDOW.max_m().x;
+    let column = |metres: f64| (metres * Lattice::OCC3D.per_m()).floor() as i32;
+    let from = [column(low.x - reach), column(low.y - reach)];
+    let to = |metres: f64| ((metres + reach) * Lattice::OCC3D.per_m()).ceil() as i32;
+    let size = |axis: usize, high: f64| usize::try_from(to(high).saturating_sub(from[axis])).unwrap_or(0);
+    Extent::new(from, [size(0, high.x), size(1, high.y)])
+}
+
+/// What stands still in a drive.
+pub(in crate::import) struct SurveyedWorld {
+    /// Map layers with the measured relief.
+    pub(in crate::import) layout: BevLayout,
+    /// Voxels.
+    pub(in crate::import) voxels: VoxelGrid,
+    /// Points left out because others saw through them.
+    pub(in crate::import) seen_through: usize,
+    /// Points above or below the map.
+    pub(in crate::import) off_heights: usize,
+}
+
+impl SurveyedWorld {
+    /// The scene that stands still, with these objects: what is in them gets their class.
+    pub(in crate::import) fn scene(mut self, name: &str, boxes: BTreeMap<BoxId, SceneBox>) -> Scene {
+        boxes.values().for_each(|b| relabel(&mut self.voxels, b));
+        let background = infer::background(&self.voxels, &self.layout);
+        let frame = Frame {
+            inferred: Inferred {
+                layout: true,
+                boxes: boxes.keys().copied().collect(),
+                background: !background.is_empty(),
+                ..Inferred::default()
+            },
+            ..Frame::new(self.layout, boxes, self.voxels)
+        };
+        let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), 0);
+        scene.background = Arc::new(background);
+        scene
+    }
+
+    /// Notes for a person.
+    pub(in crate::import) fn notes(&self) -> Vec<String> {
+        let counts = [
+            (
+                self.seen_through,
+                "points of what moves are left out of the voxels",
+            ),
+            (self.off_heights, "points lie above or below the map"),
+        ];
+        let some = counts.into_iter().filter(|(n, _)| *n > 0);
+        some.map(|(n, what)| format!("{n} {what}")).collect()
+    }
+}
+
+fn together(
+    sweeps: &[PlacedSurvey],
+    extent: Extent,
+    moving: &[Vec<SceneBox>],
+    told: &[Option<Class>],
+) -> Option<SurveyedWorld> {
+    let passed: Vec<Passed> = sweeps
+        .iter()
+        .map(|sweep| Passed {
+            at_m: sweep.foot_m.truncate(),
+            ground_m: Some(sweep.foot_m.z),
+        })
+        .collect();
+    let (mut points, mut of_sweep) = (Vec::new(), Vec::new());
+    for (i, sweep) in sweeps.iter().enumerate() {
+        for p in &sweep.survey.points {
+            let at = sweep.world_from_sensor.apply(*p);
+            let boxes = moving.get(i).map_or(&[][..], Vec::as_slice);
+            let is_moving = || boxes.iter().any(|b| near(b, at) && b.contains(at, BESIDE_M));
+            if extent.column_at(at.x, at.y).is_some() && !is_moving() {
+                points.push(at);
+                of_sweep.push(i);
+            }
+        }
+    }
+    if points.is_empty() {
+        return None;
+    }
+    let shapes = shapes(&points, extent, &passed);
+    let panoramas: Vec<Panorama> = sweeps.iter().map(|s| Panorama::of(&s.survey.points)).collect();
+    let sensors: Vec<Pose> = sweeps.iter().map(|s| s.world_from_sensor.inverse()).collect();
+    let moves = |i: usize| {
+        let is_ground = shapes.classes[i].is_ground() || shapes.above_m[i] < STANDS_M;
+        !is_ground && is_seen_through(points[i], of_sweep[i], &panoramas, &sensors)
+    };
+    let mut out = SurveyedWorld {
+        layout: BevLayout::over(extent),
+        voxels: VoxelGrid::over(extent),
+        seen_through: 0,
+        off_heights: 0,
+    };
+    let mut votes = Vec::with_capacity(points.len());
+    let mut heights = vec![(0.0f64, 0u32); extent.columns()];
+    for (i, p) in points.iter().enumerate() {
+        if moves(i) {
+            out.seen_through += 1;
+            continue;
+        }
+        let Some([x, y]) = extent.column_at(p.x, p.y) else {
+            continue;
+        };
+        let column = extent.index(x, y);
+        let class = match shapes.classes[i] {
+            class if class.is_ground() => told.get(column).copied().flatten().unwrap_or(class),
+            class => class,
+        };
+        let z = match class.is_ground() {
+            true => {
+                heights[column].0 += p.z;
+                heights[column].1 += 1;
+                (p.z > extent.min_m().z).then(|| Lattice::OCC3D.ground_bin(p.z))
+            }
+            false => extent.voxel_at(*p).map(|[.., z]| z),
+        };
+        match z {
+            Some(z) => votes.push(((column * extent.nz() + z) as u32, class.id())),
+            None => out.off_heights += 1,
+        }
+    }
+    votes.sort_unstable();
+    for votes in votes.chunk_by(|a, b| a.0 == b.0) {
+        let winner = votes.chunk_by(|a, b| a == b).max_by_key(|same| {
+            (
+                same.len(),
+                same[0].1 != Class::Others.id(),
+                std::cmp::Reverse(same[0].1),
+            )
+        });
+        if let Some(winner) = winner {
+            let at = winner[0].0 as usize;
+            let [x, y] = extent.column(at / extent.nz());
+            out.voxels.set(x, y, at % extent.nz(), winner[0].1);
+        }
+    }
+    out.layout = infer::layout(&out.voxels);
+    out.layout.relief = relief(extent, &heights);
+    lay_ground(&mut out, told);
+    (!votes.is_empty()).then_some(out)
+}
+
+/// Lays ground whose class is known where no point lies: between the rings of the sweeps.
+fn lay_ground(world: &mut SurveyedWorld, told: &[Option<Class>]) {
+    let extent = world.layout.extent();
+    for ([x, y], class) in extent.all_columns().zip(told) {
+        let Some(class) = class else { continue };
+        if world
+            .voxels
+            .column(x, y)
+            .iter()
+            .any(|label| *label != Class::FREE)
+        {
+            continue;
+        }
+        world
+            .voxels
+            .set(x, y, draft::ground_bin(&world.layout, x, y), class.id());
+        match class {
+            Class::DriveableSurface => world.layout.set(BevLayer::DrivableArea, x, y, true),
+            Class::Sidewalk => world.layout.set(BevLayer::Walkway, x, y, true),
+            _ => {}
+        }
+    }
+}
+
+/// The relief of measured ground: sums and counts of heights in each column.
+fn relief(extent: Extent, heights: &[(f64, u32)]) -> Relief {
+    let known: Vec<f32> = heights
+        .iter()
+        .map(|(sum, n)| match n {
+            0 => f32::NAN,
+            n => (sum / f64::from(*n)) as f32,
+        })
+        .collect();
+    let all = known.iter().filter(|h| !h.is_nan());
+    let level = all.clone().filter(|h| h.abs() <= LEVEL_M).count();
+    match level as f64 >= LEVEL_SHARE * all.count() as f64 {
+        true => Relief::FLAT,
+        false => infer::smooth_relief(extent, &known),
+    }
+}
+
+fn near(b: &SceneBox, p: DVec3) -> bool {
+    let reach_m = b.size_m.length() / 2.0 + 1.0;
+    p.distance_squared(b.center_m) <= reach_m * reach_m
+}
+
+/// True if more sweeps saw through a place than met something there.
+fn is_seen_through(at: DVec3, of_sweep: usize, panoramas: &[Panorama], sensors: &[Pose]) -> bool {
+    let (mut through, mut met) = (0, 0);
+    let asked = ASKED
+        .iter()
+        .flat_map(|by| [of_sweep.checked_sub(*by), Some(of_sweep + by)]);
+    for i in asked.flatten().filter(|i| *i < panoramas.len()) {
+        let p = sensors[i].apply(at);
+        let away_m = p.length();
+        let Some([nearest_m, farthest_m]) = panoramas[i].around(p) else {
+            continue;
+        };
+        through += usize::from(nearest_m > away_m + PASSED_M);
+        met += usize::from(nearest_m <= away_m + MET_M && farthest_m >= away_m - MET_M);
+    }
+    through >= LEAST_THROUGH && through > met
+}
+
+/// How far a sensor sees in each direction.
+struct Panorama {
+    /// Nearest and farthest return of each cell, m; infinite and 0 without any.
+    cells: Vec<[f32; 2]>,
+}
+
+impl Panorama {
+    const WIDE: usize = (360.0 / CELL_DEG) as usize;
+    const HIGH: usize = (2.0 * REACH_DEG / CELL_DEG) as usize;
+
+    fn of(points: &[DVec3]) -> Self {
+        let mut cells = vec![[f32::INFINITY, 0.0]; Self::WIDE * Self::HIGH];
+        for p in points {
+            if let Some([turn, up]) = Self::cell(*p) {
+                let cell = &mut cells[turn * Self::HIGH + up];
+                let away_m = p.length() as f32;
+                *cell = [cell[0].min(away_m), cell[1].max(away_m)];
+            }
+        }
+        Self { cells }
+    }
+
+    fn cell(p: DVec3) -> Option<[usize; 2]> {
+        let flat = DVec2::new(p.x, p.y);
+        let turn = flat.to_angle().to_degrees().rem_euclid(360.0) / CELL_DEG;
+        let up = (p.z.atan2(flat.length()).to_degrees() + REACH_DEG) / CELL_DEG;
+        (up >= 0.0 && (up as usize) < Self::HIGH).then_some([turn as usize % Self::WIDE, up as usize])
+    }
+
+    /// Nearest and farthest return in the cell of a place and those beside it, m; `None` without any in the cell itself.
+    fn around(&self, p: DVec3) -> Option<[f64; 2]> {
+        let [turn, up] = Self::cell(p)?;
+        let own = self.cells[turn * Self::HIGH + up];
+        if own[1] == 0.0 {
+            return None;
+        }
+        let mut out = own;
+        for turn in [turn + Self::WIDE - 1, turn, turn + 1] {
+            for up in up.saturating_sub(1)..=(up + 1).min(Self::HIGH - 1) {
+                let cell = self.cells[turn % Self::WIDE * Self::HIGH + up];
+                out = [out[0].min(cell[0]), out[1].max(cell[1])];
+            }
+        }
+        Some(out.map(f64::from))
+    }
+}

@@ -1,0 +1,205 @@
+//! The drive that a scene is of, moment by moment, and what becomes of the objects that are found in it.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use scene::clip::ObjectVoxels;
+use scene::{BoxId, Class, Clip, Extent, Frame, Key, Lattice, Motion, Pose, Recorded, SceneBox, Track};
+
+use super::cloud::{is_own, strength_scale};
+use super::importer::ImportedScene;
+use crate::sweep_file::SweepFile;
+
+/// A sweep of a drive, seen from the vehicle on the ground.
+#[derive(Clone, Debug)]
+pub struct SweepMoment {
+    /// Moment of the clip, s.
+    pub time_s: f64,
+    /// Place of the vehicle on the ground.
+    pub world_from_vehicle: Pose,
+    /// Place of the sensor in the frame of the vehicle, m.
+    pub sensor_m: DVec3,
+    /// x and y in that frame, height above the ground (m) and strength of the echo (0 to 255) of each return.
+    pub returns: Vec<[f32; 4]>,
+}
+
+/// An object that was followed through a drive.
+#[derive(Clone, Debug)]
+pub struct TrackedObject {
+    /// Class of the object.
+    pub class: Class,
+    /// Length, width, height, m.
+    pub size_m: DVec3,
+    /// Where it was seen: number of the moment, place of its middle (m) and heading (rad), seen from above. A single one stands for
+    /// an object that stands still.
+    pub places: Vec<(usize, DVec2, f64)>,
+}
+
+/// Ground around the vehicle at a moment of a drive, as it looks: for each column of the networks' window, `[x][y]`, in the frame of
+/// the vehicle its class, `None` where none shows.
+pub type MomentGround = Vec<Option<Class>>;
+
+/// Distance from the vehicle at which ground that it sees counts half as much, m.
+const SURE_M: f64 = 15.0;
+
+impl ImportedScene {
+    /// Number of the moments of a drive without labels; 0 for all else.
+    pub fn moments(&self) -> usize {
+        let sweep = self.sweep.as_ref().filter(|sweep| sweep.drive.is_some());
+        sweep.map_or(0, |sweep| sweep.files.len())
+    }
+
+    /// A moment of a drive. `None` beyond the last, or if its file cannot be read any more.
+    pub fn moment(&self, number: usize) -> Option<SweepMoment> {
+        let file = self.sweep.as_ref()?.files.get(number)?;
+        let there = self.scene.at(file.time_s);
+        let frame = there.frame();
+        let at_m = frame.world_from_ego.translation_m;
+        let ahead = (frame.world_from_ego.rotation * DVec3::X).truncate();
+        let mut world_from_vehicle = Pose::planar(at_m.x, at_m.y, ahead.to_angle());
+        let relief = &frame.layout.relief;
+        world_from_vehicle.translation_m.z = relief.height_m(at_m.truncate());
+        let vehicle_from_world = world_from_vehicle.inverse();
+        let read = SweepFile::open(file.format, &file.bytes).ok()?;
+        let returns = read.returns(&file.world_from_file);
+        let scale = strength_scale(returns.iter().flatten().map(|r| r.strength));
+        let seen = returns.iter().flatten().filter_map(|r| {
+            let (world, at) = (r.place(), vehicle_from_world.apply(r.place()));
+            let height_m = world.z - relief.height_m(world.truncate());
+            let strength = match r.strength.is_finite() {
+                true => (r.strength * scale).clamp(0.0, 255.0),
+                false => 0.0,
+            };
+            (!is_own(at)).then_some([at.x as f32, at.y as f32, height_m as f32, strength])
+        });
+        Some(SweepMoment {
+            time_s: file.time_s,
+            sensor_m: vehicle_from_world.apply(file.sensor_m),
+            returns: seen.collect(),
+            world_from_vehicle,
+        })
+    }
+
+    /// The class of the ground in each column of a map, as most moments see it.
+    fn ground_of(&self, extent: Extent, seen: &[MomentGround]) -> Vec<Option<Class>> {
+        let files = self.sweep.iter().flat_map(|sweep| &sweep.files);
+        let poses: Vec<Pose> = files
+            .map(|file| self.scene.at(file.time_s).frame().world_from_ego.inverse())
+            .collect();
+        let column = |[x, y]: [usize; 2]| {
+            let at = extent.center(x, y, 0);
+            let mut votes = [0.0; Class::COUNT];
+            for (vehicle_from_world, seen) in poses.iter().zip(seen) {
+                let here = vehicle_from_world.apply(at).truncate();
+                let Some([x, y]) = Extent::WINDOW.column_at(here.x, here.y) else {
+                    continue;
+                };
+                if let Some(class) = seen.get(Extent::WINDOW.index(x, y)).copied().flatten() {
+                    votes[usize::from(class.id())] += 1.0 / (1.0 + here.length_squared() / (SURE_M * SURE_M));
+                }
+            }
+            let most = (0..votes.len()).max_by(|a, b| votes[*a].total_cmp(&votes[*b]))?;
+            (votes[most] > 0.0).then(|| Class::from_id(most as u8))?
+        };
+        extent.all_columns().map(column).collect()
+    }
+
+    /// The scene of a drive with objects that were found in its sweeps and ground as its moments show it: objects that stand are boxes,
+    /// those that move are tracks, and their returns leave the voxels.
+    pub fn with_tracked(mut self, objects: &[TrackedObject], ground: &[MomentGround]) -> Self {
+        let Some(drive) = self.sweep.as_ref().and_then(|sweep| sweep.drive.clone()) else {
+            return self;
+        };
+        let times_s: Vec<f64> = self
+            .sweep
+            .iter()
+            .flat_map(|sweep| sweep.files.iter().map(|file| file.time_s))
+            .collect();
+        let relief = self.scene.frame().layout.relief.clone();
+        let on_ground = |b: SceneBox| {
+            let ground_m = relief.height_m(b.center_m.truncate());
+            SceneBox {
+                center_m: b.center_m.with_z(ground_m + b.size_m.z / 2.0),
+                ..b
+            }
+        };
+        let (mut standing, mut tracks) = (BTreeMap::new(), BTreeMap::new());
+        let mut moving = vec![Vec::new(); times_s.len()];
+        for (object, id) in objects.iter().zip(1..) {
+            let Some(first) = object.places.first() else {
+                continue;
+            };
+            let made = on_ground(object.at(BoxId(id), first));
+            if made.problem().is_some() {
+                continue;
+            }
+            if object.places.len() == 1 && standing.len() < Frame::MAX_BOXES {
+                standing.insert(made.id, made);
+                continue;
+            }
+            let track = object.track(made, &times_s);
+            if track.problem().is_none() && tracks.len() < Clip::MAX_TRACKS {
+                tracks.insert(made.id, track);
+                for place in &object.places {
+                    moving[place.0].push(on_ground(object.at(made.id, place)));
+                }
+            }
+        }
+        let told = drive.extent().map(|extent| self.ground_of(extent, ground));
+        let Some(world) = told.and_then(|told| drive.world(&moving, &told)) else {
+            return self;
+        };
+        let mut scene = world.scene(&self.scene.name, standing);
+        scene.rig = self.scene.rig.clone();
+        let mut clip = Clip::clone(self.scene.clip());
+        clip.tracks = tracks;
+        if clip.problem().is_some() {
+            return self;
+        }
+        scene.change_clip(|still| *still = clip);
+        let recorded = Arc::new(Recorded::all_of(&scene));
+        scene.change_canvas(|canvas| canvas.inferred.recorded = recorded);
+        self.scene = scene;
+        self
+    }
+}
+
+impl TrackedObject {
+    fn at(&self, id: BoxId, &(_, at_m, yaw_rad): &(usize, DVec2, f64)) -> SceneBox {
+        SceneBox {
+            id,
+            class: self.class,
+            center_m: at_m.extend(self.size_m.z / 2.0),
+            size_m: self.size_m,
+            yaw_rad,
+            velocity_mps: DVec2::ZERO,
+            label: Default::default(),
+        }
+    }
+
+    fn track(&self, made: SceneBox, times_s: &[f64]) -> Track {
+        let mut yaw_rad = made.yaw_rad;
+        let keys = self.places.iter().map(|(moment, at_m, turned_rad)| {
+            // Headings go on beyond half a turn.
+            yaw_rad += DVec2::from_angle(yaw_rad).angle_to(DVec2::from_angle(*turned_rad));
+            Key {
+                time_s: times_s[*moment],
+                at_m: *at_m,
+                yaw_deg: yaw_rad.to_degrees(),
+            }
+        });
+        let [first, last] = [self.places.first(), self.places.last()].map(|place| place.map_or(0, |p| p.0));
+        Track {
+            made,
+            motion: Motion::Keys(keys.collect()),
+            there_s: [
+                (first > 0).then(|| times_s[first]),
+                times_s.get(last + 1).copied(),
+            ],
+            voxels: ObjectVoxels::drafted(Lattice::OCC3D, &made),
+            settled: true,
+            own_shape: false,
+        }
+    }
+}
