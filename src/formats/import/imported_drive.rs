@@ -8,6 +8,7 @@ use scene::clip::ObjectVoxels;
 use scene::{BoxId, Class, Clip, Extent, Frame, Key, Lattice, Motion, Pose, Recorded, SceneBox, Track};
 
 use super::cloud::{is_own, strength_scale};
+use super::drive::survey::SurveyedWorld;
 use super::importer::ImportedScene;
 use crate::sweep_file::SweepFile;
 
@@ -42,6 +43,15 @@ pub type MomentGround = Vec<Option<Class>>;
 
 /// Distance from the vehicle at which ground that it sees counts half as much, m.
 const SURE_M: f64 = 15.0;
+/// Columns around a column that tell its ground too.
+const AROUND: usize = 2;
+/// Classes of ground.
+const GROUND: [Class; 4] = [
+    Class::DriveableSurface,
+    Class::OtherFlat,
+    Class::Sidewalk,
+    Class::Terrain,
+];
 
 impl ImportedScene {
     /// Number of the moments of a drive without labels; 0 for all else.
@@ -87,22 +97,73 @@ impl ImportedScene {
         let poses: Vec<Pose> = files
             .map(|file| self.scene.at(file.time_s).frame().world_from_ego.inverse())
             .collect();
-        let column = |[x, y]: [usize; 2]| {
+        let votes = |[x, y]: [usize; 2]| {
             let at = extent.center(x, y, 0);
-            let mut votes = [0.0; Class::COUNT];
+            let mut votes = [0.0f32; GROUND.len()];
             for (vehicle_from_world, seen) in poses.iter().zip(seen) {
                 let here = vehicle_from_world.apply(at).truncate();
-                let Some([x, y]) = Extent::WINDOW.column_at(here.x, here.y) else {
-                    continue;
-                };
-                if let Some(class) = seen.get(Extent::WINDOW.index(x, y)).copied().flatten() {
-                    votes[usize::from(class.id())] += 1.0 / (1.0 + here.length_squared() / (SURE_M * SURE_M));
+                let column = Extent::WINDOW.column_at(here.x, here.y);
+                let class = column.and_then(|[x, y]| *seen.get(Extent::WINDOW.index(x, y))?);
+                if let Some(kind) = class.and_then(|class| GROUND.iter().position(|c| *c == class)) {
+                    votes[kind] += (1.0 / (1.0 + here.length_squared() / (SURE_M * SURE_M))) as f32;
                 }
             }
-            let most = (0..votes.len()).max_by(|a, b| votes[*a].total_cmp(&votes[*b]))?;
-            (votes[most] > 0.0).then(|| Class::from_id(most as u8))?
+            votes
+        };
+        let votes: Vec<[f32; GROUND.len()]> = extent.all_columns().map(votes).collect();
+        let column = |[x, y]: [usize; 2]| {
+            let mut around = [0.0f32; GROUND.len()];
+            for x in x.saturating_sub(AROUND)..=(x + AROUND).min(extent.nx() - 1) {
+                for y in y.saturating_sub(AROUND)..=(y + AROUND).min(extent.ny() - 1) {
+                    let of = votes[extent.index(x, y)];
+                    around.iter_mut().zip(of).for_each(|(sum, vote)| *sum += vote);
+                }
+            }
+            let most = (0..GROUND.len()).max_by(|a, b| around[*a].total_cmp(&around[*b]))?;
+            (around[most] > 0.0).then_some(GROUND[most])
         };
         extent.all_columns().map(column).collect()
+    }
+
+    /// True if the objects of a drive are known, so that none are to be found.
+    pub fn knows_objects(&self) -> bool {
+        let drive = self.sweep.as_ref().and_then(|sweep| sweep.drive.as_ref());
+        drive.is_some_and(|drive| drive.told().is_some())
+    }
+
+    /// The scene of a drive whose objects are known, with ground as its moments show it.
+    pub fn with_ground(mut self, ground: &[MomentGround]) -> Self {
+        let drive = self.sweep.as_ref().and_then(|sweep| sweep.drive.clone());
+        let told = drive.as_ref().and_then(|drive| drive.extent());
+        let told = told.map(|extent| self.ground_of(extent, ground));
+        let moving = drive.as_ref().and_then(|drive| drive.told());
+        let world = drive.as_ref().zip(moving).zip(told);
+        if let Some(world) = world.and_then(|((drive, moving), told)| drive.world(moving, &told)) {
+            let standing = self.scene.canvas().boxes.clone();
+            self.replace_world(world.with_drafts(standing.values()), standing);
+        }
+        self
+    }
+
+    /// The scene with another world around the vehicle and these standing objects; how things move stays.
+    fn replace_world(&mut self, world: SurveyedWorld, standing: BTreeMap<BoxId, SceneBox>) {
+        let inferred = self.scene.canvas().inferred.boxes.clone();
+        let is_told = self.knows_objects();
+        let mut scene = world.scene(&self.scene.name, standing);
+        (scene.rig, scene.seed) = (self.scene.rig.clone(), self.scene.seed);
+        (scene.conditions, scene.prompt) = (self.scene.conditions.clone(), self.scene.prompt.clone());
+        let clip = self.scene.clip().clone();
+        scene.change_clip(|still| *still = Arc::unwrap_or_clone(clip));
+        let pose = self.scene.canvas().world_from_ego;
+        let recorded = Arc::new(Recorded::all_of(&scene));
+        scene.change_canvas(|canvas| {
+            canvas.world_from_ego = pose;
+            canvas.inferred.recorded = recorded;
+            if is_told {
+                canvas.inferred.boxes = inferred;
+            }
+        });
+        self.scene = scene;
     }
 
     /// The scene of a drive with objects that were found in its sweeps and ground as its moments show it: objects that stand are boxes,
@@ -150,17 +211,13 @@ impl ImportedScene {
         let Some(world) = told.and_then(|told| drive.world(&moving, &told)) else {
             return self;
         };
-        let mut scene = world.scene(&self.scene.name, standing);
-        scene.rig = self.scene.rig.clone();
         let mut clip = Clip::clone(self.scene.clip());
         clip.tracks = tracks;
         if clip.problem().is_some() {
             return self;
         }
-        scene.change_clip(|still| *still = clip);
-        let recorded = Arc::new(Recorded::all_of(&scene));
-        scene.change_canvas(|canvas| canvas.inferred.recorded = recorded);
-        self.scene = scene;
+        self.scene.change_clip(|still| *still = clip);
+        self.replace_world(world, standing);
         self
     }
 }

@@ -59,12 +59,37 @@ pub const ALL: [(&str, Means); 32] = [
     ("vehicle.ego", Nothing),
 ];
 
+/// Names of T4, the format of Autoware's data sets, which has the tables of nuScenes, and their meanings.
+const OF_T4: [(&str, Means); 17] = [
+    ("car", Is(Class::Car)),
+    ("truck", Is(Class::Truck)),
+    ("bus", Is(Class::Bus)),
+    ("trailer", Is(Class::Trailer)),
+    ("ambulance", Named(Class::Truck, "ambulance")),
+    ("fire_truck", Named(Class::Truck, "fire engine")),
+    ("police_car", Named(Class::Car, "police car")),
+    ("construction_vehicle", Is(Class::ConstructionVehicle)),
+    ("bicycle", Is(Class::Bicycle)),
+    ("motorcycle", Is(Class::Motorcycle)),
+    ("motorbike", Is(Class::Motorcycle)),
+    ("pedestrian", Is(Class::Pedestrian)),
+    (
+        "construction_worker",
+        Named(Class::Pedestrian, "construction worker"),
+    ),
+    ("police_officer", Named(Class::Pedestrian, "police officer")),
+    ("barrier", Is(Class::Barrier)),
+    ("traffic_cone", Is(Class::TrafficCone)),
+    ("unknown", Is(Class::Others)),
+];
+
 /// Index of `static.other`, which points of the class "others" get.
 const STATIC_OTHER: u8 = 29;
 
-/// The meaning of the category of that name; `None` for a name that is not in the list.
+/// The meaning of the category of that name; `None` for a name that is in neither list.
 pub fn meaning(name: &str) -> Option<Means> {
     ALL.iter()
+        .chain(&OF_T4)
         .find(|(known, _)| *known == name)
         .map(|(_, means)| *means)
 }
@@ -110,5 +135,6 @@ mod tests {
         assert_eq!(named(Class::Car, "child"), "vehicle.car");
         assert_eq!(named(Class::Bus, ""), "vehicle.bus.rigid");
         assert_eq!(meaning("vehicle"), None);
+        assert_eq!(meaning("car"), Some(Is(Class::Car)));
     }
 }

@@ -60,6 +60,9 @@ fn take_pattern(scene: &mut Scene) -> Option<[usize; 2]> {
     Some(told)
 }
 
+/// Moments of a drive that are looked at many times.
+const FEW: usize = 6;
+
 /// What the network sees at a moment of a drive.
 struct SeenMoment {
     time_s: f64,
@@ -92,6 +95,9 @@ fn with_tracked(mut loaded: ImportedScene) -> ImportedScene {
         .into_iter()
         .map(|moment| (moment.finds, moment.ground))
         .unzip();
+    if loaded.knows_objects() {
+        return loaded.with_ground(&ground);
+    }
     let objects = tracks::objects(&finds, &times_s);
     let moving = objects.iter().filter(|object| object.places.len() > 1).count();
     loaded.notes.push(format!(
@@ -111,6 +117,11 @@ fn seen(
         return Ok(None);
     };
     let seen = net.glance(&moment.returns, number)?;
+    // Few moments are looked at more closely.
+    let objects = match loaded.moments() <= FEW && !loaded.knows_objects() {
+        true => net.objects_of_sweep(&moment.returns, moment.sensor_m)?,
+        false => seen.detections,
+    };
     let ahead = (moment.world_from_vehicle.rotation * DVec3::X).truncate();
     let find = |d: &Detection| {
         let object = d.to_box(BoxId(0));
@@ -129,7 +140,7 @@ fn seen(
     };
     Ok(Some(SeenMoment {
         time_s: moment.time_s,
-        finds: seen.detections.iter().map(find).collect(),
+        finds: objects.iter().map(find).collect(),
         ground: seen.stands.iter().zip(near).map(class).collect(),
     }))
 }

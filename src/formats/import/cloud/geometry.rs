@@ -51,16 +51,22 @@ const SMOOTH: usize = 4;
 pub(in crate::import) struct Passed {
     /// Seen from above, m.
     pub(in crate::import) at_m: DVec2,
-    /// Height of the ground there, m, if it is known.
-    pub(in crate::import) ground_m: Option<f64>,
+    /// Height of the ground there, m, and its slope along x and y, if they are known.
+    pub(in crate::import) ground: Option<(f64, DVec2)>,
 }
 
 impl Passed {
     /// The vehicle of a single sweep.
     pub(in crate::import) const HERE: Self = Self {
         at_m: DVec2::ZERO,
-        ground_m: None,
+        ground: None,
     };
+
+    /// Height of its ground, continued to another place, m; 0 if nothing is known.
+    fn datum_m(&self, at_m: DVec2) -> f64 {
+        self.ground
+            .map_or(0.0, |(height_m, slope)| height_m + slope.dot(at_m - self.at_m))
+    }
 }
 
 /// What the shape of points tells.
@@ -76,12 +82,16 @@ pub(in crate::import) fn shapes(points: &[DVec3], extent: Extent, passed: &[Pass
     let map = Columns(extent);
     let columns: Vec<usize> = points.iter().map(|p| map.column(*p)).collect();
     let ground = CloudGround::grow(map, points, &columns, passed);
-    let stands = |i: usize| points[i].z - ground.height_m[columns[i]] >= GROUND_BAND_M;
+    let above_m: Vec<f64> = points
+        .iter()
+        .zip(&columns)
+        .map(|(p, c)| p.z - ground.height_m[*c])
+        .collect();
+    let stands = |i: usize| above_m[i] >= GROUND_BAND_M;
     let standing: Vec<usize> = (0..points.len()).filter(|i| stands(*i)).collect();
     let mut above = vec![Above::default(); extent.columns()];
     for &i in &standing {
-        let height_m = points[i].z - ground.height_m[columns[i]];
-        above[columns[i]].add(points[i].truncate(), height_m);
+        above[columns[i]].add(points[i].truncate(), above_m[i]);
     }
     let things = things(map, &above);
     let thickness_m = thickness(map, &above);
@@ -97,9 +107,7 @@ pub(in crate::import) fn shapes(points: &[DVec3], extent: Extent, passed: &[Pass
     };
     Shapes {
         classes: (0..points.len()).map(class).collect(),
-        above_m: (0..points.len())
-            .map(|i| points[i].z - ground.height_m[columns[i]])
-            .collect(),
+        above_m,
     }
 }
 
@@ -147,16 +155,22 @@ struct CloudGround {
 impl CloudGround {
     fn grow(map: Columns, points: &[DVec3], columns: &[usize], passed: &[Passed]) -> Self {
         let all = map.0.columns();
-        let mut lowest = vec![f64::INFINITY; all];
-        for (p, c) in points.iter().zip(columns) {
-            lowest[*c] = lowest[*c].min(p.z);
-        }
         // Distance from the vehicle, m, and where it was then.
         let nearest = |c: usize| {
             let at_m = map.center_m(c);
             let away = passed.iter().map(|p| (p.at_m - at_m).length()).enumerate();
             away.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
         };
+        // Heights are those above the ground that the vehicle stood on.
+        let mut lowest = vec![f64::INFINITY; all];
+        let mut datum_m = vec![f64::NAN; all];
+        for (p, c) in points.iter().zip(columns) {
+            if datum_m[*c].is_nan() {
+                let by = passed.get(nearest(*c).0);
+                datum_m[*c] = by.map_or(0.0, |passed| passed.datum_m(map.center_m(*c)));
+            }
+            lowest[*c] = lowest[*c].min(p.z - datum_m[*c]);
+        }
         let seen = (0..all).filter(|c| lowest[*c].is_finite());
         let mut order: Vec<(f64, usize, usize)> = seen
             .map(|c| {
@@ -169,7 +183,10 @@ impl CloudGround {
         let near: Vec<f64> = near.map(|(_, c, _)| lowest[*c]).collect();
         let every = || order.iter().map(|(_, c, _)| lowest[*c]).collect();
         let usual_m = quantile(if near.is_empty() { every() } else { near });
-        let level_at = |place: usize| passed.get(place).and_then(|p| p.ground_m).unwrap_or(usual_m);
+        let level_at = |place: usize| match passed.get(place).and_then(|p| p.ground) {
+            Some(_) => 0.0,
+            None => usual_m,
+        };
         let mut found = vec![f64::NAN; all];
         let mut driven = vec![f64::NAN; all];
         let mut height_m = vec![usual_m; all];
@@ -188,6 +205,9 @@ impl CloudGround {
             if (lowest[c] - road_m).abs() < STEP_M + STEP_PER_M * gap_m.min(FARTHEST_M) {
                 driven[c] = lowest[c];
             }
+        }
+        for (height_m, datum_m) in height_m.iter_mut().zip(datum_m) {
+            *height_m += if datum_m.is_nan() { 0.0 } else { datum_m };
         }
         Self {
             height_m,

@@ -5,7 +5,7 @@
 //! sensor at each of them. Poses are aligned by the sweeps ([`align`]), which then show ground, its relief, and what stands on it
 //! ([`survey`]). The world frame is that of the first sweep on its ground.
 
-mod align;
+pub(super) mod align;
 mod poses;
 pub(super) mod survey;
 
@@ -49,6 +49,8 @@ const ENDINGS: [&str; 3] = ["pcd", "ply", "bin"];
 const REACH_M: f64 = 250.0;
 /// Distance between two sweeps that no vehicle drives, m.
 const JUMP_M: f64 = 50.0;
+/// Way that tells where the front of a vehicle is, m.
+const LEAST_WAY_M: f64 = 2.0;
 /// Farthest place of a pose from the first, m.
 const FARTHEST_M: f64 = 1e6;
 
@@ -98,7 +100,15 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
     for (at, strength) in returns(&files[0])? {
         first.add_return(at, &Pose::IDENTITY, Label::None, strength);
     }
-    let (level, of_ground) = first.leveled();
+    let (level, mut of_ground) = first.leveled();
+    let given: Vec<Pose> = sweeps.iter().map(|s| s.first_from_sensor).collect();
+    let turned_deg = sideways_deg(&given);
+    if turned_deg != 0.0 {
+        of_ground.push(format!(
+            "the vehicle drives at {turned_deg:.0} degrees to the sensor's x: the sweeps are turned"
+        ));
+    }
+    let level = Pose::planar(0.0, 0.0, -turned_deg.to_radians()) * level;
     let surveys: Result<Vec<Survey>, FormatError> = files
         .iter()
         .map(|file| {
@@ -107,7 +117,6 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
         })
         .collect();
     let surveys = surveys?;
-    let given: Vec<Pose> = sweeps.iter().map(|s| s.first_from_sensor).collect();
     let points: Vec<&[DVec3]> = surveys.iter().map(Survey::points).collect();
     let aligned = align(&points, &given);
     let last_m = aligned
@@ -154,6 +163,16 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
         skipped: BTreeMap::new(),
         notes: of_ground.into_iter().chain(notes).collect(),
     })))
+}
+
+/// Angle from the x axis of a sensor to the way that its vehicle drives, in quarter turns, degrees; 0 for one that hardly moves.
+fn sideways_deg(poses: &[Pose]) -> f64 {
+    let step = |two: &[Pose]| (two[0].inverse() * two[1]).translation_m.truncate();
+    let way: DVec2 = poses.windows(2).map(step).sum();
+    match way.length() >= LEAST_WAY_M {
+        true => (way.to_angle().to_degrees() / 90.0).round() * 90.0,
+        false => 0.0,
+    }
 }
 
 /// Guessed parts of the scene of a drive without labels.

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Extent, Frame, Inferred, Lattice, Pose, Relief, Scene, SceneBox,
-    SensorRig, VoxelGrid, draft, infer,
+    BevLayout, BoxId, Class, Extent, Frame, Inferred, Lattice, Pose, Relief, Scene, SceneBox, SensorRig,
+    VoxelGrid, draft, infer,
 };
 
 use super::align::surveyed;
@@ -23,6 +23,8 @@ const STANDS_M: f64 = 0.3;
 /// Width of the cells of a panorama, degrees, and how far up and down it reaches.
 const CELL_DEG: f64 = 1.0;
 const REACH_DEG: f64 = 45.0;
+/// Distance of the places that the vehicle passed, m.
+const PASSED_EVERY_M: f64 = 0.5;
 /// A ray that passes a place ends this much farther than it, m; one that ends this near to it meets it.
 const PASSED_M: f64 = 1.0;
 const MET_M: f64 = 0.4;
@@ -33,6 +35,8 @@ const LEAST_THROUGH: usize = 2;
 /// Ground within this of z = 0, m, in this share of the columns is level.
 const LEVEL_M: f32 = 0.15;
 const LEVEL_SHARE: f64 = 0.97;
+/// Ground up to so many columns from road lies beside it.
+const BESIDE_ROAD: usize = 8;
 
 /// A sweep of a drive: its returns thinned to 0.25 m ([`surveyed`]), in m in the frame of the sensor.
 #[derive(Debug)]
@@ -49,7 +53,7 @@ impl Survey {
     }
 
     /// The points that are left, m.
-    pub(super) fn points(&self) -> &[DVec3] {
+    pub(in crate::import) fn points(&self) -> &[DVec3] {
         &self.points
     }
 }
@@ -61,6 +65,8 @@ pub(in crate::import) struct PlacedSurvey {
     world_from_sensor: Pose,
     /// Place on the ground below the sensor, m, in the world frame.
     foot_m: DVec3,
+    /// Direction away from the ground that the vehicle stands on, in the frame of the sensor.
+    up: DVec3,
 }
 
 impl PlacedSurvey {
@@ -74,6 +80,7 @@ impl PlacedSurvey {
         Self {
             survey,
             foot_m: world_from_sensor.apply(foot),
+            up: world_from_first.rotation.inverse() * DVec3::Z,
             world_from_sensor,
         }
     }
@@ -83,11 +90,27 @@ impl PlacedSurvey {
 #[derive(Debug)]
 pub(in crate::import) struct SurveyedDrive {
     sweeps: Vec<PlacedSurvey>,
+    /// Objects that move, by sweep, if a person or a data set told the objects.
+    told: Option<Vec<Vec<SceneBox>>>,
 }
 
 impl SurveyedDrive {
+    /// A drive of which nothing is known but its sweeps.
     pub(in crate::import) fn new(sweeps: Vec<PlacedSurvey>) -> Self {
-        Self { sweeps }
+        Self { sweeps, told: None }
+    }
+
+    /// A drive whose objects are known; `moving` are those that move, by sweep.
+    pub(in crate::import) fn with_objects(sweeps: Vec<PlacedSurvey>, moving: Vec<Vec<SceneBox>>) -> Self {
+        Self {
+            sweeps,
+            told: Some(moving),
+        }
+    }
+
+    /// Objects that move, by sweep, if the objects are known.
+    pub(in crate::import) fn told(&self) -> Option<&[Vec<SceneBox>]> {
+        self.told.as_deref()
     }
 
     /// What stands still, within 40 m of the vehicle; `moving` are objects that are known to move, by sweep, `told` classes of the
@@ -133,6 +156,12 @@ pub(in crate::import) struct SurveyedWorld {
 }
 
 impl SurveyedWorld {
+    /// The world with drafts of objects that are known.
+    pub(in crate::import) fn with_drafts<'a>(mut self, boxes: impl Iterator<Item = &'a SceneBox>) -> Self {
+        boxes.for_each(|b| draft::stamp_box(&mut self.voxels, b));
+        self
+    }
+
     /// The scene that stands still, with these objects: what is in them gets their class.
     pub(in crate::import) fn scene(mut self, name: &str, boxes: BTreeMap<BoxId, SceneBox>) -> Scene {
         boxes.values().for_each(|b| relabel(&mut self.voxels, b));
@@ -171,13 +200,7 @@ fn together(
     moving: &[Vec<SceneBox>],
     told: &[Option<Class>],
 ) -> Option<SurveyedWorld> {
-    let passed: Vec<Passed> = sweeps
-        .iter()
-        .map(|sweep| Passed {
-            at_m: sweep.foot_m.truncate(),
-            ground_m: Some(sweep.foot_m.z),
-        })
-        .collect();
+    let passed = passed(sweeps);
     let (mut points, mut of_sweep) = (Vec::new(), Vec::new());
     for (i, sweep) in sweeps.iter().enumerate() {
         for p in &sweep.survey.points {
@@ -207,7 +230,8 @@ fn together(
         off_heights: 0,
     };
     let mut votes = Vec::with_capacity(points.len());
-    let mut heights = vec![(0.0f64, 0u32); extent.columns()];
+    // Sums and counts of the heights of road, and of other ground, in each column.
+    let mut heights = vec![[(0.0f64, 0u32); 2]; extent.columns()];
     for (i, p) in points.iter().enumerate() {
         if moves(i) {
             out.seen_through += 1;
@@ -223,8 +247,9 @@ fn together(
         };
         let z = match class.is_ground() {
             true => {
-                heights[column].0 += p.z;
-                heights[column].1 += 1;
+                let is_beside = usize::from(shapes.classes[i] != Class::DriveableSurface);
+                let (sum, count) = &mut heights[column][is_beside];
+                (*sum, *count) = (*sum + p.z, *count + 1);
                 (p.z > extent.min_m().z).then(|| Lattice::OCC3D.ground_bin(p.z))
             }
             false => extent.voxel_at(*p).map(|[.., z]| z),
@@ -249,10 +274,36 @@ fn together(
             out.voxels.set(x, y, at % extent.nz(), winner[0].1);
         }
     }
-    out.layout = infer::layout(&out.voxels);
     out.layout.relief = relief(extent, &heights);
     lay_ground(&mut out, told);
+    let relief = std::mem::take(&mut out.layout.relief);
+    out.layout = infer::layout(&out.voxels);
+    out.layout.relief = relief;
     (!votes.is_empty()).then_some(out)
+}
+
+/// Places that the vehicle passed, half a metre apart, with the ground that it stood on.
+fn passed(sweeps: &[PlacedSurvey]) -> Vec<Passed> {
+    let ground = |sweep: &PlacedSurvey| {
+        let up = sweep.world_from_sensor.rotation * sweep.up;
+        (sweep.foot_m, -up.truncate() / up.z.max(0.1))
+    };
+    let mut out = Vec::new();
+    let mut add = |(foot_m, slope): (DVec3, DVec2)| {
+        out.push(Passed {
+            at_m: foot_m.truncate(),
+            ground: Some((foot_m.z, slope)),
+        });
+    };
+    for two in sweeps.windows(2) {
+        let [(from_m, from_slope), (to_m, to_slope)] = [ground(&two[0]), ground(&two[1])];
+        let steps = (from_m.distance(to_m) / PASSED_EVERY_M).ceil().clamp(1.0, 200.0) as usize;
+        for share in (0..steps).map(|i| i as f64 / steps as f64) {
+            add((from_m.lerp(to_m, share), from_slope.lerp(to_slope, share)));
+        }
+    }
+    sweeps.last().into_iter().for_each(|last| add(ground(last)));
+    out
 }
 
 /// Lays ground whose class is known where no point lies: between the rings of the sweeps.
@@ -271,23 +322,29 @@ fn lay_ground(world: &mut SurveyedWorld, told: &[Option<Class>]) {
         world
             .voxels
             .set(x, y, draft::ground_bin(&world.layout, x, y), class.id());
-        match class {
-            Class::DriveableSurface => world.layout.set(BevLayer::DrivableArea, x, y, true),
-            Class::Sidewalk => world.layout.set(BevLayer::Walkway, x, y, true),
-            _ => {}
-        }
     }
 }
 
-/// The relief of measured ground: sums and counts of heights in each column.
-fn relief(extent: Extent, heights: &[(f64, u32)]) -> Relief {
-    let known: Vec<f32> = heights
-        .iter()
-        .map(|(sum, n)| match n {
-            0 => f32::NAN,
-            n => (sum / f64::from(*n)) as f32,
+/// The relief of measured ground, from sums and counts of heights of road and of other ground in each column. Walkways lie higher than
+/// the relief: other ground counts where no road is near.
+fn relief(extent: Extent, heights: &[[(f64, u32); 2]]) -> Relief {
+    let mean = |(sum, n): (f64, u32)| match n {
+        0 => f32::NAN,
+        n => (sum / f64::from(n)) as f32,
+    };
+    let mut known: Vec<f32> = heights.iter().map(|[road, _]| mean(*road)).collect();
+    let is_near_road = |[x, y]: [usize; 2]| {
+        let xs = x.saturating_sub(BESIDE_ROAD)..=(x + BESIDE_ROAD).min(extent.nx() - 1);
+        xs.into_iter().any(|x| {
+            let ys = y.saturating_sub(BESIDE_ROAD)..=(y + BESIDE_ROAD).min(extent.ny() - 1);
+            ys.into_iter().any(|y| heights[extent.index(x, y)][0].1 > 0)
         })
-        .collect();
+    };
+    for (c, at) in extent.all_columns().enumerate() {
+        if heights[c][1].1 > 0 && known[c].is_nan() && !is_near_road(at) {
+            known[c] = mean(heights[c][1]);
+        }
+    }
     let all = known.iter().filter(|h| !h.is_nan());
     let level = all.clone().filter(|h| h.abs() <= LEVEL_M).count();
     match level as f64 >= LEVEL_SHARE * all.count() as f64 {

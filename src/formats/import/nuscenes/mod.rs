@@ -1,4 +1,4 @@
-//! nuScenes tables: a scene of a folder becomes a scene with a clip. See [`crate::nuscenes`].
+//! Tables of nuScenes and T4 (Autoware): a scene of a folder becomes a scene with a clip. See [`crate::nuscenes`].
 //!
 //! The first scene by name is read; [`pictures`] reads all, for training. The vehicle moves through its poses at the
 //! key frames, objects through their annotations, and both go straight on beyond the first and the last. Objects that
@@ -11,6 +11,7 @@
 //! The world frame is that of the first ego pose (x forward, on the ground), except in folders that Sceneloom wrote: their
 //! `map.json` names the origin that the scene had.
 
+mod aligned;
 mod objects;
 mod occupancy;
 pub mod pictures;
@@ -25,18 +26,20 @@ use std::sync::Arc;
 use glam::DVec3;
 use scene::message::shortened;
 use scene::{
-    BevLayout, Clip, Conditions, Extent, Frame, Inferred, Key, Lattice, Motion, Pose, Recorded, Scene,
-    TimeOfDay, Weather, draft, infer,
+    BevLayout, Clip, Conditions, Frame, Inferred, Key, Motion, Pose, Recorded, Scene, TimeOfDay, Weather,
+    draft, infer,
 };
 
+use super::drive::survey::extent_around;
 use super::{Content, ImportFile, ImportedScene, Importer};
 use crate::nuscenes::yaw_rad;
 use crate::{FormatError, Holds, input};
+use aligned::Surveys;
 
 /// See the module.
 pub const IMPORTER: Importer = Importer {
     id: "nuscenes",
-    title: "nuScenes tables",
+    title: "T4 and nuScenes tables",
     extensions: &[],
     holds: &[Holds::Boxes, Holds::Points],
     largest: input::LARGEST_TEXT,
@@ -68,20 +71,30 @@ fn in_folder(folder: &Path) -> Option<PathBuf> {
         let scene = folder.join("scene.json");
         (scene.is_file() && folder.join("sample_data.json").is_file()).then_some(scene)
     };
-    let version = |path: &PathBuf| {
+    // Versions of nuScenes; the tables of T4, or a version of such a data set.
+    let inner = |path: &PathBuf| {
         let name = path.file_name().map(|n| n.to_string_lossy());
-        name.is_some_and(|n| n.starts_with("v1.0"))
+        let is_number = |n: &str| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit());
+        name.is_some_and(|n| n.starts_with("v1.0") || n == T4_TABLES || is_number(&n))
+    };
+    let inside = |folder: &Path| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten();
+        let mut inside: Vec<PathBuf> = entries
+            .filter_map(|e| Some(e.ok()?.path()))
+            .filter(inner)
+            .collect();
+        inside.sort();
+        inside
     };
     tables(folder).or_else(|| {
-        let entries = std::fs::read_dir(folder).ok()?;
-        let mut versions: Vec<PathBuf> = entries
-            .filter_map(|e| Some(e.ok()?.path()))
-            .filter(version)
-            .collect();
-        versions.sort();
-        versions.iter().find_map(|path| tables(path))
+        inside(folder)
+            .iter()
+            .find_map(|path| tables(path).or_else(|| tables(&path.join(T4_TABLES))))
     })
 }
+
+/// Folder of the tables of T4.
+const T4_TABLES: &str = "annotation";
 
 fn read_scene(source: &ImportFile<'_>) -> Result<ImportedScene, FormatError> {
     Ok(read_drive(source, 0)?.0)
@@ -93,13 +106,33 @@ fn read_drive(
     which: usize,
 ) -> Result<(ImportedScene, read::Recording), FormatError> {
     let mut skipped = Skipped::new();
-    let recording = read::recording(source, which, &mut skipped)?;
+    let mut recording = read::recording(source, which, &mut skipped)?;
+    let mut of_sweeps = Skipped::new();
+    let surveys = (!recording.is_own).then(|| Surveys::read(source, &recording, &mut of_sweeps));
+    let aligned = surveys.as_ref().and_then(|surveys| surveys.align(&mut recording));
     let frames = &recording.frames;
     let poses: Vec<Pose> = frames.iter().map(|f| f.world_from_ego).collect();
-    let extent = extent(&poses).map_err(FormatError::new)?;
+    let places: Vec<DVec3> = poses.iter().map(|p| p.translation_m).collect();
+    let extent = extent_around(&places).map_err(FormatError::new)?;
     let things = objects::things(&recording, &mut skipped);
-    let observed = occupancy::observed(source, &recording, &things, extent, &mut skipped);
+    // Sweeps without labels tell by their shapes what they saw.
+    let is_labelled = occupancy::is_labelled(source, &recording);
+    let drive = surveys
+        .filter(|_| !is_labelled)
+        .map(|s| s.drive(&recording, &things));
+    if drive.is_some() {
+        skipped.extend(of_sweeps);
+    }
+    let world = drive
+        .as_ref()
+        .and_then(|drive| drive.world(drive.told().unwrap_or_default(), &[]));
+    let by_shape = world.is_some();
+    let observed = match world {
+        Some(world) => Some(occupancy::StaticScene::of_shapes(world, &things)),
+        None => occupancy::observed(source, &recording, &things, extent, &mut skipped),
+    };
     let (layout, voxels, unobserved, inferred) = match observed {
+        Some(o) if by_shape => (o.layout, o.voxels, o.unobserved, &GUESSED_BY_SHAPE[..]),
         Some(o) => (o.layout, o.voxels, o.unobserved, &GUESSED[..]),
         // Nothing was measured: open ground, as for a list of boxes.
         None => {
@@ -152,37 +185,25 @@ fn read_drive(
     }
     let loaded = ImportedScene {
         sweep: (!recording.is_own)
-            .then(|| occupancy::kept_sweeps(source, &recording))
+            .then(|| occupancy::kept_sweeps(source, &recording, drive))
             .flatten(),
         scene,
         inferred,
         skipped,
-        notes: Vec::new(),
+        notes: aligned.into_iter().collect(),
     };
     Ok((loaded, recording))
 }
 
-/// The parts that are guessed from the voxels.
+/// The parts that are guessed from the voxels, and those of sweeps without labels.
 const GUESSED: [&str; 2] = ["layout", "background"];
+const GUESSED_BY_SHAPE: [&str; 3] = ["classes", "layout", "background"];
 
 /// Text of a file with spaces in place of control characters.
 fn plain(text: &str) -> String {
     text.chars()
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect()
-}
-
-/// Ground within 40 m of the vehicle along x and y, at every key frame.
-fn extent(poses: &[Pose]) -> Result<Extent, String> {
-    let places = poses.iter().map(|p| p.translation_m);
-    let low = places.clone().fold(DVec3::INFINITY, DVec3::min);
-    let high = places.fold(DVec3::NEG_INFINITY, DVec3::max);
-    let reach = Extent::WINDOW.max_m().x;
-    let column = |metres: f64| (metres * Lattice::OCC3D.per_m()).floor() as i32;
-    let from = [column(low.x - reach), column(low.y - reach)];
-    let to = |metres: f64| ((metres + reach) * Lattice::OCC3D.per_m()).ceil() as i32;
-    let size = |axis: usize, high: f64| usize::try_from(to(high).saturating_sub(from[axis])).unwrap_or(0);
-    Extent::new(from, [size(0, high.x), size(1, high.y)])
 }
 
 /// How the vehicle drives; `None` if it stands.
@@ -223,3 +244,5 @@ fn conditions(description: &str) -> Conditions {
 mod bad_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod unlabelled_tests;

@@ -13,6 +13,7 @@ use super::objects::{RecordedObjects, holds};
 use super::read::{KeyFrame, RecordedSweep, Recording};
 use super::{Skipped, count};
 use crate::import::ImportFile;
+use crate::import::drive::survey::{SurveyedDrive, SurveyedWorld};
 use crate::import::imported_sweep::{ImportedSweep, SweepSource};
 use crate::occ3d;
 use crate::sweep_file;
@@ -33,6 +34,18 @@ pub(super) struct StaticScene {
     pub(super) layout: BevLayout,
     pub(super) voxels: VoxelGrid,
     pub(super) unobserved: Option<Unobserved>,
+}
+
+impl StaticScene {
+    /// What shapes tell, with drafts of the objects that stand.
+    pub(super) fn of_shapes(world: SurveyedWorld, things: &RecordedObjects) -> Self {
+        let world = world.with_drafts(things.standing.values());
+        Self {
+            layout: world.layout,
+            voxels: world.voxels,
+            unobserved: None,
+        }
+    }
 }
 
 /// `None` if there is neither a label nor a sweep on the map.
@@ -59,7 +72,11 @@ pub(super) fn observed(
 
 /// The sweeps of the key frames, to be kept with the scene; `None` if there are none. Those that cannot be read are left out: their
 /// points are counted where voxels are made.
-pub(super) fn kept_sweeps(source: &ImportFile<'_>, recording: &Recording) -> Option<ImportedSweep> {
+pub(super) fn kept_sweeps(
+    source: &ImportFile<'_>,
+    recording: &Recording,
+    drive: Option<Arc<SurveyedDrive>>,
+) -> Option<ImportedSweep> {
     let sweep = |frame: &KeyFrame| {
         let sweep = frame.sweep.as_ref()?;
         let bytes = source
@@ -84,7 +101,7 @@ pub(super) fn kept_sweeps(source: &ImportFile<'_>, recording: &Recording) -> Opt
         .collect();
     let first = files.first()?;
     let mut all = ImportedSweep::without_returns(first.world_from_file, first.sensor_m);
-    all.files = files;
+    (all.files, all.drive) = (files, drive);
     Some(all)
 }
 
@@ -125,14 +142,8 @@ fn labels(
     touched: &mut [bool],
     skipped: &mut Skipped,
 ) -> Option<(VoxelGrid, Option<Unobserved>)> {
-    let path = |frame: &KeyFrame| {
-        let plain = is_plain(&recording.name) && is_plain(&frame.token);
-        let path = format!("../gts/{}/{}/labels.npz", recording.name, frame.token);
-        let there = source.place(&path).is_ok_and(|p| p.is_file());
-        (plain && there).then_some(path)
-    };
     let files: Vec<(usize, String)> = (recording.frames.iter().enumerate())
-        .filter_map(|(i, f)| Some((i, path(f)?)))
+        .filter_map(|(i, f)| Some((i, labels_path(source, recording, f)?)))
         .collect();
     if files.is_empty() {
         return None;
@@ -345,8 +356,46 @@ impl Votes {
     }
 }
 
+/// Places of the points of a sweep, in m in the frame of the LiDAR; `None` if it cannot be read or is cut.
+pub(super) fn sweep_points(
+    source: &ImportFile<'_>,
+    sweep: &RecordedSweep,
+) -> Option<impl Iterator<Item = DVec3> + use<>> {
+    let bytes = source
+        .beside(&in_data_set(&sweep.filename)?, LARGEST_SWEEP)
+        .ok()?;
+    if bytes.is_empty() || !bytes.len().is_multiple_of(POINT) {
+        return None;
+    }
+    let points = 0..bytes.len() / POINT;
+    Some(points.map(move |i| {
+        let number = |axis: usize| {
+            let from = i * POINT + 4 * axis;
+            let bytes = bytes[from..].first_chunk().copied().unwrap_or_default();
+            f64::from(f32::from_le_bytes(bytes))
+        };
+        DVec3::new(number(0), number(1), number(2))
+    }))
+}
+
+/// True if the key frames have labels of their voxels or their points.
+pub(super) fn is_labelled(source: &ImportFile<'_>, recording: &Recording) -> bool {
+    recording.frames.iter().any(|frame| {
+        let has_points = frame.sweep.as_ref().is_some_and(|sweep| sweep.labels.is_some());
+        has_points || labels_path(source, recording, frame).is_some()
+    })
+}
+
+/// Path of the Occ3D labels of a key frame, if they are there.
+fn labels_path(source: &ImportFile<'_>, recording: &Recording, frame: &KeyFrame) -> Option<String> {
+    let plain = is_plain(&recording.name) && is_plain(&frame.token);
+    let path = format!("../gts/{}/{}/labels.npz", recording.name, frame.token);
+    let there = source.place(&path).is_ok_and(|p| p.is_file());
+    (plain && there).then_some(path)
+}
+
 /// True for a return from the own vehicle.
-fn on_vehicle(rig: &SensorRig, p_in_ego: DVec3) -> bool {
+pub(super) fn on_vehicle(rig: &SensorRig, p_in_ego: DVec3) -> bool {
     let half = DVec3::from_array(rig.ego_size_m) / 2.0 + MARGIN_M;
     let away = p_in_ego - DVec3::from_array(rig.ego_center_m);
     // Down to just above the road.

@@ -352,7 +352,7 @@ fn objects(
     let attributes: Vec<Attribute> = rows::of_optional(source, "attribute", |_| true)?;
     let parked: HashSet<&str> = attributes
         .iter()
-        .filter(|a| a.name == "vehicle.parked")
+        .filter(|a| ["vehicle.parked", "vehicle_state.parked"].contains(&&*a.name))
         .map(|a| &*a.token)
         .collect();
     let mut out = Vec::new();

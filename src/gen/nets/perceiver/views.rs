@@ -61,7 +61,7 @@ impl LidarPerceiver {
     /// What one look at a real sweep finds, boxes from a low score on, to be followed through a drive. Returns as for
     /// [`objects_of_sweep`](Self::objects_of_sweep); `number` is that of the sweep: each next one is looked at turned by a quarter.
     pub fn glance(&self, returns: &[[f32; 4]], number: usize) -> Result<Perceived, ModelError> {
-        let turn = number % TURNS;
+        let turn = number % 2 * 2;
         let seen = self.perceive(returns.iter().map(|r| turned(*r, turn)), LEAST)?;
         let stands = |d: &Detection| d.center_m[2] - d.size_m[2] / 2.0 < FLOATS_M;
         let detections = seen.detections.into_iter().map(|d| back(d, turn));

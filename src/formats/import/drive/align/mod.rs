@@ -44,9 +44,9 @@ const SAME_SHARE: f64 = 0.002;
 const SAME_RAD: f64 = 0.005;
 
 /// Poses of a drive.
-pub(super) struct Alignment {
+pub(in crate::import) struct Alignment {
     /// Pose of each sensor in the frame of the first.
-    pub(super) poses: Vec<Pose>,
+    pub(in crate::import) poses: Vec<Pose>,
     /// Farthest that a pose was moved, m.
     pub(super) moved_m: f64,
     /// Distance of points from the surfaces of the sweeps before, m.
@@ -57,7 +57,7 @@ pub(super) struct Alignment {
 
 impl Alignment {
     /// What was done, for a person.
-    pub(super) fn note(&self) -> String {
+    pub(in crate::import) fn note(&self) -> String {
         let fits = match self.moved_m {
             0.0 => format!(
                 "the poses fit the sweeps, which lie {:.0} cm apart",
@@ -82,7 +82,7 @@ pub(super) fn surveyed(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
 }
 
 /// The poses of sweeps ([`surveyed`]) near those that the source gives, the first being the identity.
-pub(super) fn align(sweeps: &[&[DVec3]], given: &[Pose]) -> Alignment {
+pub(in crate::import) fn align(sweeps: &[&[DVec3]], given: &[Pose]) -> Alignment {
     let mut aligned = Aligned::default();
     let mut fits = Vec::new();
     let mut unaligned = 0;
