@@ -9,7 +9,7 @@ use scene::{BoxId, Class, Clip, Extent, Frame, Key, Lattice, Motion, Pose, Recor
 
 use super::cloud::{is_own, strength_scale};
 use super::drive::survey::SurveyedWorld;
-use super::importer::ImportedScene;
+use super::importer::{ImportedScene, of_sensor};
 use crate::sweep_file::SweepFile;
 
 /// A sweep of a drive, seen from the vehicle on the ground.
@@ -54,7 +54,7 @@ const GROUND: [Class; 4] = [
 ];
 
 impl ImportedScene {
-    /// Number of the moments of a drive without labels; 0 for all else.
+    /// Number of the moments of a drive without labels, 1 for a sweep by itself; 0 for all else.
     pub fn moments(&self) -> usize {
         let sweep = self.sweep.as_ref().filter(|sweep| sweep.drive.is_some());
         sweep.map_or(0, |sweep| sweep.files.len())
@@ -62,7 +62,16 @@ impl ImportedScene {
 
     /// A moment of a drive. `None` beyond the last, or if its file cannot be read any more.
     pub fn moment(&self, number: usize) -> Option<SweepMoment> {
-        let file = self.sweep.as_ref()?.files.get(number)?;
+        let sweep = self.sweep.as_ref()?;
+        let file = sweep.files.get(number)?;
+        if !sweep.returns.is_empty() {
+            return Some(SweepMoment {
+                time_s: file.time_s,
+                world_from_vehicle: Pose::IDENTITY,
+                sensor_m: sweep.sensor_m,
+                returns: sweep.returns.clone(),
+            });
+        }
         let there = self.scene.at(file.time_s);
         let frame = there.frame();
         let at_m = frame.world_from_ego.translation_m;
@@ -151,6 +160,9 @@ impl ImportedScene {
         let is_told = self.knows_objects();
         let mut scene = world.scene(&self.scene.name, standing);
         (scene.rig, scene.seed) = (self.scene.rig.clone(), self.scene.seed);
+        if let Some(mount_m) = self.sweep.as_ref().and_then(|sweep| sweep.mount_m) {
+            of_sensor(&mut scene, mount_m);
+        }
         (scene.conditions, scene.prompt) = (self.scene.conditions.clone(), self.scene.prompt.clone());
         let clip = self.scene.clip().clone();
         scene.change_clip(|still| *still = Arc::unwrap_or_clone(clip));

@@ -1,14 +1,13 @@
 //! The sweep that a scene is of: what becomes of the objects that are found in it, and its file, which stays with the scene.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::DVec3;
 use scene::message::quoted;
-use scene::{BoxId, Class, Pose, Scene, SceneBox, SweepRecording, VoxelGrid};
+use scene::{Class, Pose, Scene, SceneBox, SweepRecording, VoxelGrid};
 
 use super::drive::survey::SurveyedDrive;
-use super::importer::{ImportedScene, labelled, of_sensor};
+use super::importer::ImportedScene;
 use crate::FormatError;
 use crate::sweep_file::SweepFile;
 
@@ -25,8 +24,6 @@ pub struct ImportedSweep {
     pub sensor_m: DVec3,
     /// The same in the ego frame, if the file tells.
     pub(super) mount_m: Option<DVec3>,
-    /// Height of the ground at the origin, m, and its slopes along x and y.
-    pub(super) ground_m: [f64; 3],
     /// Pose of the file's frame in the world frame.
     pub(super) world_from_file: Pose,
     /// Files that stay with the scene.
@@ -58,7 +55,6 @@ impl ImportedSweep {
             returns: Vec::new(),
             sensor_m,
             mount_m: None,
-            ground_m: [0.0; 3],
             world_from_file,
             files: Vec::new(),
             drive: None,
@@ -103,47 +99,6 @@ impl ImportedSweep {
 }
 
 impl ImportedScene {
-    /// The scene with objects that were found in its sweep, in the frame of [`ImportedSweep::returns`]; their ids are given
-    /// anew. Voxels within them get their class, and what was guessed of voxels is guessed again.
-    pub fn with_objects(mut self, objects: Vec<SceneBox>) -> Self {
-        let Some(sweep) = self.sweep.clone() else {
-            return self;
-        };
-        if let Some(mount_m) = sweep.mount_m {
-            of_sensor(&mut self.scene, mount_m);
-        }
-        let mut objects: Vec<SceneBox> = objects.into_iter().filter(|b| b.problem().is_none()).collect();
-        if objects.is_empty() {
-            return self;
-        }
-        objects.iter_mut().zip(1..).for_each(|(b, id)| b.id = BoxId(id));
-        let mut grid = self.scene.frame().occupancy.clone();
-        for b in &objects {
-            // Voxels are where the file has them.
-            let [height_m, x, y] = sweep.ground_m;
-            let ground_m = height_m + x * b.center_m.x + y * b.center_m.y;
-            relabel(&mut grid, &lifted(b, ground_m));
-        }
-        let recorded = self.scene.frame().inferred.recorded.clone();
-        let mut scene = labelled(&self.scene.name, grid, None);
-        scene.rig = self.scene.rig.clone();
-        let clip = self.scene.clip().clone();
-        scene.change_clip(|still| *still = Arc::unwrap_or_clone(clip));
-        scene.change_canvas(|canvas| {
-            // Boxes stand on the ground of the scene.
-            for b in &mut objects {
-                let ground_m = canvas.layout.relief.height_m(b.center_m.truncate());
-                b.center_m.z = ground_m + b.size_m.z / 2.0;
-            }
-            canvas.inferred.boxes = objects.iter().map(|b| b.id).collect::<BTreeSet<_>>();
-            canvas.boxes = objects.into_iter().map(|b| (b.id, b)).collect();
-            std::sync::Arc::make_mut(&mut canvas.source).boxes = canvas.boxes.clone();
-            canvas.inferred.recorded = recorded;
-        });
-        self.scene = scene;
-        self
-    }
-
     /// The scene with its sweep kept beside it, as it came; a note says if it cannot be kept.
     pub fn with_recording(mut self) -> Self {
         let Some(sweep) = self.sweep.take() else {
@@ -171,13 +126,6 @@ impl ImportedScene {
 fn is_kept(what: &str) -> bool {
     let fields = ["intensity", "ring", "remission"];
     fields.contains(&what) || what.starts_with("field ") || what.starts_with("property ")
-}
-
-fn lifted(b: &SceneBox, by_m: f64) -> SceneBox {
-    SceneBox {
-        center_m: b.center_m + DVec3::Z * by_m,
-        ..*b
-    }
 }
 
 /// Gives the voxels of an object its class.

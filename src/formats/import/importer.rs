@@ -105,7 +105,7 @@ pub struct ImportedScene {
     pub skipped: BTreeMap<String, usize>,
     /// Notes on changes that were made without being asked for, a line each, for a person.
     pub notes: Vec<String>,
-    /// The sweep that it is of; see [`ImportedScene::with_objects`] and [`ImportedScene::with_recording`].
+    /// The sweep that it is of; see [`ImportedScene::with_tracked`] and [`ImportedScene::with_recording`].
     pub sweep: Option<ImportedSweep>,
 }
 

@@ -23,11 +23,7 @@ pub fn file_with(path: &Path, options: ImportOptions) -> Result<(&'static Import
     Ok(match content {
         Content::Scene(loaded) => {
             let is_sweep = loaded.sweep.is_some();
-            let loaded = match loaded.moments() {
-                0 => with_objects(*loaded),
-                _ => with_tracked(*loaded),
-            };
-            let mut loaded = loaded.with_recording();
+            let mut loaded = with_tracked(*loaded).with_recording();
             let pattern = is_sweep.then(|| take_pattern(&mut loaded.scene)).flatten();
             if let Some([beams, columns]) = pattern {
                 let note =
@@ -71,9 +67,12 @@ struct SeenMoment {
     ground: MomentGround,
 }
 
-/// The scene of a drive with the objects that the network finds in its sweeps and that are followed through them, and with the ground as
-/// it sees it.
+/// The scene of a sweep or drive with the objects that the network finds in the sweeps and that are followed through them, and with the
+/// ground as it sees it; the scene as it is if it has no sweeps without labels.
 fn with_tracked(mut loaded: ImportedScene) -> ImportedScene {
+    if loaded.moments() == 0 {
+        return loaded;
+    }
     let net = LidarPerceiver::bundled().map_err(|e| e.to_string());
     let seen = net.and_then(|net| {
         let moments = (0..loaded.moments()).into_par_iter();
@@ -99,11 +98,13 @@ fn with_tracked(mut loaded: ImportedScene) -> ImportedScene {
         return loaded.with_ground(&ground);
     }
     let objects = tracks::objects(&finds, &times_s);
-    let moving = objects.iter().filter(|object| object.places.len() > 1).count();
-    loaded.notes.push(format!(
-        "{} objects found that stand and {moving} that move, each a guess",
-        objects.len() - moving
-    ));
+    if loaded.moments() > 1 {
+        let moving = objects.iter().filter(|object| object.places.len() > 1).count();
+        loaded.notes.push(format!(
+            "{} objects found that stand and {moving} that move, each a guess",
+            objects.len() - moving
+        ));
+    }
     loaded.with_tracked(&objects, &ground)
 }
 
@@ -158,31 +159,6 @@ fn near(returns: &[[f32; 4]]) -> Vec<bool> {
         }
     }
     near
-}
-
-/// The scene with the objects that the network finds in its sweep, if it has one.
-fn with_objects(mut loaded: ImportedScene) -> ImportedScene {
-    let Some(sweep) = loaded.sweep.as_ref().filter(|sweep| !sweep.returns.is_empty()) else {
-        return loaded;
-    };
-    let found = LidarPerceiver::bundled()
-        .map_err(|e| e.to_string())
-        .and_then(|net| {
-            net.objects_of_sweep(&sweep.returns, sweep.sensor_m)
-                .map_err(|e| e.to_string())
-        });
-    match found {
-        Ok(objects) => {
-            let boxes = objects.iter().map(|found| found.to_box(BoxId(0))).collect();
-            loaded.with_objects(boxes)
-        }
-        Err(problem) => {
-            loaded
-                .notes
-                .push(format!("no objects were looked for: {problem}"));
-            loaded
-        }
-    }
 }
 
 #[cfg(test)]

@@ -1,10 +1,13 @@
 //! The returns of a sweep without labels as they come, for a network that finds objects in it.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use scene::{Pose, SensorRig};
 
 use super::level::{GroundPlane, HIGHEST_MOUNT_M};
 use crate::import::ImportedSweep;
+use crate::import::drive::survey::{PlacedSurvey, Survey, SurveyedDrive};
 
 /// Returns of a sweep at most: a larger cloud is a map of many.
 pub(super) const MOST: usize = 600_000;
@@ -81,14 +84,21 @@ impl SweepReturns {
         let seen_from = self
             .sensor_m
             .map_or(DVec3::from_array(usual_m), |at| at.with_z(ground.above_m(at)));
+        // One sweep is a drive of one moment.
+        let sensor_m = self.sensor_m.unwrap_or(DVec3::from_array(usual_m));
+        let survey = Survey::new(self.returns.iter().map(|(at, _)| place(*at) - sensor_m));
+        let world_from_sensor = Pose {
+            translation_m: sensor_m,
+            ..Pose::IDENTITY
+        };
+        let placed = PlacedSurvey::of_ground(survey, world_from_sensor, ground.height_m, ground.slope);
         Some(ImportedSweep {
+            drive: Some(Arc::new(SurveyedDrive::new(vec![placed]))),
             returns: self.returns.into_iter().map(above).collect(),
             sensor_m: seen_from,
             mount_m: self.sensor_m,
             world_from_file,
             files: Vec::new(),
-            drive: None,
-            ground_m: [ground.height_m, ground.slope.x, ground.slope.y],
         })
     }
 }

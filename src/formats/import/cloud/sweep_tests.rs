@@ -6,6 +6,7 @@ use scene::BevLayer;
 
 use super::tests::{at, street};
 use super::*;
+use crate::import::TrackedObject;
 use crate::import::{self, Content};
 
 fn loaded(points: &[(DVec3, Class)], with_labels: bool, lift_m: Option<f64>) -> ImportedScene {
@@ -242,7 +243,7 @@ fn real_sweeps_keep_their_road() {
     }
 }
 
-/// A car on the road becomes a box, its voxels get its class, and nothing else changes but the place of the sensor.
+/// A car on the road becomes a box, its voxels get its class, and the sensor of the rig is where that of the sweep is.
 #[test]
 fn objects_of_a_sweep_become_boxes_with_their_voxels() {
     let seen = |(p, class): (DVec3, Class)| (p - DVec3::Z * 1.84, class);
@@ -256,37 +257,23 @@ fn objects_of_a_sweep_become_boxes_with_their_voxels() {
         .filter(|r| r[0].hypot(r[1]) < 5.0)
         .map(|r| r[2]);
     assert!(road.fold(f32::INFINITY, f32::min).abs() < 0.2);
-    let car = scene::SceneBox {
-        id: scene::BoxId(0),
+    let car = |size_m: DVec3| TrackedObject {
         class: Class::Car,
-        center_m: DVec3::new(12.1, -2.0, 0.8),
-        size_m: DVec3::new(4.0, 1.8, 1.6),
-        yaw_rad: 0.0,
-        velocity_mps: glam::DVec2::ZERO,
-        label: Default::default(),
+        size_m,
+        places: vec![(0, glam::DVec2::new(12.1, -2.0), 0.0)],
     };
-    let bad = scene::SceneBox {
-        size_m: DVec3::NAN,
-        ..car
-    };
-    let before = found.scene.frame().occupancy.clone();
-    let after = found.with_objects(vec![bad, car]).scene;
+    let objects = [car(DVec3::NAN), car(DVec3::new(4.0, 1.8, 1.6))];
+    let after = found.with_tracked(&objects, &[]).scene;
     let frame = after.frame();
     assert_eq!(frame.boxes.len(), 1);
-    assert!(frame.inferred.boxes.contains(&scene::BoxId(1)) && frame.source.boxes.len() == 1);
-    let b = frame.boxes[&scene::BoxId(1)];
-    let mut own = 0;
-    for (x, y, z) in (0..Window::NX)
-        .flat_map(|x| (0..Window::NY).flat_map(move |y| (0..Window::NZ).map(move |z| (x, y, z))))
-    {
-        let (was, is) = (before.get(x, y, z), frame.occupancy.get(x, y, z));
-        if was != is {
-            own += 1;
-            assert_eq!(is, Class::Car.id());
-            assert!(b.contains(Window::center(x, y, z), 0.5), "{x} {y} {z}");
-        }
-    }
-    assert!(own > 3, "{own}");
+    let (id, b) = frame.boxes.first_key_value().expect("a box");
+    assert!(frame.inferred.boxes.contains(id) && frame.source.boxes.len() == 1);
+    let own = frame.occupancy.iter_set().filter(|v| v.3 == Class::Car.id());
+    let own: Vec<DVec3> = own.map(|(x, y, z, _)| Window::center(x, y, z)).collect();
+    assert!(
+        own.len() > 3 && own.iter().all(|p| b.contains(*p, 0.5)),
+        "{own:?}"
+    );
     let lidar = after.rig.lidars.first().expect("one").translation_m;
     assert!((lidar[2] - 1.84).abs() < 0.15, "{lidar:?}");
     // Labelled clouds have their objects.

@@ -86,6 +86,24 @@ impl PlacedSurvey {
     }
 }
 
+impl PlacedSurvey {
+    /// A sweep at the origin of the world, whose ground has this height there, m, and these slopes.
+    pub(in crate::import) fn of_ground(
+        survey: Survey,
+        world_from_sensor: Pose,
+        height_m: f64,
+        slope: DVec2,
+    ) -> Self {
+        let up = (-slope).extend(1.0).normalize();
+        Self {
+            survey,
+            world_from_sensor,
+            foot_m: DVec3::Z * height_m,
+            up: world_from_sensor.rotation.inverse() * up,
+        }
+    }
+}
+
 /// The sweeps of a drive, put together.
 #[derive(Debug)]
 pub(in crate::import) struct SurveyedDrive {
