@@ -179,7 +179,12 @@ fn of_folder(folder: &Path) -> Result<(&'static Importer, PathBuf), FormatError>
     let first = |i: &&'static Importer| Some((*i, (i.in_folder?)(folder)?));
     let of_folders = all().iter().filter(|i| i.in_folder.is_some()).map(|i| i.title);
     let known = || of_folders.clone().chain([drive::IMPORTER.title]);
-    let known_first = all().iter().find_map(first);
+    let sequence = || {
+        drive::is_sequence(folder)
+            .then(|| first(&&drive::IMPORTER))
+            .flatten()
+    };
+    let known_first = sequence().or_else(|| all().iter().find_map(first));
     let drive = || {
         drive::is_drive(folder)
             .then(|| first(&&drive::IMPORTER))

@@ -6,6 +6,7 @@
 //! ([`survey`]). The world frame is that of the first sweep on its ground.
 
 pub(super) mod align;
+mod kitti_sequence;
 mod poses;
 pub(super) mod survey;
 
@@ -28,14 +29,14 @@ use survey::{PlacedSurvey, Survey, SurveyedDrive};
 /// See the module. It is told by the folder alone, so it is no line of the table.
 pub const IMPORTER: Importer = Importer {
     id: "sweeps",
-    title: "folders of numbered clouds with poses.txt",
+    title: "folders of numbered clouds with poses.txt, sequences of KITTI",
     extensions: &[],
     holds: &[Holds::Points],
     largest: input::LARGEST_TEXT,
     recognises: |_| false,
-    in_folder: Some(poses::file_in),
+    in_folder: Some(|folder| kitti_sequence::file_in(folder).or_else(|| poses::file_in(folder))),
     read: |source| {
-        let folder = source.path.and_then(Path::parent);
+        let folder = source.path.and_then(kitti_sequence::folder_of);
         let folder = folder.ok_or_else(|| FormatError::new("read from memory, not from a folder"))?;
         read(folder, source.options)
     },
@@ -62,6 +63,11 @@ struct DriveSweep {
     first_from_sensor: Pose,
 }
 
+/// True for a sequence of KITTI with poses.
+pub(super) fn is_sequence(folder: &Path) -> bool {
+    kitti_sequence::file_in(folder).is_some()
+}
+
 /// True for a folder of at least two numbered clouds and their poses.
 pub(super) fn is_drive(folder: &Path) -> bool {
     poses::file_in(folder).is_some() && clouds(folder).len() > 1
@@ -85,8 +91,15 @@ fn clouds(folder: &Path) -> Vec<PathBuf> {
 
 /// Reads a folder. Errors in one line.
 pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, FormatError> {
-    let (clouds, mut notes) = (clouds(folder), Vec::new());
-    let poses = poses::read(folder, clouds.len(), &mut notes)?;
+    let mut notes = Vec::new();
+    let (clouds, poses) = match kitti_sequence::read(folder, &mut notes)? {
+        Some(sequence) => (sequence.clouds, sequence.poses),
+        None => {
+            let clouds = clouds(folder);
+            let poses = poses::read(folder, clouds.len(), &mut notes)?;
+            (clouds, poses)
+        }
+    };
     let sweeps = chosen(clouds, poses, &mut notes)?;
     let name = scene_name(folder);
     let files = opened(&sweeps)?;

@@ -32,8 +32,18 @@ pub(super) fn read(
     notes: &mut Vec<String>,
 ) -> Result<Vec<(f64, Pose)>, FormatError> {
     let path = file_in(folder).ok_or_else(|| FormatError::new("no poses.txt"))?;
+    read_file(&path, folder, clouds, notes)
+}
+
+/// The same from this file; times are those of the folder.
+pub(super) fn read_file(
+    path: &Path,
+    folder: &Path,
+    clouds: usize,
+    notes: &mut Vec<String>,
+) -> Result<Vec<(f64, Pose)>, FormatError> {
     let named = |e: FormatError| e.at(&path.display());
-    let text = text(&path)?;
+    let text = text(path)?;
     let lines = text.lines().map(str::trim);
     let lines = lines.filter(|line| !line.is_empty() && !line.starts_with('#'));
     let poses: Result<Vec<(Option<f64>, Pose)>, FormatError> = lines

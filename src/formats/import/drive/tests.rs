@@ -181,3 +181,100 @@ fn jumps_and_far_sweeps_are_left_out_and_told() {
     let (_, notes) = told([far(0.0), far(45.0), at(90.0), at(135.0)]);
     assert!(!notes.contains("farther"), "{notes}");
 }
+
+/// The four scans as KITTI's odometry has them, poses those of the left camera, and as its raw drives do, with an IMU.
+#[test]
+fn sequences_of_kitti_are_drives() {
+    let camera_from_velo = Pose {
+        rotation: glam::DQuat::from_mat3(&glam::DMat3::from_cols_array(&[
+            0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0,
+        ])),
+        translation_m: DVec3::new(0.01, -0.08, -0.27),
+    };
+    let write = |folder: &Path, name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        std::fs::write(path, bytes).expect("written");
+    };
+    let odometry = tempfile::tempdir().expect("a folder");
+    let raw = tempfile::tempdir().expect("a folder");
+    let velo_from_imu = Pose {
+        rotation: glam::DQuat::from_rotation_z(0.01),
+        translation_m: DVec3::new(-0.81, 0.32, -0.8),
+    };
+    let (mut cameras, mut clock) = (String::new(), String::new());
+    for (i, pose) in poses().iter().enumerate() {
+        write(
+            odometry.path(),
+            &format!("sequences/07/velodyne/{i:06}.bin"),
+            &scan(pose),
+        );
+        cameras += &kitti_line(&(camera_from_velo * *pose * camera_from_velo.inverse()));
+        let drive = raw.path().join("drive_0001");
+        write(&drive, &format!("velodyne_points/data/{i:010}.bin"), &scan(pose));
+        clock += &format!("2011-09-26 23:59:{:09.6}\n", 59.2 + 0.1 * i as f64);
+        // Places by satellite, as the development kit's projection has them.
+        let imu = *pose * velo_from_imu;
+        let scale = 49f64.to_radians().cos() * 6_378_137.0;
+        let origin = DVec3::new(900_000.0, scale * (139f64.to_radians() / 2.0).tan().ln(), 110.0);
+        let at = origin + imu.translation_m;
+        let latitude = 2.0 * (at.y / scale).exp().atan().to_degrees() - 90.0;
+        let (yaw, pitch, roll) = imu.rotation.to_euler(glam::EulerRot::ZYX);
+        let line = format!(
+            "{latitude:.13} {:.13} {} {roll} {pitch} {yaw} 0 0 0",
+            (at.x / scale).to_degrees(),
+            at.z
+        );
+        write(&drive, &format!("oxts/data/{i:010}.txt"), line.as_bytes());
+    }
+    let folder = odometry.path().join("sequences/07");
+    write(
+        &folder,
+        "calib.txt",
+        format!(
+            "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: {}",
+            kitti_line(&camera_from_velo)
+        )
+        .as_bytes(),
+    );
+    write(&folder, "times.txt", b"0\n0.1\n0.2\n0.3\n");
+    write(odometry.path(), "poses/07.txt", cameras.as_bytes());
+    write(
+        &raw.path().join("drive_0001"),
+        "velodyne_points/timestamps.txt",
+        clock.as_bytes(),
+    );
+    let r = glam::DMat3::from_quat(velo_from_imu.rotation)
+        .transpose()
+        .to_cols_array();
+    let numbers = |v: &[f64]| v.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+    let calibration = format!(
+        "R: {}\nT: {}\n",
+        numbers(&r),
+        numbers(&velo_from_imu.translation_m.to_array())
+    );
+    write(raw.path(), "calib_imu_to_velo.txt", calibration.as_bytes());
+    for folder in [folder, raw.path().join("drive_0001")] {
+        let read = import::read_with(&folder, ImportOptions::default())
+            .expect("a drive")
+            .1;
+        let Content::Scene(found) = read else {
+            panic!("no scene")
+        };
+        assert_eq!(found.moments(), 4, "{:?}", found.notes);
+        let scene = &found.scene;
+        assert!(
+            (scene.clip().length_s - 0.3).abs() < 1e-6,
+            "{}",
+            scene.clip().length_s
+        );
+        for (i, pose) in poses().iter().enumerate() {
+            let there = scene.at(0.1 * i as f64).frame().world_from_ego;
+            let off_m = there
+                .translation_m
+                .truncate()
+                .distance(pose.translation_m.truncate());
+            assert!(off_m < 0.03, "{i}: {off_m}");
+        }
+    }
+}
