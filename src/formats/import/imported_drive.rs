@@ -43,6 +43,8 @@ pub type MomentGround = Vec<Option<Class>>;
 
 /// Distance from the vehicle at which ground that it sees counts half as much, m.
 const SURE_M: f64 = 15.0;
+/// Share of the ground along the path of the vehicle that must be road, or what is seen of ground is not believed.
+const BELIEVED_SHARE: f64 = 0.5;
 /// Columns around a column that tell its ground too.
 const AROUND: usize = 2;
 /// Classes of ground.
@@ -100,8 +102,31 @@ impl ImportedScene {
         })
     }
 
-    /// The class of the ground in each column of a map, as most moments see it.
+    /// The class of the ground in each column of a map, as most moments see it. Nothing if most of the ground beside the path of the
+    /// vehicle would be no road: then they are not believed.
     fn ground_of(&self, extent: Extent, seen: &[MomentGround]) -> Vec<Option<Class>> {
+        let told = self.ground_seen(extent, seen);
+        let sweeps = self.sweep.iter().flat_map(|sweep| &sweep.files);
+        let (mut all, mut road) = (0usize, 0usize);
+        for file in sweeps {
+            let there = self.scene.at(file.time_s).frame().world_from_ego;
+            for (along, aside) in (-8..=8).flat_map(|x| (-2..=2).map(move |y| (x, y))) {
+                let at = there.apply(DVec3::new(f64::from(along), f64::from(aside), 0.0));
+                let column = extent.column_at(at.x, at.y);
+                if let Some(class) = column.and_then(|[x, y]| told[extent.index(x, y)]) {
+                    all += 1;
+                    road += usize::from(class == Class::DriveableSurface);
+                }
+            }
+        }
+        match road as f64 >= BELIEVED_SHARE * all as f64 {
+            true => told,
+            false => vec![None; told.len()],
+        }
+    }
+
+    /// The class of the ground in each column of a map, as most moments see it.
+    fn ground_seen(&self, extent: Extent, seen: &[MomentGround]) -> Vec<Option<Class>> {
         let files = self.sweep.iter().flat_map(|sweep| &sweep.files);
         let poses: Vec<Pose> = files
             .map(|file| self.scene.at(file.time_s).frame().world_from_ego.inverse())

@@ -4,15 +4,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use scene::message::quoted;
-use scene::{Class, Pose, Scene, SceneBox, SweepRecording, VoxelGrid};
+use scene::{Pose, Scene, SweepRecording};
 
 use super::drive::survey::SurveyedDrive;
 use super::importer::ImportedScene;
 use crate::FormatError;
 use crate::sweep_file::SweepFile;
-
-/// Distance beyond a box within which voxels are its own, m.
-const BESIDE_M: f64 = 0.25;
 
 /// A sweep, and its returns around the vehicle if these have no labels.
 #[derive(Clone, Debug)]
@@ -126,24 +123,4 @@ impl ImportedScene {
 fn is_kept(what: &str) -> bool {
     let fields = ["intensity", "ring", "remission"];
     fields.contains(&what) || what.starts_with("field ") || what.starts_with("property ")
-}
-
-/// Gives the voxels of an object its class.
-pub(super) fn relabel(grid: &mut VoxelGrid, b: &SceneBox) {
-    let extent = grid.extent();
-    let grown = SceneBox {
-        size_m: b.size_m + DVec3::new(2.0 * BESIDE_M, 2.0 * BESIDE_M, 0.0),
-        ..*b
-    };
-    let [bottom_m, top_m] = [-1.0, 1.0].map(|side| b.center_m.z + side * b.size_m.z / 2.0);
-    for (x, y, _) in scene::draft::box_columns(extent, &grown) {
-        for z in 0..extent.nz() {
-            let height_m = extent.center(x, y, z).z;
-            let label = grid.get(x, y, z);
-            let stands = Class::from_id(label).is_some_and(|c| c != Class::Free && !c.is_ground());
-            if stands && (bottom_m..=top_m + BESIDE_M).contains(&height_m) {
-                grid.set(x, y, z, b.class.id());
-            }
-        }
-    }
 }

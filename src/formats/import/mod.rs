@@ -242,7 +242,12 @@ fn read_file(importer: &Importer, path: &Path, options: ImportOptions) -> Result
         path: Some(path),
         options,
     };
-    let mut content = (importer.read)(&source).map_err(|e| e.at(&path.display()))?;
+    // A drive is its folder, and names its files itself.
+    let named = match importer.id == drive::IMPORTER.id {
+        true => path.parent().unwrap_or(path),
+        false => path,
+    };
+    let mut content = (importer.read)(&source).map_err(|e| e.at(&named.display()))?;
     if let Content::Scene(loaded) = &mut content
         && let Some(sweep) = &mut loaded.sweep
         && ![las::IMPORTER.id, drive::IMPORTER.id, nuscenes::IMPORTER.id].contains(&importer.id)

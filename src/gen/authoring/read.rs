@@ -58,6 +58,8 @@ fn take_pattern(scene: &mut Scene) -> Option<[usize; 2]> {
 
 /// Moments of a drive that are looked at many times.
 const FEW: usize = 6;
+/// Share of the usual scores from which objects of these are followed.
+const FEW_SHARE: f32 = 0.6;
 
 /// What the network sees at a moment of a drive.
 struct SeenMoment {
@@ -101,7 +103,7 @@ fn with_tracked(mut loaded: ImportedScene) -> ImportedScene {
     if loaded.moments() > 1 {
         let moving = objects.iter().filter(|object| object.places.len() > 1).count();
         loaded.notes.push(format!(
-            "{} objects found that stand and {moving} that move, each a guess",
+            "objects found: {} that stand and {moving} that move, each a guess",
             objects.len() - moving
         ));
     }
@@ -117,10 +119,11 @@ fn seen(
     let Some(moment) = loaded.moment(number) else {
         return Ok(None);
     };
-    let seen = net.glance(&moment.returns, number)?;
+    let seen = net.glance(&moment.returns, moment.sensor_m, number)?;
     // Few moments are looked at more closely.
     let objects = match loaded.moments() <= FEW && !loaded.knows_objects() {
-        true => net.objects_of_sweep(&moment.returns, moment.sensor_m)?,
+        true if loaded.moments() == 1 => net.objects_of_sweep(&moment.returns, moment.sensor_m)?,
+        true => net.objects_from(&moment.returns, moment.sensor_m, FEW_SHARE)?,
         false => seen.detections,
     };
     let ahead = (moment.world_from_vehicle.rotation * DVec3::X).truncate();

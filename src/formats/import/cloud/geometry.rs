@@ -48,16 +48,16 @@ const SMOOTH: usize = 4;
 
 /// A place that the vehicle was at.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::import) struct Passed {
+pub(crate) struct Passed {
     /// Seen from above, m.
-    pub(in crate::import) at_m: DVec2,
+    pub(crate) at_m: DVec2,
     /// Height of the ground there, m, and its slope along x and y, if they are known.
-    pub(in crate::import) ground: Option<(f64, DVec2)>,
+    pub(crate) ground: Option<(f64, DVec2)>,
 }
 
 impl Passed {
     /// The vehicle of a single sweep.
-    pub(in crate::import) const HERE: Self = Self {
+    pub(crate) const HERE: Self = Self {
         at_m: DVec2::ZERO,
         ground: None,
     };
@@ -70,15 +70,15 @@ impl Passed {
 }
 
 /// What the shape of points tells.
-pub(in crate::import) struct Shapes {
+pub(crate) struct Shapes {
     /// A class for each point: driveable surface, other flat, manmade, vegetation or others.
-    pub(in crate::import) classes: Vec<Class>,
+    pub(crate) classes: Vec<Class>,
     /// Height of each point above the ground found there or near, m.
-    pub(in crate::import) above_m: Vec<f64>,
+    pub(crate) above_m: Vec<f64>,
 }
 
 /// Classes of points on a map, in m in its frame, by the places that the vehicle was at, one at least.
-pub(in crate::import) fn shapes(points: &[DVec3], extent: Extent, passed: &[Passed]) -> Shapes {
+pub(crate) fn shapes(points: &[DVec3], extent: Extent, passed: &[Passed]) -> Shapes {
     let map = Columns(extent);
     let columns: Vec<usize> = points.iter().map(|p| map.column(*p)).collect();
     let ground = CloudGround::grow(map, points, &columns, passed);

@@ -108,7 +108,7 @@ fn place(at: [f32; 3]) -> DVec3 {
 }
 
 /// Factor that takes strengths of any sensor to 0 to 255: by a high quantile, as single ones are wild.
-pub(in crate::import) fn strength_scale(strengths: impl Iterator<Item = f32>) -> f32 {
+pub(crate) fn strength_scale(strengths: impl Iterator<Item = f32>) -> f32 {
     let mut known: Vec<f32> = strengths.filter(|s| s.is_finite() && *s > 0.0).collect();
     known.sort_unstable_by(f32::total_cmp);
     match known.get(known.len() * 99 / 100).copied() {

@@ -26,16 +26,22 @@ const DAY_S: f64 = 86_400.0;
 
 /// Scans, and time in s and pose of each.
 pub(super) struct Sequence {
-    pub(super) clouds: Vec<PathBuf>,
+    pub(super) clouds: Vec<(u64, PathBuf)>,
     pub(super) poses: Vec<(f64, Pose)>,
 }
 
 /// The file by which a sequence with poses is known.
 pub(super) fn file_in(folder: &Path) -> Option<PathBuf> {
     let calibration = folder.join("calib.txt");
-    let is_odometry = folder.join(SCANS).is_dir() && calibration.is_file() && camera_poses(folder).is_some();
+    // Scans with labels are read one by one.
+    let is_odometry = clouds(&folder.join(SCANS)).len() > 1
+        && !folder.join("labels").is_dir()
+        && calibration.is_file()
+        && camera_poses(folder).is_some();
     let times = folder.join(RAW).join(RAW_TIMES);
-    let is_raw = times.is_file() && folder.join("oxts/data").is_dir();
+    let is_raw = times.is_file()
+        && folder.join("oxts/data").is_dir()
+        && clouds(&folder.join(RAW).join("data")).len() > 1;
     is_odometry
         .then_some(calibration)
         .or_else(|| is_raw.then_some(times))
@@ -66,17 +72,12 @@ pub(super) fn read(folder: &Path, notes: &mut Vec<String>) -> Result<Option<Sequ
         true => raw(folder)?,
         false => odometry(folder, &file, notes)?,
     };
-    if folder.join("labels").is_dir() {
-        notes.push("labels of points are not read: open a scan by itself to see them".into());
-    }
-    match sequence.clouds.len() {
-        0 | 1 => Err(FormatError::new("fewer than two scans").at(&folder.display())),
-        _ => Ok(Some(sequence)),
-    }
+    Ok((sequence.clouds.len() > 1).then_some(sequence))
 }
 
 fn odometry(folder: &Path, calibration: &Path, notes: &mut Vec<String>) -> Result<Sequence, FormatError> {
     let clouds = clouds(&folder.join(SCANS));
+    let numbers: Vec<u64> = clouds.iter().map(|c| c.0).collect();
     let text = text(calibration)?;
     let line = text.lines().find_map(|line| {
         line.strip_prefix("Tr:")
@@ -86,7 +87,7 @@ fn odometry(folder: &Path, calibration: &Path, notes: &mut Vec<String>) -> Resul
         .and_then(kitti::pose_from)
         .ok_or_else(|| FormatError::new("no line Tr: of 12 numbers").at(&calibration.display()))?;
     let file = camera_poses(folder).ok_or_else(|| FormatError::new("no poses"))?;
-    let cameras = poses::read_file(&file, folder, clouds.len(), notes)?;
+    let cameras = poses::read_file(&file, folder, &numbers, notes)?;
     let velo_from_camera = camera_from_velo.inverse();
     let velo = |(time_s, camera): (f64, Pose)| (time_s, velo_from_camera * camera * camera_from_velo);
     Ok(Sequence {
@@ -99,11 +100,14 @@ fn raw(folder: &Path) -> Result<Sequence, FormatError> {
     let clouds = clouds(&folder.join(RAW).join("data"));
     let times = folder.join(RAW).join(RAW_TIMES);
     let lines = text(&times)?;
-    let times_s: Vec<f64> = lines.lines().filter_map(seconds_of_day).collect();
-    if times_s.len() < clouds.len() {
-        let line = format!("{} times for {} scans", times_s.len(), clouds.len());
-        return Err(FormatError::new(line).at(&times.display()));
-    }
+    let all_s: Vec<f64> = lines.lines().filter_map(seconds_of_day).collect();
+    // A line for each number: files can be missing.
+    let time_s = |number: u64| all_s.get(number as usize).copied();
+    let times_s: Option<Vec<f64>> = clouds.iter().map(|c| time_s(c.0)).collect();
+    let times_s = times_s.ok_or_else(|| {
+        let last = clouds.last().map_or(0, |c| c.0);
+        FormatError::new(format!("{} times, expected one for scan {last} too", all_s.len())).at(&RAW_TIMES)
+    })?;
     let calibration = folder.join("../calib_imu_to_velo.txt");
     let velo_from_imu = match calibration.is_file() {
         true => imu_calibration(&text(&calibration)?)
@@ -111,7 +115,7 @@ fn raw(folder: &Path) -> Result<Sequence, FormatError> {
         false => Pose::IDENTITY,
     };
     let mut scale = None;
-    let pose = |cloud: &PathBuf| {
+    let pose = |(_, cloud): &(u64, PathBuf)| {
         let stem = cloud.file_stem().unwrap_or_default();
         let file = folder.join("oxts/data").join(stem).with_extension("txt");
         let numbers: Vec<f64> = text(&file)?

@@ -51,16 +51,18 @@ const REACH_M: f64 = 250.0;
 /// Distance between two sweeps that no vehicle drives, m.
 const JUMP_M: f64 = 50.0;
 /// Way that tells where the front of a vehicle is, m.
-const LEAST_WAY_M: f64 = 2.0;
+const LEAST_WAY_M: f64 = 0.3;
 /// Farthest place of a pose from the first, m.
 const FARTHEST_M: f64 = 1e6;
 
 /// A sweep that is read.
-struct DriveSweep {
-    path: PathBuf,
-    time_s: f64,
+pub(super) struct ChosenSweep<T> {
+    /// Where it is.
+    pub(super) what: T,
+    /// From the first on, s.
+    pub(super) time_s: f64,
     /// Pose of the sensor in the frame of the first one.
-    first_from_sensor: Pose,
+    pub(super) first_from_sensor: Pose,
 }
 
 /// True for a sequence of KITTI with poses.
@@ -74,7 +76,7 @@ pub(super) fn is_drive(folder: &Path) -> bool {
 }
 
 /// The numbered clouds of a folder, by number.
-fn clouds(folder: &Path) -> Vec<PathBuf> {
+fn clouds(folder: &Path) -> Vec<(u64, PathBuf)> {
     let files = std::fs::read_dir(folder).into_iter().flatten();
     let numbered = files.filter_map(|file| {
         let path = file.ok()?.path();
@@ -86,7 +88,7 @@ fn clouds(folder: &Path) -> Vec<PathBuf> {
     });
     let mut numbered: Vec<(u64, PathBuf)> = numbered.collect();
     numbered.sort();
-    numbered.into_iter().map(|(_, path)| path).collect()
+    numbered
 }
 
 /// Reads a folder. Errors in one line.
@@ -96,32 +98,41 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
         Some(sequence) => (sequence.clouds, sequence.poses),
         None => {
             let clouds = clouds(folder);
-            let poses = poses::read(folder, clouds.len(), &mut notes)?;
+            let numbers: Vec<u64> = clouds.iter().map(|c| c.0).collect();
+            let poses = poses::read(folder, &numbers, &mut notes)?;
             (clouds, poses)
         }
     };
-    let sweeps = chosen(clouds, poses, &mut notes)?;
-    let name = scene_name(folder);
-    let files = opened(&sweeps)?;
-    // The first sweep tells where the ground is.
-    let mut first = Cloud::from_source(&ImportFile {
-        bytes: &[],
-        name: &name,
-        path: None,
-        options,
-    });
-    for (at, strength) in returns(&files[0])? {
-        first.add_return(at, &Pose::IDENTITY, Label::None, strength);
-    }
-    let (level, mut of_ground) = first.leveled();
-    let given: Vec<Pose> = sweeps.iter().map(|s| s.first_from_sensor).collect();
-    let turned_deg = sideways_deg(&given);
-    if turned_deg != 0.0 {
-        of_ground.push(format!(
-            "the vehicle drives at {turned_deg:.0} degrees to the sensor's x: the sweeps are turned"
-        ));
-    }
-    let level = Pose::planar(0.0, 0.0, -turned_deg.to_radians()) * level;
+    let all = clouds.into_iter().zip(poses);
+    let all = all.map(|((_, path), (time_s, pose))| (path, time_s, pose));
+    let size = |path: &PathBuf| std::fs::metadata(path).map_or(0, |m| m.len() as usize);
+    let sweeps = chosen(all.collect(), size, &mut notes)?;
+    let open = |sweep: ChosenSweep<PathBuf>| {
+        let bytes = input::read(&sweep.what, SweepRecording::LARGEST as u64).map_err(FormatError::new)?;
+        let name = file_name(Some(&sweep.what));
+        let file = SweepSource {
+            format: sweep_file::format_of(&name),
+            name,
+            bytes: Arc::new(bytes),
+            time_s: sweep.time_s,
+            world_from_file: Pose::IDENTITY,
+            sensor_m: DVec3::ZERO,
+        };
+        Ok((file, sweep.first_from_sensor))
+    };
+    let files: Result<Vec<(SweepSource, Pose)>, FormatError> = sweeps.into_iter().map(open).collect();
+    scene_of(&scene_name(folder), files?, options, notes)
+}
+
+/// The scene of sweeps with their poses in the frame of the first, one at least. Errors in one line.
+pub(super) fn scene_of(
+    name: &str,
+    sweeps: Vec<(SweepSource, Pose)>,
+    options: ImportOptions,
+    mut notes: Vec<String>,
+) -> Result<Content, FormatError> {
+    let (files, given): (Vec<SweepSource>, Vec<Pose>) = sweeps.into_iter().unzip();
+    let (level, of_ground) = level(name, files.first(), &given, options)?;
     let surveys: Result<Vec<Survey>, FormatError> = files
         .iter()
         .map(|file| {
@@ -132,16 +143,15 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
     let surveys = surveys?;
     let points: Vec<&[DVec3]> = surveys.iter().map(Survey::points).collect();
     let aligned = align(&points, &given);
-    let last_m = aligned
-        .poses
-        .last()
-        .map_or(0.0, |pose| pose.translation_m.length());
-    notes.push(format!(
-        "{} sweeps of {:.1} s, the sensor moves {last_m:.1} m",
-        sweeps.len(),
-        sweeps.last().map_or(0.0, |s| s.time_s),
-    ));
-    notes.push(aligned.note());
+    if let (Some(last), [_, .., file]) = (aligned.poses.last(), files.as_slice()) {
+        let way_m = last.translation_m.length();
+        notes.push(format!(
+            "{} sweeps of {:.1} s, the sensor moves {way_m:.1} m",
+            files.len(),
+            file.time_s,
+        ));
+        notes.push(aligned.note());
+    }
     let placed = surveys
         .into_iter()
         .zip(&aligned.poses)
@@ -151,9 +161,9 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
         .world(&[], &[])
         .ok_or_else(|| FormatError::new("no return of the sweeps lies on the map"))?;
     notes.extend(world.notes());
-    let mut scene = world.scene(&name, BTreeMap::new());
-    let times_s = sweeps.iter().map(|s| s.time_s);
-    let clip = clip(times_s.clone().zip(&aligned.poses), &level);
+    let mut scene = world.scene(name, BTreeMap::new());
+    let times_s = files.iter().map(|file| file.time_s);
+    let clip = clip(times_s.zip(&aligned.poses), &level);
     if let Some(problem) = clip.problem() {
         return Err(FormatError::new(problem));
     }
@@ -162,8 +172,7 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
     scene.change_canvas(|canvas| canvas.inferred.recorded = recorded);
     let mut sweep = ImportedSweep::without_returns(level, level.translation_m);
     sweep.mount_m = Some(level.translation_m);
-    for ((mut file, pose), time_s) in files.into_iter().zip(&aligned.poses).zip(times_s) {
-        file.time_s = time_s;
+    for (mut file, pose) in files.into_iter().zip(&aligned.poses) {
         file.world_from_file = level * *pose;
         file.sensor_m = file.world_from_file.translation_m;
         sweep.files.push(file);
@@ -176,6 +185,33 @@ pub(super) fn read(folder: &Path, options: ImportOptions) -> Result<Content, For
         skipped: BTreeMap::new(),
         notes: of_ground.into_iter().chain(notes).collect(),
     })))
+}
+
+/// How the frame of the first sensor lies in the world: on the ground that its sweep shows, its vehicle ahead; notes for a person.
+fn level(
+    name: &str,
+    first: Option<&SweepSource>,
+    poses: &[Pose],
+    options: ImportOptions,
+) -> Result<(Pose, Vec<String>), FormatError> {
+    let first = first.ok_or_else(|| FormatError::new("no sweep"))?;
+    let mut cloud = Cloud::from_source(&ImportFile {
+        bytes: &[],
+        name,
+        path: None,
+        options,
+    });
+    for (at, strength) in returns(first)? {
+        cloud.add_return(at, &Pose::IDENTITY, Label::None, strength);
+    }
+    let (level, mut notes) = cloud.leveled();
+    let turned_deg = sideways_deg(poses);
+    if turned_deg != 0.0 {
+        notes.push(format!(
+            "the vehicle drives at {turned_deg:.0} degrees to the sensor's x: the sweeps are turned"
+        ));
+    }
+    Ok((Pose::planar(0.0, 0.0, -turned_deg.to_radians()) * level, notes))
 }
 
 /// Angle from the x axis of a sensor to the way that its vehicle drives, in quarter turns, degrees; 0 for one that hardly moves.
@@ -191,17 +227,18 @@ fn sideways_deg(poses: &[Pose]) -> f64 {
 /// Guessed parts of the scene of a drive without labels.
 const GUESSED_OF_DRIVE: [&str; 3] = ["classes", "layout", "background"];
 
-/// The sweeps that are read: near the first, without jumps, as many as can be kept.
-fn chosen(
-    clouds: Vec<PathBuf>,
-    poses: Vec<(f64, Pose)>,
+/// The sweeps that are read, of all with their times (s) and poses: near the first, without jumps, as many as can be kept; `size` is
+/// that of the file of one, bytes.
+pub(super) fn chosen<T>(
+    all: Vec<(T, f64, Pose)>,
+    size: impl Fn(&T) -> usize,
     notes: &mut Vec<String>,
-) -> Result<Vec<DriveSweep>, FormatError> {
-    let first = poses.first().ok_or_else(|| FormatError::new("no pose"))?;
-    let (first_s, sensor_from_first) = (first.0, first.1.inverse());
-    let mut sweeps: Vec<DriveSweep> = Vec::new();
+) -> Result<Vec<ChosenSweep<T>>, FormatError> {
+    let first = all.first().ok_or_else(|| FormatError::new("no pose"))?;
+    let (first_s, sensor_from_first) = (first.1, first.2.inverse());
+    let mut sweeps: Vec<ChosenSweep<T>> = Vec::new();
     let (mut beyond, mut after_jump) = (0, 0);
-    for (path, (time_s, pose)) in clouds.into_iter().zip(poses) {
+    for (what, time_s, pose) in all {
         let first_from_sensor = sensor_from_first * pose;
         let at = first_from_sensor.translation_m;
         if !at.is_finite() || at.length() > FARTHEST_M {
@@ -213,13 +250,13 @@ fn chosen(
         let last = sweeps
             .last()
             .map_or(DVec3::ZERO, |s| s.first_from_sensor.translation_m);
-        if after_jump > 0 || (beyond == 0 && at.distance(last) > JUMP_M) {
+        if beyond == 0 && at.distance(last) > JUMP_M {
             after_jump += 1;
         } else if at.truncate().length() > REACH_M {
             beyond += 1;
         } else {
-            sweeps.push(DriveSweep {
-                path,
+            sweeps.push(ChosenSweep {
+                what,
                 time_s: time_s - first_s,
                 first_from_sensor,
             });
@@ -232,37 +269,19 @@ fn chosen(
     }
     if after_jump > 0 {
         notes.push(format!(
-            "{after_jump} sweeps after a jump of more than {JUMP_M} m are left out"
+            "{after_jump} sweeps that jump by more than {JUMP_M} m are left out"
         ));
     }
-    let size = |s: &DriveSweep| std::fs::metadata(&s.path).map_or(0, |m| m.len() as usize);
-    let bytes: usize = sweeps.iter().map(size).sum();
+    let bytes: usize = sweeps.iter().map(|s| size(&s.what)).sum();
     let every = bytes
         .div_ceil(SweepRecording::LARGEST)
         .max(sweeps.len().div_ceil(SweepRecording::MOST))
         .max(1);
     if every > 1 {
-        notes.push(format!("of {} sweeps every {every}th is read", sweeps.len()));
+        notes.push(format!("of {} sweeps one of every {every} is read", sweeps.len()));
         sweeps = sweeps.into_iter().step_by(every).collect();
     }
     Ok(sweeps)
-}
-
-/// The files of sweeps, not yet placed.
-fn opened(sweeps: &[DriveSweep]) -> Result<Vec<SweepSource>, FormatError> {
-    let open = |sweep: &DriveSweep| {
-        let bytes = input::read(&sweep.path, SweepRecording::LARGEST as u64).map_err(FormatError::new)?;
-        let name = file_name(Some(&sweep.path));
-        Ok(SweepSource {
-            format: sweep_file::format_of(&name),
-            name,
-            bytes: Arc::new(bytes),
-            time_s: 0.0,
-            world_from_file: Pose::IDENTITY,
-            sensor_m: DVec3::ZERO,
-        })
-    };
-    sweeps.iter().map(open).collect()
 }
 
 /// Places of the returns of a file in its frame, m, and their strengths.

@@ -25,24 +25,25 @@ pub(super) fn file_in(folder: &Path) -> Option<PathBuf> {
         .find(|path| path.is_file())
 }
 
-/// Time in s and pose of each of `clouds` sweeps, by time. Errors in one line; notes say what was assumed.
+/// Time in s and pose of each sweep, by time; `numbers` are those of their files. Errors in one line; notes say what was assumed.
 pub(super) fn read(
     folder: &Path,
-    clouds: usize,
+    numbers: &[u64],
     notes: &mut Vec<String>,
 ) -> Result<Vec<(f64, Pose)>, FormatError> {
     let path = file_in(folder).ok_or_else(|| FormatError::new("no poses.txt"))?;
-    read_file(&path, folder, clouds, notes)
+    read_file(&path, folder, numbers, notes)
 }
 
 /// The same from this file; times are those of the folder.
 pub(super) fn read_file(
     path: &Path,
     folder: &Path,
-    clouds: usize,
+    numbers: &[u64],
     notes: &mut Vec<String>,
 ) -> Result<Vec<(f64, Pose)>, FormatError> {
-    let named = |e: FormatError| e.at(&path.display());
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let named = |e: FormatError| e.at(&name);
     let text = text(path)?;
     let lines = text.lines().map(str::trim);
     let lines = lines.filter(|line| !line.is_empty() && !line.starts_with('#'));
@@ -58,18 +59,34 @@ pub(super) fn read_file(
         })
         .collect();
     let poses = poses.map_err(named)?;
+    let clouds = numbers.len();
     if poses.len() < clouds {
         let line = format!("{} poses for {clouds} clouds", poses.len());
         return Err(named(FormatError::new(line)));
     }
+    // Where files are missing, those that are there have the poses of their numbers.
+    let is_numbered = numbers.iter().all(|number| (*number as usize) < poses.len());
+    let place = |i: usize| match poses.len() > clouds && is_numbered {
+        true => numbers[i] as usize,
+        false => i,
+    };
     if poses.len() > clouds {
+        let taken = if is_numbered {
+            "those of their numbers"
+        } else {
+            "the first"
+        };
         notes.push(format!(
-            "{} poses for {clouds} clouds: the first are taken",
+            "{} poses for {clouds} clouds: {taken} are taken",
             poses.len()
         ));
     }
-    let times = times(folder, &poses[..clouds], notes)?;
-    let known: Vec<(f64, Pose)> = times.into_iter().zip(poses.into_iter().map(|p| p.1)).collect();
+    let places: Vec<usize> = (0..clouds).map(place).collect();
+    let times = times(folder, &poses, &places, notes)?;
+    let known: Vec<(f64, Pose)> = times
+        .into_iter()
+        .zip(places.iter().map(|place| poses[*place].1))
+        .collect();
     let backwards = known.windows(2).filter(|two| two[1].0 <= two[0].0).count();
     match backwards {
         0 => Ok(known),
@@ -79,10 +96,11 @@ pub(super) fn read_file(
     }
 }
 
-/// Times of the sweeps, s from any origin.
+/// Times of the sweeps, s from any origin, whose poses are at these places in the list.
 fn times(
     folder: &Path,
     poses: &[(Option<f64>, Pose)],
+    places: &[usize],
     notes: &mut Vec<String>,
 ) -> Result<Vec<f64>, FormatError> {
     let path = folder.join(TIMES);
@@ -90,17 +108,20 @@ fn times(
         let text = text(&path)?;
         let words = text.split_whitespace();
         let times: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
-        if times.len() < poses.len() || times.iter().any(|t| !t.is_finite()) {
-            let line = format!("{} times for {} clouds", times.len(), poses.len());
-            return Err(FormatError::new(line).at(&path.display()));
+        if times.len() < places.len() || times.iter().any(|t| !t.is_finite()) {
+            let line = format!("{} times for {} clouds", times.len(), places.len());
+            return Err(FormatError::new(line).at(&TIMES));
         }
-        return Ok(times);
+        // One for each pose, or one for each cloud.
+        let of_poses = times.len() >= poses.len();
+        let time = |(i, place): (usize, &usize)| times[if of_poses { *place } else { i }];
+        return Ok(places.iter().enumerate().map(time).collect());
     }
-    if let Some(times) = poses.iter().map(|(time_s, _)| *time_s).collect() {
+    if let Some(times) = places.iter().map(|place| poses[*place].0).collect() {
         return Ok(times);
     }
     notes.push("times are not told: ten sweeps a second are assumed".into());
-    Ok((0..poses.len()).map(|i| i as f64 * STEP_S).collect())
+    Ok(places.iter().map(|place| *place as f64 * STEP_S).collect())
 }
 
 fn text(path: &Path) -> Result<String, FormatError> {

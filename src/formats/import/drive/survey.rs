@@ -14,8 +14,9 @@ use scene::{
 
 use super::align::surveyed;
 use crate::import::cloud::geometry::{Passed, shapes};
-use crate::import::imported_sweep::relabel;
 
+/// Distance beyond a box within which voxels are its own, m.
+const OWN_M: f64 = 0.25;
 /// A return this far outside of a box still comes from what is in it, m.
 const BESIDE_M: f64 = 0.15;
 /// Returns lower above the ground than this are of the ground: whether they move is not asked, m.
@@ -28,10 +29,14 @@ const PASSED_EVERY_M: f64 = 0.5;
 /// A ray that passes a place ends this much farther than it, m; one that ends this near to it meets it.
 const PASSED_M: f64 = 1.0;
 const MET_M: f64 = 0.4;
-/// Sweeps before and after that are asked whether they saw through a return.
-const ASKED: [usize; 5] = [1, 2, 3, 5, 8];
+/// Sweeps before and after that are asked whether they saw through a return: near ones, and farther ones for what moves slowly.
+const ASKED: [usize; 8] = [1, 2, 3, 5, 8, 12, 18, 27];
 /// Fewest sweeps that saw through it.
 const LEAST_THROUGH: usize = 2;
+/// Share of the returns of a voxel that others saw through from which all of it moved.
+const MOVED_SHARE: f64 = 0.4;
+/// Share of what stands that others saw through from which the poses cannot fit.
+const MISFIT_SHARE: f64 = 0.15;
 /// Ground within this of z = 0, m, in this share of the columns is level.
 const LEVEL_M: f32 = 0.15;
 const LEVEL_SHARE: f64 = 0.97;
@@ -40,27 +45,27 @@ const BESIDE_ROAD: usize = 8;
 
 /// A sweep of a drive: its returns thinned to 0.25 m ([`surveyed`]), in m in the frame of the sensor.
 #[derive(Debug)]
-pub(in crate::import) struct Survey {
+pub(crate) struct Survey {
     points: Vec<DVec3>,
 }
 
 impl Survey {
     /// Thins returns, in m in the frame of the sensor, without those of the own vehicle.
-    pub(in crate::import) fn new(returns: impl Iterator<Item = DVec3>) -> Self {
+    pub(crate) fn new(returns: impl Iterator<Item = DVec3>) -> Self {
         Self {
             points: surveyed(returns),
         }
     }
 
     /// The points that are left, m.
-    pub(in crate::import) fn points(&self) -> &[DVec3] {
+    pub(crate) fn points(&self) -> &[DVec3] {
         &self.points
     }
 }
 
 /// A sweep at its place.
 #[derive(Debug)]
-pub(in crate::import) struct PlacedSurvey {
+pub(crate) struct PlacedSurvey {
     survey: Survey,
     world_from_sensor: Pose,
     /// Place on the ground below the sensor, m, in the world frame.
@@ -71,11 +76,7 @@ pub(in crate::import) struct PlacedSurvey {
 
 impl PlacedSurvey {
     /// A sweep of a sensor that stands over the ground like the first one, which this pose puts above the origin of the world.
-    pub(in crate::import) fn of_sensor(
-        survey: Survey,
-        world_from_sensor: Pose,
-        world_from_first: &Pose,
-    ) -> Self {
+    pub(crate) fn of_sensor(survey: Survey, world_from_sensor: Pose, world_from_first: &Pose) -> Self {
         let foot = world_from_first.inverse().apply(DVec3::ZERO);
         Self {
             survey,
@@ -88,12 +89,7 @@ impl PlacedSurvey {
 
 impl PlacedSurvey {
     /// A sweep at the origin of the world, whose ground has this height there, m, and these slopes.
-    pub(in crate::import) fn of_ground(
-        survey: Survey,
-        world_from_sensor: Pose,
-        height_m: f64,
-        slope: DVec2,
-    ) -> Self {
+    pub(crate) fn of_ground(survey: Survey, world_from_sensor: Pose, height_m: f64, slope: DVec2) -> Self {
         let up = (-slope).extend(1.0).normalize();
         Self {
             survey,
@@ -106,7 +102,7 @@ impl PlacedSurvey {
 
 /// The sweeps of a drive, put together.
 #[derive(Debug)]
-pub(in crate::import) struct SurveyedDrive {
+pub(crate) struct SurveyedDrive {
     sweeps: Vec<PlacedSurvey>,
     /// Objects that move, by sweep, if a person or a data set told the objects.
     told: Option<Vec<Vec<SceneBox>>>,
@@ -114,12 +110,12 @@ pub(in crate::import) struct SurveyedDrive {
 
 impl SurveyedDrive {
     /// A drive of which nothing is known but its sweeps.
-    pub(in crate::import) fn new(sweeps: Vec<PlacedSurvey>) -> Self {
+    pub(crate) fn new(sweeps: Vec<PlacedSurvey>) -> Self {
         Self { sweeps, told: None }
     }
 
     /// A drive whose objects are known; `moving` are those that move, by sweep.
-    pub(in crate::import) fn with_objects(sweeps: Vec<PlacedSurvey>, moving: Vec<Vec<SceneBox>>) -> Self {
+    pub(crate) fn with_objects(sweeps: Vec<PlacedSurvey>, moving: Vec<Vec<SceneBox>>) -> Self {
         Self {
             sweeps,
             told: Some(moving),
@@ -127,30 +123,26 @@ impl SurveyedDrive {
     }
 
     /// Objects that move, by sweep, if the objects are known.
-    pub(in crate::import) fn told(&self) -> Option<&[Vec<SceneBox>]> {
+    pub(crate) fn told(&self) -> Option<&[Vec<SceneBox>]> {
         self.told.as_deref()
     }
 
     /// What stands still, within 40 m of the vehicle; `moving` are objects that are known to move, by sweep, `told` classes of the
     /// ground that are known, by column of [`extent`](Self::extent). `None` if no point lies on the map, or the map would be too
     /// large.
-    pub(in crate::import) fn world(
-        &self,
-        moving: &[Vec<SceneBox>],
-        told: &[Option<Class>],
-    ) -> Option<SurveyedWorld> {
+    pub(crate) fn world(&self, moving: &[Vec<SceneBox>], told: &[Option<Class>]) -> Option<SurveyedWorld> {
         together(&self.sweeps, self.extent()?, moving, told)
     }
 
     /// The map; `None` if it would be too large.
-    pub(in crate::import) fn extent(&self) -> Option<Extent> {
+    pub(crate) fn extent(&self) -> Option<Extent> {
         let feet: Vec<DVec3> = self.sweeps.iter().map(|s| s.foot_m).collect();
         extent_around(&feet).ok()
     }
 }
 
 /// Ground within 40 m of places along x and y. Errors in one line if it is too large.
-pub(in crate::import) fn extent_around(places: &[DVec3]) -> Result<Extent, String> {
+pub(crate) fn extent_around(places: &[DVec3]) -> Result<Extent, String> {
     let low = places.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = places.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     let reach = Extent::WINDOW.max_m().x;
@@ -162,26 +154,27 @@ pub(in crate::import) fn extent_around(places: &[DVec3]) -> Result<Extent, Strin
 }
 
 /// What stands still in a drive.
-pub(in crate::import) struct SurveyedWorld {
+pub(crate) struct SurveyedWorld {
     /// Map layers with the measured relief.
-    pub(in crate::import) layout: BevLayout,
+    pub(crate) layout: BevLayout,
     /// Voxels.
-    pub(in crate::import) voxels: VoxelGrid,
-    /// Points left out because others saw through them.
-    pub(in crate::import) seen_through: usize,
+    pub(crate) voxels: VoxelGrid,
+    /// Points left out because others saw through them, and points that stand on the ground, these among them.
+    pub(crate) seen_through: usize,
+    pub(crate) standing: usize,
     /// Points above or below the map.
-    pub(in crate::import) off_heights: usize,
+    pub(crate) off_heights: usize,
 }
 
 impl SurveyedWorld {
     /// The world with drafts of objects that are known.
-    pub(in crate::import) fn with_drafts<'a>(mut self, boxes: impl Iterator<Item = &'a SceneBox>) -> Self {
+    pub(crate) fn with_drafts<'a>(mut self, boxes: impl Iterator<Item = &'a SceneBox>) -> Self {
         boxes.for_each(|b| draft::stamp_box(&mut self.voxels, b));
         self
     }
 
     /// The scene that stands still, with these objects: what is in them gets their class.
-    pub(in crate::import) fn scene(mut self, name: &str, boxes: BTreeMap<BoxId, SceneBox>) -> Scene {
+    pub(crate) fn scene(mut self, name: &str, boxes: BTreeMap<BoxId, SceneBox>) -> Scene {
         boxes.values().for_each(|b| relabel(&mut self.voxels, b));
         let background = infer::background(&self.voxels, &self.layout);
         let frame = Frame {
@@ -199,16 +192,25 @@ impl SurveyedWorld {
     }
 
     /// Notes for a person.
-    pub(in crate::import) fn notes(&self) -> Vec<String> {
-        let counts = [
-            (
-                self.seen_through,
-                "points of what moves are left out of the voxels",
-            ),
-            (self.off_heights, "points lie above or below the map"),
-        ];
-        let some = counts.into_iter().filter(|(n, _)| *n > 0);
-        some.map(|(n, what)| format!("{n} {what}")).collect()
+    pub(crate) fn notes(&self) -> Vec<String> {
+        let share = self.seen_through as f64 / self.standing.max(1) as f64;
+        let mut out = Vec::new();
+        if share > MISFIT_SHARE {
+            out.push(format!(
+                "the poses do not fit: other sweeps saw through {:.0} % of what stands (poses of another sensor, inverted, or in \
+                 another order?)",
+                100.0 * share
+            ));
+        } else if self.seen_through > 0 {
+            out.push(format!(
+                "{} points of what moves are left out of the voxels",
+                self.seen_through
+            ));
+        }
+        if self.off_heights > 0 {
+            out.push(format!("{} points lie above or below the map", self.off_heights));
+        }
+        out
     }
 }
 
@@ -237,21 +239,25 @@ fn together(
     let shapes = shapes(&points, extent, &passed);
     let panoramas: Vec<Panorama> = sweeps.iter().map(|s| Panorama::of(&s.survey.points)).collect();
     let sensors: Vec<Pose> = sweeps.iter().map(|s| s.world_from_sensor.inverse()).collect();
-    let moves = |i: usize| {
-        let is_ground = shapes.classes[i].is_ground() || shapes.above_m[i] < STANDS_M;
-        !is_ground && is_seen_through(points[i], of_sweep[i], &panoramas, &sensors)
-    };
+    let stands: Vec<bool> = (0..points.len())
+        .map(|i| !shapes.classes[i].is_ground() && shapes.above_m[i] >= STANDS_M)
+        .collect();
+    let through: Vec<bool> = (0..points.len())
+        .map(|i| stands[i] && is_seen_through(points[i], of_sweep[i], &panoramas, &sensors))
+        .collect();
+    let moved = moved(extent, &points, &stands, &through);
     let mut out = SurveyedWorld {
         layout: BevLayout::over(extent),
         voxels: VoxelGrid::over(extent),
         seen_through: 0,
+        standing: stands.iter().filter(|stands| **stands).count(),
         off_heights: 0,
     };
     let mut votes = Vec::with_capacity(points.len());
     // Sums and counts of the heights of road, and of other ground, in each column.
     let mut heights = vec![[(0.0f64, 0u32); 2]; extent.columns()];
     for (i, p) in points.iter().enumerate() {
-        if moves(i) {
+        if moved[i] {
             out.seen_through += 1;
             continue;
         }
@@ -385,13 +391,35 @@ fn is_seen_through(at: DVec3, of_sweep: usize, panoramas: &[Panorama], sensors: 
     for i in asked.flatten().filter(|i| *i < panoramas.len()) {
         let p = sensors[i].apply(at);
         let away_m = p.length();
-        let Some([nearest_m, farthest_m]) = panoramas[i].around(p) else {
+        let Some((nearest_m, is_met)) = panoramas[i].towards(p, away_m) else {
             continue;
         };
-        through += usize::from(nearest_m > away_m + PASSED_M);
-        met += usize::from(nearest_m <= away_m + MET_M && farthest_m >= away_m - MET_M);
+        through += usize::from(!is_met && nearest_m > away_m + PASSED_M);
+        met += usize::from(is_met);
     }
     through >= LEAST_THROUGH && through > met
+}
+
+/// Points that moved: of voxels that hold mostly points that others saw through.
+fn moved(extent: Extent, points: &[DVec3], stands: &[bool], through: &[bool]) -> Vec<bool> {
+    let voxel = |p: &DVec3| {
+        extent
+            .voxel_at(*p)
+            .map(|[x, y, z]| extent.index(x, y) * extent.nz() + z)
+    };
+    let mut counts = vec![(0u32, 0u32); extent.voxels()];
+    for ((p, stands), through) in points.iter().zip(stands).zip(through) {
+        if let Some(voxel) = voxel(p).filter(|_| *stands) {
+            counts[voxel].0 += 1;
+            counts[voxel].1 += u32::from(*through);
+        }
+    }
+    let is_moved = |((p, stands), through): ((&DVec3, &bool), &bool)| {
+        let of_voxel = voxel(p).map(|voxel| counts[voxel]);
+        let mostly = of_voxel.is_some_and(|(all, moved)| f64::from(moved) >= MOVED_SHARE * f64::from(all));
+        *stands && (mostly || *through)
+    };
+    points.iter().zip(stands).zip(through).map(is_moved).collect()
 }
 
 /// How far a sensor sees in each direction.
@@ -423,20 +451,41 @@ impl Panorama {
         (up >= 0.0 && (up as usize) < Self::HIGH).then_some([turn as usize % Self::WIDE, up as usize])
     }
 
-    /// Nearest and farthest return in the cell of a place and those beside it, m; `None` without any in the cell itself.
-    fn around(&self, p: DVec3) -> Option<[f64; 2]> {
+    /// The nearest return in the cell of a place and those beside it, m, and whether one of them is as far away as the place; `None`
+    /// without any in the cell itself.
+    fn towards(&self, p: DVec3, away_m: f64) -> Option<(f64, bool)> {
         let [turn, up] = Self::cell(p)?;
-        let own = self.cells[turn * Self::HIGH + up];
-        if own[1] == 0.0 {
+        if self.cells[turn * Self::HIGH + up][1] == 0.0 {
             return None;
         }
-        let mut out = own;
+        let (mut nearest_m, mut is_met) = (f32::INFINITY, false);
         for turn in [turn + Self::WIDE - 1, turn, turn + 1] {
             for up in up.saturating_sub(1)..=(up + 1).min(Self::HIGH - 1) {
                 let cell = self.cells[turn % Self::WIDE * Self::HIGH + up];
-                out = [out[0].min(cell[0]), out[1].max(cell[1])];
+                nearest_m = nearest_m.min(cell[0]);
+                is_met |= cell.iter().any(|m| (f64::from(*m) - away_m).abs() <= MET_M);
             }
         }
-        Some(out.map(f64::from))
+        Some((f64::from(nearest_m), is_met))
+    }
+}
+
+/// Gives the voxels of an object its class.
+fn relabel(grid: &mut VoxelGrid, b: &SceneBox) {
+    let extent = grid.extent();
+    let grown = SceneBox {
+        size_m: b.size_m + DVec3::new(2.0 * OWN_M, 2.0 * OWN_M, 0.0),
+        ..*b
+    };
+    let [bottom_m, top_m] = [-1.0, 1.0].map(|side| b.center_m.z + side * b.size_m.z / 2.0);
+    for (x, y, _) in draft::box_columns(extent, &grown) {
+        for z in 0..extent.nz() {
+            let height_m = extent.center(x, y, z).z;
+            let label = grid.get(x, y, z);
+            let stands = Class::from_id(label).is_some_and(|c| c != Class::Free && !c.is_ground());
+            if stands && (bottom_m..=top_m + OWN_M).contains(&height_m) {
+                grid.set(x, y, z, b.class.id());
+            }
+        }
     }
 }

@@ -170,9 +170,15 @@ fn jumps_and_far_sweeps_are_left_out_and_told() {
         let found = loaded(&folder(&[("poses.txt", lines.concat())])).expect("the first ones");
         (found.scene.clip().length_s, found.notes.join("; "))
     };
+    // One wrong pose costs its sweep alone.
     let (length_s, notes) = told([at(0.0), at(1.0), at(900.0), at(2.0)]);
     assert!(
-        (length_s - 0.1).abs() < 1e-9 && notes.contains("2 sweeps after a jump"),
+        (length_s - 0.3).abs() < 1e-9 && notes.contains("1 sweeps that jump"),
+        "{notes}"
+    );
+    let (length_s, notes) = told([at(0.0), at(1.0), at(900.0), at(901.0)]);
+    assert!(
+        (length_s - 0.1).abs() < 1e-9 && notes.contains("2 sweeps that jump"),
         "{notes}"
     );
     assert!(notes.contains("ten sweeps a second"), "{notes}");
@@ -277,4 +283,19 @@ fn sequences_of_kitti_are_drives() {
             assert!(off_m < 0.03, "{i}: {off_m}");
         }
     }
+}
+
+#[test]
+fn sweeps_have_the_poses_of_their_numbers_where_files_are_missing() {
+    let folder = folder(&[("poses.txt", all_poses()), ("times.txt", "0 0.5 1.0 1.5".into())]);
+    std::fs::remove_file(folder.path().join("000001.bin")).expect("removed");
+    let found = loaded(&folder).expect("sound");
+    let notes = found.notes.join("; ");
+    assert!(
+        notes.contains("4 poses for 3 clouds: those of their numbers"),
+        "{notes}"
+    );
+    assert_eq!(found.scene.clip().length_s, 1.5);
+    let there = found.scene.at(1.0).frame().world_from_ego.translation_m;
+    assert!(there.truncate().distance(poses()[2].translation_m.truncate()) < 0.03);
 }

@@ -90,7 +90,7 @@ pub(super) fn kept_sweeps(
             bytes: Arc::new(bytes),
             time_s: frame.time_s,
             world_from_file,
-            sensor_m: world_from_file.translation_m,
+            sensor_m: frame.world_from_ego.apply(sweep.sensor_m),
         })
     };
     let files: Vec<SweepSource> = recording

@@ -58,8 +58,10 @@ pub(super) struct RecordedSweep {
     pub(super) filename: String,
     /// File of its labels, from there on.
     pub(super) labels: Option<String>,
-    /// Where the LiDAR was.
+    /// Pose of the frame of its points.
     pub(super) ego_from_lidar: Pose,
+    /// Place of the sensor in the ego frame, m.
+    pub(super) sensor_m: DVec3,
 }
 
 /// An object through the scene.
@@ -112,9 +114,11 @@ pub(super) fn recording(
     })?;
     let sensors: Vec<NuscenesSensor> = rows::of(source, "sensor", |_| true)?;
     let wanted: HashSet<&str> = data.iter().map(|d| &*d.calibrated_sensor_token).collect();
+    let lidars = sensors.iter().filter(|sensor| sensor.modality == "lidar");
+    let lidars: HashSet<&str> = lidars.map(|sensor| &*sensor.token).collect();
     let calibrated: Vec<CalibratedSensor> =
         rows::of(source, "calibrated_sensor", |row: &CalibratedSensor| {
-            wanted.contains(&*row.token)
+            wanted.contains(&*row.token) || lidars.contains(&*row.sensor_token)
         })?;
     let kinds = Kinds::new(&sensors, &calibrated);
     let rig = rig::rig(&kinds, &data, skipped);
@@ -202,6 +206,15 @@ impl<'a> Kinds<'a> {
             by_token: calibrated.iter().filter_map(pair).collect(),
             channels: sensors.iter().map(|s| &*s.channel).collect(),
         }
+    }
+
+    /// Places of all LiDARs that the tables know in the ego frame, m.
+    pub(super) fn lidar_places(&self) -> impl Iterator<Item = DVec3> + '_ {
+        let lidars = self
+            .by_token
+            .values()
+            .filter(|(_, sensor)| sensor.modality == "lidar");
+        lidars.map(|(calibrated, _)| DVec3::from_array(calibrated.translation))
     }
 
     /// The sensor that measured something.
@@ -306,10 +319,12 @@ fn sweep(
         return Ok(None);
     };
     let ego_from_lidar = pose("LiDAR", calibrated.rotation, calibrated.translation);
+    let ego_from_lidar = ego_from_lidar.map_err(FormatError::new)?;
     Ok(Some(RecordedSweep {
         filename: data.filename.clone(),
         labels: labels_of.get(&data.token).cloned(),
-        ego_from_lidar: ego_from_lidar.map_err(FormatError::new)?,
+        sensor_m: rig::lidar_place(kinds, &ego_from_lidar),
+        ego_from_lidar,
     }))
 }
 

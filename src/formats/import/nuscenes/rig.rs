@@ -1,13 +1,35 @@
 //! Calibrated sensors as a rig.
 
+use glam::DVec3;
 use scene::rig_presets::RADARS;
-use scene::{Camera, LidarPattern, RadarPattern, SensorRig};
+use scene::{Camera, LidarPattern, Pose, RadarPattern, SensorRig};
 
 use super::read::Kinds;
 use super::{Skipped, count};
 use crate::nuscenes::pose;
 use crate::nuscenes::tables::{CalibratedSensor, SampleData};
 use crate::sensor_names::LIDAR;
+
+/// Height below which no LiDAR is: points are in the frame of the vehicle, m.
+const LOWEST_LIDAR_M: f64 = 0.3;
+
+/// Place of the LiDAR whose points have this pose in the ego frame, m. Points of T4 are in that frame itself: then it is that of the
+/// highest LiDAR that the tables know, else that of the known vehicle.
+pub(super) fn lidar_place(kinds: &Kinds<'_>, ego_from_points: &Pose) -> DVec3 {
+    let at_m = ego_from_points.translation_m;
+    if at_m.z >= LOWEST_LIDAR_M {
+        return at_m;
+    }
+    let known = SensorRig::default();
+    let usual_m = known
+        .lidars
+        .first()
+        .map_or(at_m, |l| DVec3::from_array(l.translation_m));
+    let others = kinds
+        .lidar_places()
+        .filter(|at| at.is_finite() && at.z >= LOWEST_LIDAR_M);
+    others.max_by(|a, b| a.z.total_cmp(&b.z)).unwrap_or(usual_m)
+}
 
 /// The sensors that measured something in these key frames, as they were calibrated at the first. Cameras of the known vehicle are in the order of its rig, others in that of the table. The tables do not hold the
 /// beams of a LiDAR or the pattern of a radar: these are the known vehicle's.
@@ -34,7 +56,7 @@ pub(super) fn rig(kinds: &Kinds<'_>, data: &[SampleData], skipped: &mut Skipped)
                 Some(camera) => cameras.push(camera),
                 None => count(skipped, "cameras without sound intrinsics", 1),
             },
-            "lidar" => match lidar(&sensor.channel, calibrated, &known) {
+            "lidar" => match lidar(&sensor.channel, calibrated, kinds, &known) {
                 Some(lidar) => rig.lidars.push(lidar),
                 None => count(skipped, "LiDARs without a sound pose", 1),
             },
@@ -82,12 +104,17 @@ fn camera(name: &str, calibrated: &CalibratedSensor, row: &SampleData) -> Option
     alone.problem().is_none().then_some(camera)
 }
 
-fn lidar(name: &str, calibrated: &CalibratedSensor, known: &SensorRig) -> Option<LidarPattern> {
-    pose(name, calibrated.rotation, calibrated.translation).ok()?;
+fn lidar(
+    name: &str,
+    calibrated: &CalibratedSensor,
+    kinds: &Kinds<'_>,
+    known: &SensorRig,
+) -> Option<LidarPattern> {
+    let ego_from_points = pose(name, calibrated.rotation, calibrated.translation).ok()?;
     Some(LidarPattern {
         name: name.into(),
         rotation_wxyz: calibrated.rotation,
-        translation_m: calibrated.translation,
+        translation_m: lidar_place(kinds, &ego_from_points).to_array(),
         ..known.lidars.first()?.clone()
     })
 }

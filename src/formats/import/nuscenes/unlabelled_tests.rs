@@ -1,7 +1,7 @@
 //! Drives without labels of voxels or points, whose poses know no height: as nuScenes publishes them, and as T4.
 
 use glam::{DQuat, DVec2};
-use scene::{BevLayer, BoxId, Class};
+use scene::{BevLayer, BoxId, Class, SensorRig};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -32,8 +32,8 @@ fn given(frame: usize) -> Pose {
 }
 
 /// Road, walls with bays on both sides and a parked car, as the LiDAR sees them: x, y, z, intensity and ring.
-fn scan(frame: usize, ring: f32) -> Vec<u8> {
-    let lidar_from_world = (world_from_ego(frame) * lidar()).inverse();
+fn scan(frame: usize, ring: f32, is_t4: bool) -> Vec<u8> {
+    let lidar_from_world = (world_from_ego(frame) * lidar(is_t4)).inverse();
     let at_x = frame as f64 * STEP_M;
     let mut bytes = Vec::new();
     let mut put = |p: DVec3| {
@@ -72,7 +72,11 @@ fn scan(frame: usize, ring: f32) -> Vec<u8> {
     bytes
 }
 
-fn lidar() -> Pose {
+/// The frame of the points in that of the vehicle: in T4 it is the same.
+fn lidar(is_t4: bool) -> Pose {
+    if is_t4 {
+        return Pose::IDENTITY;
+    }
     Pose {
         rotation: DQuat::from_rotation_z(-std::f64::consts::FRAC_PI_2),
         translation_m: MOUNT_M,
@@ -98,7 +102,11 @@ fn folder(is_t4: bool, annotated: &dyn Fn(usize) -> Vec<(&'static str, Pose)>) -
     let (mut annotations, mut instances) = (Vec::new(), BTreeMap::new());
     for i in 0..FRAMES {
         let (time, name) = (1_000_000 + 500_000 * i as i64, format!("{data}/{i:05}.pcd.bin"));
-        std::fs::write(folder.path().join(&name), scan(i, if is_t4 { -1.0 } else { 3.0 })).expect("written");
+        std::fs::write(
+            folder.path().join(&name),
+            scan(i, if is_t4 { -1.0 } else { 3.0 }, is_t4),
+        )
+        .expect("written");
         samples.push(json!({"token": format!("s{i}"), "timestamp": time, "scene_token": "scene"}));
         measured.push(json!({
             "token": format!("d{i}"), "sample_token": format!("s{i}"), "ego_pose_token": format!("e{i}"),
@@ -120,7 +128,7 @@ fn folder(is_t4: bool, annotated: &dyn Fn(usize) -> Vec<(&'static str, Pose)>) -
             }));
         }
     }
-    let (rotation, translation) = row(&lidar());
+    let (rotation, translation) = row(&lidar(is_t4));
     let categories: Vec<Value> = instances
         .values()
         .map(|name| json!({"token": name, "name": name, "description": ""}))
@@ -185,8 +193,10 @@ fn a_rising_road_is_one_road_and_its_boxes_stand_on_it() {
         );
         let scene = &found.scene;
         for (i, sweep) in found.sweep.iter().flat_map(|s| &s.files).enumerate() {
-            let truth = world_from_ego(i) * lidar();
-            let off_m = sweep.sensor_m.distance(truth.translation_m);
+            // T4 does not tell where the LiDAR is: it is where that of the known vehicle is.
+            let usual_m = DVec3::from_array(SensorRig::default().lidars[0].translation_m);
+            let at_m = if is_t4 { usual_m } else { MOUNT_M };
+            let off_m = sweep.sensor_m.distance(world_from_ego(i).apply(at_m));
             assert!(off_m < 0.05, "{i}: {off_m} m");
         }
         let layout = &scene.canvas().layout;

@@ -19,6 +19,8 @@ const ROWS: usize = 128;
 /// Quarter turns.
 const TURNS: usize = 4;
 const LOOKS: f32 = (THINNED.len() * TURNS) as f32;
+/// Returns of a sweep as the network learned with, near enough.
+const RETURNS_LEARNED: usize = 36_000;
 /// Depth by which boxes may reach into each other, m: they are guesses.
 const INTO_M: f32 = 0.15;
 /// Height above the ground from which something is no object that stands on it, m.
@@ -59,10 +61,23 @@ struct Found {
 
 impl LidarPerceiver {
     /// What one look at a real sweep finds, boxes from a low score on, to be followed through a drive. Returns as for
-    /// [`objects_of_sweep`](Self::objects_of_sweep); `number` is that of the sweep: each next one is looked at turned by a quarter.
-    pub fn glance(&self, returns: &[[f32; 4]], number: usize) -> Result<Perceived, ModelError> {
+    /// [`objects_of_sweep`](Self::objects_of_sweep); `number` is that of the sweep: each second one is looked at turned by half. Rows of sensors with more beams
+    /// than the network learned with are thinned.
+    pub fn glance(
+        &self,
+        returns: &[[f32; 4]],
+        sensor_m: DVec3,
+        number: usize,
+    ) -> Result<Perceived, ModelError> {
         let turn = number % 2 * 2;
-        let seen = self.perceive(returns.iter().map(|r| turned(*r, turn)), LEAST)?;
+        // The network learned with 32 beams.
+        let step = (returns.len() / RETURNS_LEARNED).clamp(1, 4);
+        let rows = match step {
+            1 => vec![0; returns.len()],
+            _ => rows(returns, sensor_m),
+        };
+        let kept = returns.iter().zip(&rows).filter(|(_, row)| *row % step == 0);
+        let seen = self.perceive(kept.map(|(r, _)| turned(*r, turn)), LEAST)?;
         let stands = |d: &Detection| d.center_m[2] - d.size_m[2] / 2.0 < FLOATS_M;
         let detections = seen.detections.into_iter().map(|d| back(d, turn));
         Ok(Perceived {
@@ -78,6 +93,16 @@ impl LidarPerceiver {
         &self,
         returns: &[[f32; 4]],
         sensor_m: DVec3,
+    ) -> Result<Vec<Detection>, ModelError> {
+        self.objects_from(returns, sensor_m, 1.0)
+    }
+
+    /// What many looks at a sweep find as in [`objects_of_sweep`](Self::objects_of_sweep), from this share of the usual scores on.
+    pub fn objects_from(
+        &self,
+        returns: &[[f32; 4]],
+        sensor_m: DVec3,
+        share: f32,
     ) -> Result<Vec<Detection>, ModelError> {
         let rows = rows(returns, sensor_m);
         let looks = THINNED
@@ -98,7 +123,7 @@ impl LidarPerceiver {
             .iter()
             .filter_map(|found| {
                 let mean = found.mean_score();
-                let object = (mean >= least_mean(found.best.group)?).then(|| found.object(mean))?;
+                let object = (mean >= share * least_mean(found.best.group)?).then(|| found.object(mean))?;
                 (object.center_m[2] - object.size_m[2] / 2.0 < FLOATS_M).then_some(object)
             })
             .collect();

@@ -44,12 +44,15 @@ const SAME_SHARE: f64 = 0.002;
 const SAME_RAD: f64 = 0.005;
 
 /// Poses of a drive.
-pub(in crate::import) struct Alignment {
+pub(crate) struct Alignment {
     /// Pose of each sensor in the frame of the first.
-    pub(in crate::import) poses: Vec<Pose>,
-    /// Farthest that a pose was moved, m.
+    pub(crate) poses: Vec<Pose>,
+    /// Farthest that a pose was moved, m, and turned, rad.
     pub(super) moved_m: f64,
-    /// Distance of points from the surfaces of the sweeps before, m.
+    pub(super) turned_rad: f64,
+    /// Share of the points that lie on surfaces of the sweeps before.
+    pub(super) share: f64,
+    /// Their distance from these, m.
     pub(super) rms_m: f64,
     /// Sweeps that keep the pose that was expected.
     pub(super) unaligned: usize,
@@ -57,15 +60,18 @@ pub(in crate::import) struct Alignment {
 
 impl Alignment {
     /// What was done, for a person.
-    pub(in crate::import) fn note(&self) -> String {
-        let fits = match self.moved_m {
-            0.0 => format!(
-                "the poses fit the sweeps, which lie {:.0} cm apart",
-                100.0 * self.rms_m
-            ),
-            m => format!(
-                "the poses were off by up to {m:.2} m and are aligned: the sweeps lie {:.0} cm apart",
-                100.0 * self.rms_m
+    pub(crate) fn note(&self) -> String {
+        let lie = format!(
+            "{:.0} % of their points lie on surfaces of the sweeps before, {:.0} cm off",
+            100.0 * self.share,
+            100.0 * self.rms_m
+        );
+        let fits = match self.moved_m + self.turned_rad {
+            0.0 => format!("the poses fit the sweeps: {lie}"),
+            _ => format!(
+                "the poses were off by up to {:.2} m and {:.1} degrees and are aligned: {lie}",
+                self.moved_m,
+                self.turned_rad.to_degrees()
             ),
         };
         match self.unaligned {
@@ -82,7 +88,7 @@ pub(super) fn surveyed(points: impl Iterator<Item = DVec3>) -> Vec<DVec3> {
 }
 
 /// The poses of sweeps ([`surveyed`]) near those that the source gives, the first being the identity.
-pub(in crate::import) fn align(sweeps: &[&[DVec3]], given: &[Pose]) -> Alignment {
+pub(crate) fn align(sweeps: &[&[DVec3]], given: &[Pose]) -> Alignment {
     let mut aligned = Aligned::default();
     let mut fits = Vec::new();
     let mut unaligned = 0;
@@ -100,25 +106,26 @@ pub(in crate::import) fn align(sweeps: &[&[DVec3]], given: &[Pose]) -> Alignment
         0 => 0.0,
         n => (fits.iter().map(|fit| fit.rms_m * fit.rms_m).sum::<f64>() / n as f64).sqrt(),
     };
+    let share = fits.iter().map(|fit| fit.met * fit.share).sum::<f64>() / fits.len().max(1) as f64;
     let off = aligned.poses.iter().zip(given).map(|(a, b)| difference(a, b));
     let is_same = off.clone().zip(given).all(|((m, rad), pose)| {
         let way_m = pose.translation_m.distance(given[0].translation_m);
         m < SAME_M + SAME_SHARE * way_m && rad < SAME_RAD
     });
-    let moved_m = off.map(|(m, _)| m).fold(0.0, f64::max);
-    match is_same {
-        true => Alignment {
-            poses: given.to_vec(),
-            moved_m: 0.0,
-            rms_m,
-            unaligned,
-        },
-        false => Alignment {
-            poses: aligned.poses,
-            moved_m,
-            rms_m,
-            unaligned,
-        },
+    let most = off.fold((0.0, 0.0), |most, off| {
+        (f64::max(most.0, off.0), f64::max(most.1, off.1))
+    });
+    let (poses, (moved_m, turned_rad)) = match is_same {
+        true => (given.to_vec(), (0.0, 0.0)),
+        false => (aligned.poses, most),
+    };
+    Alignment {
+        poses,
+        moved_m,
+        turned_rad,
+        share,
+        rms_m,
+        unaligned,
     }
 }
 
