@@ -43,8 +43,8 @@ pub type MomentGround = Vec<Option<Class>>;
 
 /// Distance from the vehicle at which ground that it sees counts half as much, m.
 const SURE_M: f64 = 15.0;
-/// Share of the ground along the path of the vehicle that must be road, or what is seen of ground is not believed.
-const BELIEVED_SHARE: f64 = 0.5;
+/// Share of the ground within 4 m of the vehicle that must be road, or what is seen of ground is not believed.
+const BELIEVED_SHARE: f64 = 0.2;
 /// Columns around a column that tell its ground too.
 const AROUND: usize = 2;
 /// Classes of ground.
@@ -102,15 +102,15 @@ impl ImportedScene {
         })
     }
 
-    /// The class of the ground in each column of a map, as most moments see it. Nothing if most of the ground beside the path of the
-    /// vehicle would be no road: then they are not believed.
+    /// The class of the ground in each column of a map, as most moments see it. Nothing if hardly any of the ground around the
+    /// vehicle would be road: then they are not believed.
     fn ground_of(&self, extent: Extent, seen: &[MomentGround]) -> Vec<Option<Class>> {
         let told = self.ground_seen(extent, seen);
         let sweeps = self.sweep.iter().flat_map(|sweep| &sweep.files);
         let (mut all, mut road) = (0usize, 0usize);
         for file in sweeps {
             let there = self.scene.at(file.time_s).frame().world_from_ego;
-            for (along, aside) in (-8..=8).flat_map(|x| (-2..=2).map(move |y| (x, y))) {
+            for (along, aside) in (-4..=4).flat_map(|x| (-4..=4).map(move |y| (x, y))) {
                 let at = there.apply(DVec3::new(f64::from(along), f64::from(aside), 0.0));
                 let column = extent.column_at(at.x, at.y);
                 if let Some(class) = column.and_then(|[x, y]| told[extent.index(x, y)]) {
@@ -188,7 +188,7 @@ impl ImportedScene {
         if let Some(mount_m) = self.sweep.as_ref().and_then(|sweep| sweep.mount_m) {
             of_sensor(&mut scene, mount_m);
         }
-        (scene.conditions, scene.prompt) = (self.scene.conditions.clone(), self.scene.prompt.clone());
+        (scene.conditions, scene.prompt) = (self.scene.conditions, self.scene.prompt.clone());
         let clip = self.scene.clip().clone();
         scene.change_clip(|still| *still = Arc::unwrap_or_clone(clip));
         let pose = self.scene.canvas().world_from_ego;

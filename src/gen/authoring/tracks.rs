@@ -26,9 +26,10 @@ const BEGINS: f64 = 0.3;
 /// Time without a find after which a track ends, s, but never before this number of moments.
 const LOST_S: f64 = 1.2;
 const LOST_MOMENTS: usize = 2;
-/// Fewest finds of an object, fewer where there are few moments; the least mean of their scores, and the least share of the moments from the first to the last.
+/// Fewest finds of an object, fewer where there are few moments; the least mean of their scores (of
+/// vehicles, of people and two-wheelers, which street furniture is taken for), and the least share of the moments from the first to the last.
 const LEAST_FINDS: usize = 3;
-const LEAST_MEAN: f64 = 0.33;
+const LEAST_MEAN: [f64; 2] = [0.33, 0.5];
 const LEAST_SHARE: f64 = 0.5;
 /// An object whose first and last places are nearer than this, m, or that is slower than this, m/s, stands.
 const STANDS_M: f64 = 1.0;
@@ -151,7 +152,7 @@ impl Followed {
     fn is_object(&self, moments: usize) -> bool {
         let span = self.last() - self.finds[0].0 + 1;
         self.finds.len() >= LEAST_FINDS.min(moments.div_ceil(2))
-            && self.mean_score() >= LEAST_MEAN
+            && self.mean_score() >= LEAST_MEAN[kind(self.finds[0].1.group).min(1)]
             && self.finds.len() as f64 >= LEAST_SHARE * span as f64
     }
 }

@@ -27,7 +27,7 @@ const REACH_DEG: f64 = 45.0;
 /// Distance of the places that the vehicle passed, m.
 const PASSED_EVERY_M: f64 = 0.5;
 /// A ray that passes a place ends this much farther than it, m; one that ends this near to it meets it.
-const PASSED_M: f64 = 1.0;
+const PASSED_M: f64 = 0.7;
 const MET_M: f64 = 0.4;
 /// Sweeps before and after that are asked whether they saw through a return: near ones, and farther ones for what moves slowly.
 const ASKED: [usize; 8] = [1, 2, 3, 5, 8, 12, 18, 27];
@@ -36,7 +36,7 @@ const LEAST_THROUGH: usize = 2;
 /// Share of the returns of a voxel that others saw through from which all of it moved.
 const MOVED_SHARE: f64 = 0.4;
 /// Share of what stands that others saw through from which the poses cannot fit.
-const MISFIT_SHARE: f64 = 0.15;
+const MISFIT_SHARE: f64 = 0.1;
 /// Ground within this of z = 0, m, in this share of the columns is level.
 const LEVEL_M: f32 = 0.15;
 const LEVEL_SHARE: f64 = 0.97;

@@ -172,12 +172,11 @@ fn folder(is_t4: bool, annotated: &dyn Fn(usize) -> Vec<(&'static str, Pose)>) -
 fn parked(frame: usize) -> Pose {
     let x = 35.0;
     let at = DVec3::new(x, 5.5, height_m(x) + 0.8);
-    let in_ego = world_from_ego(frame).inverse()
+    world_from_ego(frame).inverse()
         * Pose {
             rotation: world_from_ego(FRAMES).rotation,
             translation_m: at,
-        };
-    in_ego
+        }
 }
 
 #[test]
