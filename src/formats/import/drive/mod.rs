@@ -2,7 +2,7 @@
 //! each sweep stays with the scene at its moment.
 //!
 //! Clouds are files named by numbers (PCD, PLY, `.bin`) in the frame of their sensor; `poses.txt` ([`poses`]) has the pose of the
-//! sensor at each of them. Poses are aligned by the sweeps ([`align`]), which then show ground, its relief, and what stands on it
+//! sensor at each of them. Poses are aligned by the sweeps ([`mod@align`]), which then show ground, its relief, and what stands on it
 //! ([`survey`]). The world frame is that of the first sweep on its ground.
 
 pub(super) mod align;
