@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use scene::clip::ObjectVoxels;
-use scene::{BoxId, Class, Clip, Extent, Frame, Key, Lattice, Motion, Pose, Recorded, SceneBox, Track};
+use scene::{
+    BoxId, Class, Clip, Extent, Frame, Key, Lattice, Motion, Pose, Recorded, Relief, SceneBox, Track,
+};
 
 use super::cloud::{is_own, strength_scale};
 use super::drive::survey::SurveyedWorld;
@@ -215,20 +217,13 @@ impl ImportedScene {
             .flat_map(|sweep| sweep.files.iter().map(|file| file.time_s))
             .collect();
         let relief = self.scene.frame().layout.relief.clone();
-        let on_ground = |b: SceneBox| {
-            let ground_m = relief.height_m(b.center_m.truncate());
-            SceneBox {
-                center_m: b.center_m.with_z(ground_m + b.size_m.z / 2.0),
-                ..b
-            }
-        };
         let (mut standing, mut tracks) = (BTreeMap::new(), BTreeMap::new());
         let mut moving = vec![Vec::new(); times_s.len()];
         for (object, id) in objects.iter().zip(1..) {
             let Some(first) = object.places.first() else {
                 continue;
             };
-            let made = on_ground(object.at(BoxId(id), first));
+            let made = on_ground(&relief, object.at(BoxId(id), first));
             if made.problem().is_some() {
                 continue;
             }
@@ -240,7 +235,7 @@ impl ImportedScene {
             if track.problem().is_none() && tracks.len() < Clip::MAX_TRACKS {
                 tracks.insert(made.id, track);
                 for place in &object.places {
-                    moving[place.0].push(on_ground(object.at(made.id, place)));
+                    moving[place.0].push(on_ground(&relief, object.at(made.id, place)));
                 }
             }
         }
@@ -248,6 +243,11 @@ impl ImportedScene {
         let Some(world) = told.and_then(|told| drive.world(&moving, &told)) else {
             return self;
         };
+        // What stands is on the ground that was measured.
+        let relief = &world.layout.relief;
+        for b in standing.values_mut() {
+            *b = on_ground(relief, *b);
+        }
         let mut clip = Clip::clone(self.scene.clip());
         clip.tracks = tracks;
         if clip.problem().is_some() {
@@ -256,6 +256,15 @@ impl ImportedScene {
         self.scene.change_clip(|still| *still = clip);
         self.replace_world(world, standing);
         self
+    }
+}
+
+/// An object on the ground below it.
+fn on_ground(relief: &Relief, b: SceneBox) -> SceneBox {
+    let ground_m = relief.height_m(b.center_m.truncate());
+    SceneBox {
+        center_m: b.center_m.with_z(ground_m + b.size_m.z / 2.0),
+        ..b
     }
 }
 

@@ -85,9 +85,7 @@ impl PlacedSurvey {
             world_from_sensor,
         }
     }
-}
 
-impl PlacedSurvey {
     /// A sweep at the origin of the world, whose ground has this height there, m, and these slopes.
     pub(crate) fn of_ground(survey: Survey, world_from_sensor: Pose, height_m: f64, slope: DVec2) -> Self {
         let up = (-slope).extend(1.0).normalize();
@@ -489,3 +487,7 @@ fn relabel(grid: &mut VoxelGrid, b: &SceneBox) {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "survey_tests.rs"]
+mod tests;

@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-use scene::{Pose, SceneBox, SweepRecording};
+use glam::{DVec2, DVec3};
+use scene::{BoxId, Pose, SceneBox, SweepRecording};
 
-use super::objects::RecordedObjects;
+use super::objects::{RecordedObjects, holds, scene_box};
 use super::occupancy::{on_vehicle, sweep_points};
 use super::read::Recording;
 use super::{Skipped, count};
@@ -72,7 +72,7 @@ impl Surveys {
                 let boxes = boxes_of(recording, *i);
                 let in_box = |p: &DVec3| {
                     let at = pose.apply(*p);
-                    boxes.iter().any(|b| super::objects::holds(b, at, BESIDE_M))
+                    boxes.iter().any(|b| holds(b, at, BESIDE_M))
                 };
                 survey.points().iter().copied().filter(|p| !in_box(p)).collect()
             })
@@ -127,16 +127,8 @@ impl Surveys {
 /// Boxes of a key frame.
 fn boxes_of(recording: &Recording, frame: usize) -> Vec<SceneBox> {
     let annotated = recording.objects.iter().filter_map(|object| {
-        let b = object.boxes.get(&frame)?;
-        Some(SceneBox {
-            id: scene::BoxId(0),
-            class: object.class,
-            center_m: b.center_m,
-            size_m: b.size_m,
-            yaw_rad: b.yaw_rad,
-            velocity_mps: glam::DVec2::ZERO,
-            label: object.label,
-        })
+        let at = object.boxes.get(&frame)?;
+        Some(scene_box(BoxId(0), object, at, DVec2::ZERO))
     });
     annotated.collect()
 }

@@ -86,7 +86,8 @@ pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> RecordedOb
     out
 }
 
-fn scene_box(id: BoxId, object: &Object, at: &Annotation, velocity_mps: DVec2) -> SceneBox {
+/// The box of an object at a place.
+pub(super) fn scene_box(id: BoxId, object: &Object, at: &Annotation, velocity_mps: DVec2) -> SceneBox {
     SceneBox {
         id,
         class: object.class,
